@@ -1,0 +1,1 @@
+"""Data that the product ships: robots, meshes, tools, worlds, sessions."""

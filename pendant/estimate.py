@@ -1,0 +1,38 @@
+"""What the controller knows in one tick: measured or derived from measurement, never the truth."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class Estimate:
+    """The estimator's result for one tick, n joints. Arrays are owned by the estimator and valid until its next update.
+
+    Frames as in docs/conventions.md: W world, B base, F flange. Wrenches are (6,): force [N], then torque [N·m].
+    """
+
+    tick: int
+    joints_valid: bool  # both encoders and the motor currents are present, fresh and finite
+    wrench_valid: bool  # the flange force/torque sensor is present, fresh and finite
+    acceleration_valid: bool  # the flange accelerometer is present, fresh and finite
+    q: Array  # (n,) output angle [rad]
+    qd: Array  # (n,) output speed [rad/s]
+    qdd: Array  # (n,) output acceleration [rad/s²]
+    theta: Array  # (n,) motor angle referred to the output [rad]
+    theta_d: Array  # (n,) motor speed referred to the output [rad/s]
+    tau_m: Array  # (n,) motor torque referred to the output, from the current [N·m]
+    tau_J: Array  # (n,) transmission torque [N·m]
+    tau_ext: Array  # (n,) external torque, from the joints alone [N·m]
+    w_sensor: Array  # (6,) wrench that the flange exerts on what it carries, in F at the flange origin
+    F_user: Array  # (6,) the user's wrench on the flange: -(w_sensor - w_expected), axes of B, at the flange origin
+    a_F: Array  # (3,) specific force at the flange accelerometer, in F [m/s²]
+    p_BF: Array  # (3,) flange position [m]
+    R_BF: Array  # (3, 3) flange orientation
+    v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
+    v_tcp: float  # speed of the tool centre point [m/s]
+    v_elbow: float  # speed of the elbow [m/s]
+    move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first

@@ -1,0 +1,44 @@
+"""What the user, the inputs and the program ask for in one tick. Web app, session file and test make the same value."""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class Button(StrEnum):
+    """A control of the pendant that is held (FD-23: a keep-alive)."""
+
+    FREE_DRIVE = "free_drive"
+
+
+class Command(StrEnum):
+    """A control of the pendant that acts once."""
+
+    EMERGENCY_STOP = "emergency_stop"
+    RESET = "reset"
+    LEAVE_FREE_DRIVE = "leave_free_drive"  # deactivation signal (FD-17)
+    NORMAL = "normal"  # switch the mode to NORMAL
+    TEACH = "teach"  # switch the mode to TEACH
+    REMOTE = "remote"  # switch the mode to REMOTE
+    START_PROGRAM = "start_program"
+    PAUSE_PROGRAM = "pause_program"
+    RESUME_PROGRAM = "resume_program"
+    STOP_PROGRAM = "stop_program"
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """One tick's inputs.
+
+    `held` names the buttons whose hold was refreshed in this tick (a keep-alive); a button that is not refreshed counts as
+    held until it has been silent for the time of FD-23. `released` names the buttons that were let go, which acts at once.
+    `settings` are changed settings by dotted name, already validated against the schema.
+    """
+
+    held: frozenset[Button] = frozenset()
+    released: frozenset[Button] = frozenset()
+    commands: tuple[Command, ...] = ()
+    settings: dict[str, float | bool | str] = field(default_factory=dict)
+
+
+NOTHING = Inputs()
+"""The inputs of a tick in which nobody does anything."""

@@ -1,0 +1,49 @@
+"""Robot mode, safety mode, free-drive phase and control law: the words every interface shares (FD-1)."""
+
+from enum import IntEnum, StrEnum
+
+TICK_RATE = 500
+"""Control ticks a second, as the flange sensor of a UR e-Series (facts/contact-and-joints.md 1.7)."""
+
+TICK = 1.0 / TICK_RATE
+"""Length of a control tick in s."""
+
+
+class Mode(StrEnum):
+    """Robot mode (FD-1). Exactly one holds."""
+
+    NORMAL = "NORMAL"  # holding still
+    TEACH = "TEACH"  # being programmed, holding still
+    REMOTE = "REMOTE"  # holding still for a remote controller; refuses the pendant's activation
+    RUN = "RUN"  # executing a program
+    FREE_DRIVE = "FREE_DRIVE"  # following the user's hand
+    STOP = "STOP"  # braked and held; left only by a reset
+
+
+class Safety(IntEnum):
+    """Safety mode (FD-1), a dimension of its own; the order is the severity."""
+
+    NORMAL = 1
+    REDUCED = 2
+    PROTECTIVE_STOP = 3
+    EMERGENCY_STOP = 4
+
+
+class Phase(StrEnum):
+    """Where free-drive stands. `OFF` and the phases up to entry leave the robot mode as it is."""
+
+    OFF = "OFF"
+    ACTIVATION = "ACTIVATION"  # the signal is present, its period runs (FD-7)
+    HELD = "HELD"  # in free-drive, button held: the period is suspended (FD-8a)
+    PERIOD = "PERIOD"  # in free-drive, free-drive period runs (FD-14)
+    GUIDED = "GUIDED"  # in free-drive, the user moves the arm
+    RESTART = "RESTART"  # in free-drive, restart period runs (FD-15)
+
+
+class Law(StrEnum):
+    """Which control law the decision asks for."""
+
+    HOLD = "HOLD"  # keep the posture
+    BRAKE = "BRAKE"  # come to rest as fast as the limits allow, then keep the posture
+    FOLLOW = "FOLLOW"  # track the requested move
+    FREE = "FREE"  # free-drive law (FD-2, FD-3)
