@@ -1,0 +1,31 @@
+"""What the supervisor decides in one tick: the only thing that the control law and every interface read from it."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from pendant.events import Event
+from pendant.modes import Law, Mode, Phase, Safety
+from pendant.program import Move
+
+
+class Remaining(NamedTuple):
+    """A running period (FD-20)."""
+
+    name: str  # "activation", "free-drive", "restart", ...
+    ticks: int  # left, counted down to 0
+    total: int  # its whole length
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """The supervisor's decision for one tick."""
+
+    mode: Mode
+    safety: Safety
+    phase: Phase
+    law: Law
+    move: Move | None  # the move to follow, under Law.FOLLOW
+    gain: float  # factor on J^T F_user, under Law.FREE (FD-3)
+    baseline: tuple[float, ...]  # F_user when free-drive began [N, N·m], subtracted under Law.FREE
+    periods: tuple[Remaining, ...]
+    events: tuple[Event, ...]  # what happened in this tick

@@ -1,0 +1,82 @@
+"""The slot between the outside and the loop: whoever acts writes the latest wish, the loop reads it once a tick."""
+
+import threading
+from dataclasses import dataclass, field
+
+from pendant.inputs import Button, Command, Inputs
+from sim.changes import AnyChange
+from sim.touch import Touch
+
+
+@dataclass(frozen=True, slots=True)
+class Wishes:
+    """What the loop takes from the desk for one tick."""
+
+    inputs: Inputs
+    touches: tuple[Touch, ...]
+    changes: tuple[AnyChange, ...]
+
+
+@dataclass(slots=True)
+class Desk:
+    """Latest-value slots for touches, queues for what must not be lost. Every method may be called from any thread."""
+
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _held: set[Button] = field(default_factory=set)
+    _released: set[Button] = field(default_factory=set)
+    _commands: list[Command] = field(default_factory=list)
+    _settings: dict[str, float | bool | str] = field(default_factory=dict)
+    _changes: list[AnyChange] = field(default_factory=list)
+    _touches: dict[str, Touch] = field(default_factory=dict)
+
+    def hold(self, button: Button) -> None:
+        """Say that `button` is held now: a keep-alive (FD-23), good until the next tick."""
+        with self._lock:
+            self._held.add(button)
+            self._released.discard(button)
+
+    def release(self, button: Button) -> None:
+        """Say that `button` was let go."""
+        with self._lock:
+            self._held.discard(button)
+            self._released.add(button)
+
+    def command(self, command: Command) -> None:
+        """Queue a one-shot command."""
+        with self._lock:
+            self._commands.append(command)
+
+    def set(self, settings: dict[str, float | bool | str]) -> None:
+        """Queue validated settings changes."""
+        with self._lock:
+            self._settings.update(settings)
+
+    def change(self, change: AnyChange) -> None:
+        """Queue a laboratory change."""
+        with self._lock:
+            self._changes.append(change)
+
+    def touch(self, who: str, touch: Touch) -> None:
+        """Set or move the touch of `who`; it lasts until `let_go`."""
+        with self._lock:
+            self._touches[who] = touch
+
+    def let_go(self, who: str) -> None:
+        """End the touch of `who`, if there is one."""
+        with self._lock:
+            self._touches.pop(who, None)
+
+    def take(self) -> Wishes:
+        """Read all wishes and empty the queues; touches stay until they are let go."""
+        with self._lock:
+            wishes = Wishes(
+                Inputs(frozenset(self._held), frozenset(self._released), tuple(self._commands), self._settings),
+                tuple(self._touches.values()),
+                tuple(self._changes),
+            )
+            self._held = set()
+            self._released = set()
+            self._commands = []
+            self._settings = {}
+            self._changes = []
+            return wishes

@@ -1,0 +1,95 @@
+"""What to simulate: mounting, tool, true and configured payload, world, seed."""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from sim.arm import NotNegative, Positive
+
+Vector = Annotated[list[float], Meta(min_length=3, max_length=3)]
+
+
+class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A rigid load on the tool-side face of the flange. Without an inertia it counts as a sphere of 1 000 kg/m³."""
+
+    mass: NotNegative  # [kg]
+    com: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.05])  # centre of mass in F [m]
+    inertia: list[float] | None = None  # about the centre: ixx iyy izz ixy ixz iyz, axes of F [kg·m²]
+
+
+class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A tool: part of the true load and, with the payload, of the configured one. Its shape is a capsule along z of F."""
+
+    name: str
+    mass: NotNegative  # [kg]
+    com: Vector  # in F [m]
+    tcp: Vector  # tool centre point in F [m]
+    length: NotNegative  # of its shape; 0 for none [m]
+    radius: Positive = 0.03  # [m]
+
+
+class WorldObject(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
+    """A thing the arm can touch. Pose in W."""
+
+    name: str
+    position: Vector  # [m]
+    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw [rad]
+    stiffness: Positive = 1e5  # true contact stiffness [N/m]
+    friction: NotNegative = 0.5  # Coulomb coefficient
+
+
+class Box(WorldObject, tag="box", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box (table, wall, block); `position` is its centre."""
+
+    size: Vector  # full lengths [m]
+
+
+class Plane(WorldObject, tag="plane", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A half-space (floor, wall); its surface passes through `position`, its z axis points out."""
+
+
+class Pad(WorldObject, tag="pad", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A soft pad: a box of its own, low stiffness."""
+
+    size: Vector
+    stiffness: Positive = 1e3
+
+
+class SnapFit(WorldObject, tag="snap-fit", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box whose resistance breaks at `force` and gives way by `travel` along its -z axis, then resists again."""
+
+    size: Vector
+    force: Positive = 30.0  # [N]
+    travel: Positive = 0.004  # [m]
+
+
+class TwoFrictions(WorldObject, tag="two-frictions", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box whose top has `friction` where its x < 0 and `friction_beyond` where its x > 0."""
+
+    size: Vector
+    friction_beyond: NotNegative = 1.0
+
+
+class Moving(WorldObject, tag="moving", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box that moves to and fro: position + amplitude·sin(2 pi t / period)."""
+
+    size: Vector
+    amplitude: Vector  # [m]
+    period: Positive = 4.0  # [s]
+
+
+AnyObject = Box | Plane | Pad | SnapFit | TwoFrictions | Moving
+
+
+class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """All that a simulation starts from, besides the arm and the settings."""
+
+    mounting: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
+    posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
+    tool: Tool | None = None
+    payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
+    payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
+    world: list[AnyObject] = []
+    seed: int = 0
+    mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)

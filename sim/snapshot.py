@@ -1,0 +1,25 @@
+"""What a picture or a log of one tick needs: copied values, safe to read from any thread."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One tick, copied. Poses are (7,): position [m], then quaternion wxyz, in W."""
+
+    tick: int
+    decision: Decision
+    estimate: Estimate  # a copy of its own
+    truth_links: NDArray[np.float64]  # (n + 2, 7) base, links' joint frames, last: tool-side face of the flange sensor
+    truth_objects: NDArray[np.float64]  # (m, 7) world objects, in the scenario's order
+    truth_payload: NDArray[np.float64] | None  # (7,) pose of the payload's centre; falls and rests once dropped
+    truth_payload_mass: float  # of what is attached [kg]
+    configured_mass: float  # what the controller believes [kg]
+    touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
+    # each: part, point in W [m], force in W [N], torque in W [N·m]
