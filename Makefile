@@ -1,0 +1,82 @@
+# Needs python3 (3.11 or newer), git and make; everything else goes into .venv.
+#
+#   make run         the web app, opened in the browser
+#   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
+#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes
+#   make clean       remove what the above made
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet
+WORKERS ?= 2
+BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
+
+.PHONY: run test bench bench-full clean lint types contracts unit e2e wheel browser
+
+run: $(VENV)/run.stamp
+	$(BIN)/pendant serve --open
+
+test: lint types contracts unit e2e wheel
+
+$(BIN)/python:
+	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "Python 3.11 or newer is needed, this is $$($(PYTHON) --version); try make PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+		{ echo "This Python cannot make a virtual environment; on Debian or Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/run.stamp: pyproject.toml | $(BIN)/python
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/dev.stamp: pyproject.toml | $(BIN)/python
+	$(PIP) --editable '.[dev]'
+	@touch $@ $(VENV)/run.stamp
+
+lint: $(VENV)/dev.stamp
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types: $(VENV)/dev.stamp
+	$(BIN)/pyright --pythonpath $(BIN)/python
+
+contracts: $(VENV)/dev.stamp
+	$(BIN)/lint-imports --no-logo
+
+unit: $(VENV)/dev.stamp
+	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10
+
+# Alone on the machine: these measure motion against the clock of a real browser.
+e2e: $(VENV)/dev.stamp | browser
+	$(BIN)/pytest -q tests/e2e
+
+browser:
+	@for name in $(BROWSERS); do command -v $$name >/dev/null && exit 0; done; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ]; then \
+		echo "Installing Chromium for the browser tests"; \
+		apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium; \
+	else \
+		echo "The browser tests need Chromium, found none of: $(BROWSERS)." >&2; \
+		echo "Debian: sudo apt-get install chromium. Fedora: sudo dnf install chromium. macOS: brew install --cask chromium." >&2; \
+		exit 1; \
+	fi
+
+# The wheel, alone in an empty environment, run from an empty folder.
+wheel: $(VENV)/dev.stamp
+	@rm -rf build/wheel && mkdir -p build/wheel/empty
+	$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
+	$(PYTHON) -m venv build/wheel/venv
+	build/wheel/venv/bin/python -m pip --disable-pip-version-check install --quiet build/wheel/*.whl
+	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
+	@rm -rf build/wheel
+
+bench: $(VENV)/dev.stamp
+	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+
+bench-full: $(VENV)/dev.stamp
+	@for file in benchmarks/bench_*.py; do echo "== $$file (full)"; $(BIN)/python $$file --full || exit 1; done
+
+clean:
+	rm -rf $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage
