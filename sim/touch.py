@@ -9,7 +9,7 @@ ZERO: Triple = (0.0, 0.0, 0.0)
 class Push(NamedTuple):
     """A wrench on a part, for one tick."""
 
-    part: str  # "base", a joint's link by its joint name, "flange", "tool"
+    part: str  # "foot", a joint's link by its joint name, "flange" (the tool-side face of its sensor), "tool"
     point: Triple  # where, in the part's frame [m]
     force: Triple  # in W [N]
     torque: Triple = ZERO  # in W [N·m]

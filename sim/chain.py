@@ -1,0 +1,88 @@
+"""The rigid bodies of an arm: where each joint sits and what each link weighs. Both models are built from this one value."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm import Arm
+from sim.frames import com_in_joint_frame, inertia_matrix, link_transform, skew
+from sim.scenario import Load, Tool
+
+Array = NDArray[np.float64]
+
+WATER = 1000.0
+"""Density of a load whose inertia nobody gave [kg/m³]; a UR assumes a sphere too (facts/free-drive.md 1.6)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A rigid body: mass [kg], centre of mass (3,) [m] and inertia about it (3, 3) [kg·m²], in the frame it hangs on."""
+
+    mass: float
+    com: Array
+    inertia: Array
+
+    def __add__(self, other: "Body") -> "Body":
+        """Both bodies as one; they must be given in the same frame."""
+        mass = self.mass + other.mass
+        if mass == 0.0:
+            return self
+        com = (self.mass * self.com + other.mass * other.com) / mass
+        inertia = np.zeros((3, 3))
+        for body in (self, other):
+            shift = skew(body.com - com)
+            inertia += body.inertia - body.mass * shift @ shift
+        return Body(mass, com, inertia)
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Links base to flange. Joint frame i: z is the joint's axis; its pose is given in joint frame i-1 (the base for 0) at q = 0."""
+
+    p: Array  # (n, 3) [m]
+    R: Array  # (n, 3, 3)
+    links: tuple[Body, ...]  # in their joint frames
+    p_flange: Array  # (3,) flange in the last joint frame
+    R_flange: Array  # (3, 3)
+
+
+def chain(arm: Arm) -> Chain:
+    """The chain that `arm`'s file describes."""
+    n = arm.n
+    p, R, links = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1)), []
+    behind = np.eye(4)
+    for i in range(n):
+        p[i], R[i] = behind[:3, 3], behind[:3, :3]
+        behind = link_transform(arm, i)
+        links.append(Body(arm.masses.mass[i], com_in_joint_frame(arm, i), inertia_matrix(arm.inertias.tensor[i])))
+    return Chain(p, R, tuple(links), behind[:3, 3], behind[:3, :3])
+
+
+def load_body(load: Load) -> Body:
+    """`load` as a body in F; without an inertia a sphere of the density of water."""
+    if load.inertia is not None:
+        inertia = inertia_matrix(load.inertia)
+    else:
+        radius = (3.0 * load.mass / (4.0 * math.pi * WATER)) ** (1.0 / 3.0)
+        inertia = np.eye(3) * 0.4 * load.mass * radius * radius
+    return Body(load.mass, np.array(load.com), inertia)
+
+
+def tool_body(tool: Tool | None) -> Body:
+    """`tool` as a body in F: a cylinder of its length and radius; no tool weighs nothing."""
+    if tool is None:
+        return Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    across = tool.mass * (3 * tool.radius**2 + tool.length**2) / 12.0
+    return Body(tool.mass, np.array(tool.com), np.diag([across, across, tool.mass * tool.radius**2 / 2.0]))
+
+
+def plate_body(arm: Arm) -> Body:
+    """The tool-side face of the flange sensor, a disc in F that moves with whatever it carries; nothing without a sensor."""
+    sensor = arm.sensors.force_torque
+    if sensor is None:
+        return Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    radius = 0.0315  # of an ISO 9409-1-50-4-M6 flange
+    turn = sensor.plate_mass * radius**2 / 2.0
+    return Body(sensor.plate_mass, np.array([0.0, 0.0, sensor.plate_length / 2.0]), np.diag([turn / 2.0, turn / 2.0, turn]))

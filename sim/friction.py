@@ -1,0 +1,50 @@
+"""True joint friction: a curve through the measured points, with load, temperature and wear. Known to the plant alone."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm import Arm
+
+Array = NDArray[np.float64]
+
+
+class Friction:
+    """Friction torque of each joint's input side [N·m] at a speed, load and temperature (AF-1).
+
+    The whole measured curve is split: a share on the output side (bearings, seals) is a constant plus a viscous part, the
+    rest is on the input side and carries every dependence. Through the m measured points goes a polynomial of degree m-1 in
+    the root of the speed, for the measured curves are concave like a root (facts/contact-and-joints.md 1.4).
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        frictions = arm.frictions
+        speed = np.array(frictions.speed)
+        total = np.array(frictions.torque)
+        slope, start = np.polyfit(speed, total.T, 1)
+        self.output_coulomb: Array = frictions.output_share * start  # (n,) [N·m]
+        self.output_viscous: Array = frictions.output_share * slope  # (n,) [N·m·s/rad]
+        inner = total - self.output_coulomb[:, None] - self.output_viscous[:, None] * speed
+        root = np.sqrt(speed)
+        self._coefficients = np.linalg.solve(np.vander(root), inner.T)  # highest power first, (m, n)
+        self._root_low, self._root_high = float(root[0]), float(root[-1])
+        self.breakaway: Array = np.array(frictions.breakaway) - self.output_coulomb  # (n,) of the input side at rest [N·m]
+        self._load = np.array(frictions.load)
+        self._reference = frictions.temperature
+        self._per_kelvin = frictions.per_kelvin
+        self.factor = np.ones(arm.n)
+        """Wear or grease: a factor a joint, 1 when new."""
+
+    def input_side(self, speed: Array, tau_J: Array, temperature: Array) -> Array:
+        """Friction torque (n,) [N·m], never negative, at |speed| [rad/s], transmission torque [N·m] and temperature [°C].
+
+        Below the slowest measured speed the curve goes straight to the breakaway torque; above the fastest it stays level.
+        """
+        root = np.sqrt(np.abs(speed))
+        inside = np.minimum(np.maximum(root, self._root_low), self._root_high)
+        curve = self._coefficients[0]
+        for row in self._coefficients[1:]:
+            curve = curve * inside + row
+        rest = np.minimum(root / self._root_low, 1.0)
+        curve = self.breakaway + rest * (curve - self.breakaway)
+        warmth = np.maximum(1.0 + self._per_kelvin * (temperature - self._reference), 0.2)
+        return (curve * warmth + self._load * np.abs(tau_J)) * self.factor
