@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from pendant.events import Event
 from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import Move
+from pendant.program import Move, ProgramState
 
 
 class Remaining(NamedTuple):
@@ -29,3 +29,5 @@ class Decision:
     baseline: tuple[float, ...]  # F_user when free-drive began [N, N·m], subtracted under Law.FREE
     periods: tuple[Remaining, ...]
     events: tuple[Event, ...]  # what happened in this tick
+    program: ProgramState = ProgramState.NONE
+    step: int = 0  # of the program, from 1; 0 unless it is running or paused

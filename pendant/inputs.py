@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from pendant.program import Program
+
 
 class Button(StrEnum):
     """A control of the pendant that is held (FD-23: a keep-alive)."""
@@ -38,6 +40,7 @@ class Inputs:
     released: frozenset[Button] = frozenset()
     commands: tuple[Command, ...] = ()
     settings: dict[str, float | bool | str] = field(default_factory=dict)
+    program: Program | None = None  # a program to load
 
 
 NOTHING = Inputs()

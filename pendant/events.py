@@ -1,0 +1,54 @@
+"""What can happen: an event is a fact of one tick, with its numbers. pendant.table says what it does and how it reads."""
+
+from enum import StrEnum
+
+import msgspec
+
+Values = dict[str, float | int | str | bool]
+
+
+class Kind(StrEnum):
+    """Every kind of event. Its row in pendant.table.TABLE says which values it carries."""
+
+    ACTIVATION_STARTED = "activation_started"
+    ACTIVATION_CANCELLED = "activation_cancelled"
+    ENTERED = "entered"
+    REFUSED_MODE = "refused_mode"
+    REFUSED_SENSORS = "refused_sensors"
+    REFUSED_MOVING = "refused_moving"
+    NOT_YET = "not_yet"
+    MANIPULATION = "manipulation"
+    RESTARTED = "restarted"
+    WRENCH_LOST = "wrench_lost"
+    HOLD_SILENT = "hold_silent"
+    LEFT_PERIOD = "left_period"
+    LEFT_RESTART = "left_restart"
+    LEFT_PRESS = "left_press"
+    LEFT_RELEASE = "left_release"
+    DEACTIVATED = "deactivated"
+    SENSORS_LOST = "sensors_lost"
+    RUN_SENSORS_LOST = "run_sensors_lost"
+    EMERGENCY_STOP = "emergency_stop"
+    RESET = "reset"
+    RESET_REFUSED_SIGNAL = "reset_refused_signal"
+    RESET_REFUSED_MOVING = "reset_refused_moving"
+    RESET_REFUSED_SENSORS = "reset_refused_sensors"
+    MODE_CHANGED = "mode_changed"
+    COMMAND_REFUSED = "command_refused"
+    PROGRAM_LOADED = "program_loaded"
+    PROGRAM_REFUSED = "program_refused"
+    PROGRAM_STARTED = "program_started"
+    PROGRAM_PAUSED = "program_paused"
+    PROGRAM_RESUMED = "program_resumed"
+    PROGRAM_STOPPED = "program_stopped"
+    PROGRAM_FINISHED = "program_finished"
+    SETTING_CHANGED = "setting_changed"
+    SETTING_REFUSED = "setting_refused"
+
+
+class Event(msgspec.Struct, frozen=True):
+    """One event."""
+
+    kind: Kind
+    tick: int
+    values: Values = msgspec.field(default_factory=dict)

@@ -1,0 +1,162 @@
+"""Programs: a list of moves, and the sequencer that runs them in mode RUN."""
+
+import math
+from enum import StrEnum
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from pendant.settings import ticks
+
+Fraction = Annotated[float, Meta(gt=0.0, le=1.0)]
+
+
+class Move(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
+    """Base of all steps. The sequencer numbers a move whenever it is begun or begun again; files leave `id` out."""
+
+    id: int = 0
+
+
+class JointMove(Move, tag="joint", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """To joint angles, all joints arriving together, at rest."""
+
+    q: tuple[float, ...]  # (n,) output angles [rad]
+    speed: Fraction = 0.25  # of each joint's limit
+    acceleration: Fraction = 0.25  # of each joint's limit
+
+    def __post_init__(self) -> None:
+        _finite(self.q)
+
+
+class LinearMove(Move, tag="linear", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point along a straight line in B, to a pose X_BT, at rest."""
+
+    position: tuple[float, float, float]  # p_BT [m]
+    quaternion: tuple[float, float, float, float]  # wxyz, orientation of T in B
+    speed: Annotated[float, Meta(gt=0.0, le=3.0)] = 0.1  # [m/s]
+    acceleration: Annotated[float, Meta(gt=0.0, le=50.0)] = 0.5  # [m/s²]
+
+    def __post_init__(self) -> None:
+        _finite(self.position + self.quaternion)
+        if abs(math.hypot(*self.quaternion) - 1.0) > 1e-3:
+            raise ValueError(f"quaternion: its length is {math.hypot(*self.quaternion):.4g}, allowed: 1 (wxyz)")
+
+
+class Wait(Move, tag="wait", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Keep the posture for a time, which the sequencer counts."""
+
+    duration: Annotated[float, Meta(ge=0.0, le=3600.0)]  # [s]
+
+    def __post_init__(self) -> None:
+        _finite((self.duration,))
+
+
+class Program(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A named list of steps, run once from first to last."""
+
+    name: str = "program"
+    steps: Annotated[tuple[JointMove | LinearMove | Wait, ...], Meta(min_length=1)]
+
+
+class ProgramState(StrEnum):
+    """What the sequencer does."""
+
+    NONE = "NONE"  # no program loaded
+    STOPPED = "STOPPED"
+    RUNNING = "RUNNING"
+    PAUSED = "PAUSED"
+
+
+def misfit(program: Program, n_joints: int) -> str | None:
+    """Why a program does not fit an arm of `n_joints`, or None."""
+    if not program.steps:
+        return "the program has no steps"
+    for number, step in enumerate(program.steps, 1):
+        if isinstance(step, JointMove) and len(step.q) != n_joints:
+            return f"step {number} has {len(step.q)} joint angles, the arm has {n_joints} joints"
+    return None
+
+
+class Sequencer:
+    """Runs the loaded program step by step. A step paused half-way is begun again, with a new id, when resumed."""
+
+    __slots__ = ("_begun", "_left", "index", "move", "program", "state")
+
+    def __init__(self) -> None:
+        self.program: Program | None = None
+        self.state = ProgramState.NONE
+        self.index = 0
+        self.move: Move | None = None  # the step being done, None unless RUNNING
+        self._begun = 0  # how many moves were begun so far: the last id
+        self._left = 0  # ticks left of a wait
+
+    def load(self, program: Program) -> None:
+        """Take a program; allowed unless one is RUNNING or PAUSED."""
+        self.program = program
+        self.stop()
+
+    def start(self) -> None:
+        """Begin the first step."""
+        self.index = 0
+        self._left = 0
+        self.resume()
+
+    def pause(self) -> None:
+        """Give up the present step for now; what is left of a wait is kept."""
+        self.state = ProgramState.PAUSED
+        self.move = None
+
+    def resume(self) -> None:
+        """Begin the present step again."""
+        self.state = ProgramState.RUNNING
+        self._begin()
+
+    def stop(self) -> None:
+        """Give the program up, and keep it loaded."""
+        self.state = ProgramState.NONE if self.program is None else ProgramState.STOPPED
+        self.index = 0
+        self._left = 0
+        self.move = None
+
+    def step(self, move_done: int) -> bool:
+        """One tick of a RUNNING program.
+
+        Args:
+            move_done: id of the last move that the FOLLOW law finished.
+
+        Returns:
+            True when this tick ended the program.
+        """
+        if isinstance(self.move, Wait):
+            self._left -= 1
+            if self._left > 0:
+                return False
+            self._left = 0
+        elif self.move is None or move_done != self.move.id:
+            return False
+        self.index += 1
+        if self.program is None or self.index == len(self.program.steps):
+            self.stop()
+            return True
+        self._begin()
+        return False
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of the sequencer's state, to compare."""
+        return (self.program, self.state, self.index, self.move, self._begun, self._left)
+
+    def _begin(self) -> None:
+        assert self.program is not None
+        self._begun += 1
+        step = self.program.steps[self.index]
+        self.move = msgspec.structs.replace(step, id=self._begun)
+        if isinstance(step, Wait) and self._left == 0:
+            self._left = ticks(step.duration)
+
+
+def _finite(values: tuple[float, ...]) -> None:
+    for value in values:
+        if not math.isfinite(value):
+            raise ValueError(f"{value!r} is not a finite number")

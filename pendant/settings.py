@@ -1,0 +1,201 @@
+"""The one settings schema: every period and limit with default, range, unit, requirement and a line of text."""
+
+import hashlib
+import math
+from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+
+import msgspec
+from msgspec import Meta
+
+from pendant.modes import TICK_RATE
+
+Value = float | bool | str
+
+
+class SettingError(ValueError):
+    """A setting that does not exist, or a value that it does not allow."""
+
+    def __init__(self, name: str, value: object, allowed: str) -> None:
+        super().__init__(f"{name}: {value!r} is not allowed; allowed: {allowed}")
+        self.name = name
+        self.value = value
+        self.allowed = allowed
+
+
+class Row(NamedTuple):
+    """What a page or a document shows of a setting."""
+
+    name: str  # dotted
+    default: Value
+    low: float | None  # range, None for switches
+    high: float | None
+    unit: str
+    id: str  # requirement
+    text: str
+    locked: bool  # a limit: not changed in FREE_DRIVE and RUN
+
+
+def _number(low: float, high: float, unit: str, ident: str, text: str, locked: bool = True) -> Meta:
+    return Meta(ge=low, le=high, description=text, extra={"unit": unit, "id": ident, "locked": locked})
+
+
+def _switch(ident: str, text: str) -> Meta:
+    return Meta(description=text, extra={"unit": "", "id": ident, "locked": True})
+
+
+class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Base of all sections."""
+
+
+class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """From the signal to entry."""
+
+    period: Annotated[float, _number(0.0, 15.0, "s", "FD-7", "how long the signal must be present without a break")] = 1.0
+
+
+class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Modes from which free-drive can be entered."""
+
+    normal: Annotated[bool, _switch("FD-1", "free-drive can be entered from NORMAL")] = False
+    teach: Annotated[bool, _switch("FD-1", "free-drive can be entered from TEACH")] = True
+    run: Annotated[bool, _switch("FD-1", "free-drive can be entered from RUN, which it pauses")] = False
+
+
+class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Free-drive itself."""
+
+    allowed_from: Origins = Origins()
+    period: Annotated[float, _number(0.5, 30.0, "s", "FD-14", "leave when nobody moves the arm for this long", locked=False)] = 3.0
+    restart_period: Annotated[
+        float, _number(0.5, 30.0, "s", "FD-15", "leave when a guided arm stands still for this long", locked=False)
+    ] = 3.0
+    cool_down: Annotated[float, _number(0.0, 30.0, "s", "FD-12c", "pause after a refusal or a leaving")] = 2.0
+    gain: Annotated[float, _number(0.0, 3.0, "", "FD-3", "factor on the user's force")] = 1.0
+    force_cap: Annotated[float, _number(5.0, 100.0, "N", "FD-3", "largest user force that is amplified")] = 50.0
+
+
+class Hold(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Held controls."""
+
+    silence: Annotated[float, _number(0.1, 1.0, "s", "FD-23", "a held control silent for longer counts as released")] = 0.5
+
+
+class ButtonUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The free-drive button."""
+
+    short_press: Annotated[float, _number(0.1, 2.0, "s", "FD-8a", "a press shorter than this leaves free-drive")] = 0.4
+    hold_to_run: Annotated[bool, _switch("FD-8a", "letting go of the button leaves free-drive")] = False
+
+
+class Maintain(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What counts as moving the arm by hand. Force, torque and joint torque are changes since the period began."""
+
+    force: Annotated[float, _number(1.0, 100.0, "N", "FD-13", "change of the user's force")] = 8.0
+    torque: Annotated[float, _number(0.1, 20.0, "N·m", "FD-13", "change of the user's torque")] = 1.5
+    joint_torque: Annotated[float, _number(0.5, 100.0, "N·m", "FD-13", "change of a joint's external torque")] = 8.0
+    joint_speed: Annotated[float, _number(0.005, 1.0, "rad/s", "FD-13", "speed of a joint")] = 0.05
+    flange_speed: Annotated[float, _number(0.002, 1.0, "m/s", "FD-13", "speed of the flange")] = 0.02
+
+
+class Static(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """When the arm counts as standing still."""
+
+    speed: Annotated[float, _number(0.001, 0.1, "rad/s", "static", "every joint is slower than this")] = 0.01
+    time: Annotated[float, _number(0.02, 2.0, "s", "static", "for this long")] = 0.1
+
+
+class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """All settings. Every field has its default; `Settings()` is what ships."""
+
+    activation: Activation = Activation()
+    free_drive: FreeDrive = FreeDrive()
+    hold: Hold = Hold()
+    button: ButtonUse = ButtonUse()
+    maintain: Maintain = Maintain()
+    static: Static = Static()
+
+
+def ticks(seconds: float) -> int:
+    """Whole control ticks of a period, rounded to the nearest."""
+    return round(seconds * TICK_RATE)
+
+
+def _rows(section: type[Section], prefix: str) -> list[Row]:
+    rows: list[Row] = []
+    hints = get_type_hints(section, include_extras=True)
+    for field in msgspec.structs.fields(section):
+        hint = hints[field.name]
+        if get_origin(hint) is not Annotated:
+            rows += _rows(hint, f"{prefix}{field.name}.")
+            continue
+        meta: Meta = get_args(hint)[1]
+        extra: dict[str, Any] = meta.extra or {}
+        low, high = (None, None) if meta.ge is None else (float(meta.ge), float(meta.le or 0.0))
+        text = meta.description or ""
+        rows.append(Row(prefix + field.name, field.default, low, high, extra["unit"], extra["id"], text, extra["locked"]))
+    return rows
+
+
+_ROWS = {row.name: row for row in _rows(Settings, "")}
+
+
+def describe() -> list[Row]:
+    """Every setting, in the order of the schema."""
+    return list(_ROWS.values())
+
+
+def find(name: str) -> Row:
+    """The row of a dotted name.
+
+    Raises:
+        SettingError: there is no such setting.
+    """
+    row = _ROWS.get(name)
+    if row is None:
+        raise SettingError(name, None, "one of " + ", ".join(_ROWS))
+    return row
+
+
+def value_of(settings: Settings, name: str) -> Value:
+    """The value of a dotted name. Raises SettingError when there is no such setting."""
+    find(name)
+    value: Any = settings
+    for part in name.split("."):
+        value = getattr(value, part)
+    return value
+
+
+def _checked(row: Row, value: object) -> Value:
+    if row.low is None or row.high is None:
+        if not isinstance(value, bool):
+            raise SettingError(row.name, value, "true or false")
+        return value
+    unit = f" {row.unit}" if row.unit else ""
+    allowed = f"a number from {row.low:g} to {row.high:g}{unit}"
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise SettingError(row.name, value, allowed)
+    if not math.isfinite(value) or not row.low <= value <= row.high:
+        raise SettingError(row.name, value, allowed)
+    return float(value)
+
+
+def _replaced(section: Any, path: list[str], value: Value) -> Any:
+    new = value if len(path) == 1 else _replaced(getattr(section, path[0]), path[1:], value)
+    return msgspec.structs.replace(section, **{path[0]: new})
+
+
+def apply(settings: Settings, changes: dict[str, Any]) -> Settings:
+    """Settings with the changes, given by dotted name; all of them or none.
+
+    Raises:
+        SettingError: a name that does not exist, or a value of the wrong type, out of range or not finite.
+    """
+    for name, value in changes.items():
+        settings = _replaced(settings, name.split("."), _checked(find(name), value))
+    return settings
+
+
+def digest(settings: Settings) -> str:
+    """Short hash of all values: 8 hexadecimal digits, equal for equal settings."""
+    lines = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in _ROWS.values())
+    return hashlib.sha256(lines.encode()).hexdigest()[:8]

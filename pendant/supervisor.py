@@ -1,0 +1,308 @@
+"""The supervisor: robot mode, safety mode, program and free-drive, one tick at a time (FD-1)."""
+
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind, Values
+from pendant.freedrive import SENSOR, FreeDrive, Surroundings, moving
+from pendant.inputs import Button, Command, Inputs
+from pendant.keepalive import KeepAlive
+from pendant.modes import TICK, Law, Mode, Phase, Safety
+from pendant.program import Program, ProgramState, Sequencer, misfit
+from pendant.settings import SettingError, Settings, apply, find, ticks, value_of
+from pendant.table import TABLE, Effect
+from pendant.watch import Stillness, WrenchMean, joints_ok
+
+SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
+RESTING = frozenset(SWITCHABLE.values())
+PROGRAM_COMMANDS = frozenset({Command.START_PROGRAM, Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM})
+STOPPING = {
+    Effect.LEAVE_TO_STOP: Safety.NORMAL,
+    Effect.PROTECTIVE_STOP: Safety.PROTECTIVE_STOP,
+    Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
+}
+
+
+class Supervisor:
+    """Decides every tick from the estimate and the inputs; keeps all of its memory in `state`."""
+
+    def __init__(self, settings: Settings, n_joints: int, joints: tuple[str, ...] | None = None) -> None:
+        """
+        Args:
+            settings: to start with; `Inputs.settings` changes them.
+            n_joints: number of joints of the arm, as in every estimate.
+            joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
+        """
+        self.settings = settings
+        self._n = n_joints
+        self._joints = joints or tuple(f"joint {number}" for number in range(1, n_joints + 1))
+        self._mode = Mode.TEACH
+        self._safety = Safety.NORMAL
+        self._remembered = Mode.TEACH  # where free-drive was entered from
+        self._origin = Mode.TEACH  # where the program was started from
+        self._braking = False  # since free-drive or a motion was ended, until static
+        self._static = False
+        self._button = KeepAlive()
+        self._still = Stillness()
+        self._mean = WrenchMean()
+        self._sequencer = Sequencer()
+        self._free = FreeDrive(self._joints)
+        self._refresh()
+        self._key: tuple[object, ...] = ()
+        self._decision: Decision | None = None  # the last one, if the next may be the same
+
+    @property
+    def program(self) -> Program | None:
+        """The loaded program."""
+        return self._sequencer.program
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """All that the next decision depends on, besides its arguments; equal states decide equally."""
+        button = (self._button.held, self._button.silent)
+        still = (self._still.count, self._still.joint, self._still.speed)
+        own = (self._mode, self._safety, self._remembered, self._origin, self._braking, button, still)
+        return (self.settings, *own, self._mean.memory, self._sequencer.memory, self._free.memory)
+
+    def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
+        """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
+        events: list[Event] = []
+        wrench_ok = self._observe(estimate, inputs, events)
+        if inputs.commands:
+            self._safety_commands(estimate, inputs.commands, events)
+            self._mode_commands(estimate, inputs.commands, events)
+        self._run_program(estimate, inputs, events)
+        self._free_drive(estimate, wrench_ok, events)
+        if inputs.settings:
+            self._change_settings(estimate, inputs.settings, events)
+        return self._publish(events)
+
+    def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
+        button = Button.FREE_DRIVE
+        if self._button.step(button in inputs.held, button in inputs.released, self._silence):
+            values: Values = {"value": (self._silence + 1) * TICK, "limit": self._silence * TICK}
+            events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
+        self._free.sense(self._button.held)
+        self._still.step(estimate, self._slow)
+        self._static = self._still.count >= self._static_ticks
+        return self._mean.step(estimate)
+
+    def _safety_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
+        stop = Command.EMERGENCY_STOP in commands
+        if stop and self._safety is not Safety.EMERGENCY_STOP:
+            self._happen(Event(Kind.EMERGENCY_STOP, estimate.tick, {"mode": self._mode}), events)
+        if Command.RESET not in commands:
+            return
+        if stop:
+            self._refuse(Command.RESET, estimate, "the emergency stop was pressed at the same time", events)
+        elif self._mode is not Mode.STOP:
+            self._refuse(Command.RESET, estimate, "nothing to reset", events)
+        elif self._button.held:
+            events.append(Event(Kind.RESET_REFUSED_SIGNAL, estimate.tick))
+        elif not joints_ok(estimate):
+            events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": SENSOR}))
+        elif not self._static:
+            values = moving(self._still, self._joints, self.settings)
+            events.append(Event(Kind.RESET_REFUSED_MOVING, estimate.tick, values))
+        else:
+            self._mode = Mode.TEACH
+            self._safety = Safety.NORMAL
+            self._braking = False
+            events.append(Event(Kind.RESET, estimate.tick))
+
+    def _mode_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
+        for command in commands:
+            if command is Command.LEAVE_FREE_DRIVE:
+                if self._free.phase is not Phase.OFF:
+                    self._happen(Event(Kind.DEACTIVATED, estimate.tick), events)
+            elif command in SWITCHABLE:
+                to = SWITCHABLE[command]
+                if self._mode not in RESTING:
+                    self._refuse(command, estimate, _how_out(self._mode), events)
+                elif to is not self._mode:
+                    events.append(Event(Kind.MODE_CHANGED, estimate.tick, {"from": self._mode, "to": to}))
+                    self._mode = to
+
+    def _run_program(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
+        sequencer = self._sequencer
+        if inputs.program is not None:
+            self._load(inputs.program, estimate, events)
+        move = sequencer.move
+        for command in inputs.commands:
+            if command in PROGRAM_COMMANDS:
+                why_not = self._why_not(command, estimate)
+                if why_not:
+                    self._refuse(command, estimate, why_not, events)
+                else:
+                    self._steer(command, estimate, events)
+        if move is None or sequencer.move is not move:
+            return
+        if not joints_ok(estimate):
+            self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": SENSOR}), events)
+        elif sequencer.step(estimate.move_done):
+            self._mode = self._origin
+            events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": self._name}))
+
+    def _load(self, program: Program, estimate: Estimate, events: list[Event]) -> None:
+        reason = misfit(program, self._n)
+        if self._mode in (Mode.RUN, Mode.FREE_DRIVE):
+            reason = _how_out(self._mode)
+        if reason is not None:
+            events.append(Event(Kind.PROGRAM_REFUSED, estimate.tick, {"name": program.name, "reason": reason}))
+            return
+        self._sequencer.load(program)
+        events.append(Event(Kind.PROGRAM_LOADED, estimate.tick, {"name": program.name, "steps": len(program.steps)}))
+
+    def _why_not(self, command: Command, estimate: Estimate) -> str | None:
+        """Why a program command is not possible now, or None."""
+        state = self._sequencer.state
+        if command is Command.START_PROGRAM:
+            if self._mode not in (Mode.NORMAL, Mode.TEACH):
+                return _how_out(self._mode)
+            if state is ProgramState.NONE:
+                return "no program is loaded"
+        elif self._mode is not Mode.RUN:
+            return "no program is running"
+        if command is Command.PAUSE_PROGRAM:
+            return "it is paused already" if state is ProgramState.PAUSED else None
+        if command is Command.STOP_PROGRAM:
+            return None
+        if command is Command.RESUME_PROGRAM and state is ProgramState.RUNNING:
+            return "it is running already"
+        if not joints_ok(estimate):
+            return f"check {SENSOR}"
+        return None if self._static else "the arm still moves"
+
+    def _steer(self, command: Command, estimate: Estimate, events: list[Event]) -> None:
+        """Carry out a program command that is possible."""
+        sequencer = self._sequencer
+        values: Values = {"name": self._name, "step": sequencer.index + 1}
+        if command is Command.START_PROGRAM:
+            self._origin = self._mode
+            self._mode = Mode.RUN
+            sequencer.start()
+            events.append(Event(Kind.PROGRAM_STARTED, estimate.tick, {"name": self._name}))
+        elif command is Command.PAUSE_PROGRAM:
+            self._pause(estimate.tick, events)
+        elif command is Command.RESUME_PROGRAM:
+            sequencer.resume()
+            events.append(Event(Kind.PROGRAM_RESUMED, estimate.tick, values))
+        else:
+            sequencer.stop()
+            self._mode = self._origin
+            self._braking = True
+            events.append(Event(Kind.PROGRAM_STOPPED, estimate.tick, values))
+
+    def _pause(self, tick: int, events: list[Event]) -> None:
+        self._sequencer.pause()
+        self._braking = True
+        values: Values = {"name": self._name, "step": self._sequencer.index + 1}
+        events.append(Event(Kind.PROGRAM_PAUSED, tick, values))
+
+    def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
+        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean)
+        for event in self._free.step(around, self.settings):
+            self._take_effect(event, events)
+
+    def _happen(self, event: Event, events: list[Event]) -> None:
+        """Something outside of free-drive happens that ends it, too."""
+        if self._free.phase is not Phase.OFF:
+            self._free.stop(event.kind, self.settings)
+        self._take_effect(event, events)
+
+    def _take_effect(self, event: Event, events: list[Event]) -> None:
+        events.append(event)
+        effect = TABLE[event.kind].effect
+        if effect is Effect.ENTER:
+            self._remembered = self._mode
+            if self._sequencer.state is ProgramState.RUNNING:
+                self._pause(event.tick, events)
+            self._mode = Mode.FREE_DRIVE
+        elif effect is Effect.LEAVE:
+            if self._mode is Mode.FREE_DRIVE:
+                self._mode = self._remembered
+                self._braking = True
+        elif effect in STOPPING:
+            self._mode = Mode.STOP
+            self._safety = max(self._safety, STOPPING[effect])
+            self._braking = True
+            self._sequencer.stop()
+
+    def _refuse(self, command: Command, estimate: Estimate, reason: str, events: list[Event]) -> None:
+        values: Values = {"command": command, "mode": self._mode, "reason": reason}
+        events.append(Event(Kind.COMMAND_REFUSED, estimate.tick, values))
+
+    def _change_settings(self, estimate: Estimate, changes: dict[str, float | bool | str], events: list[Event]) -> None:
+        for name, value in changes.items():
+            try:
+                if find(name).locked and self._mode in (Mode.RUN, Mode.FREE_DRIVE):
+                    raise SettingError(name, value, f"no change of a limit in {self._mode}")
+                old = value_of(self.settings, name)
+                self.settings = apply(self.settings, {name: value})
+            except SettingError as error:
+                values: Values = {"name": name, "value": value, "reason": error.allowed}
+                events.append(Event(Kind.SETTING_REFUSED, estimate.tick, values))
+                continue
+            new = value_of(self.settings, name)
+            events.append(Event(Kind.SETTING_CHANGED, estimate.tick, {"name": name, "old": old, "new": new}))
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """What every tick needs of the settings."""
+        self._silence = ticks(self.settings.hold.silence)
+        self._slow = self.settings.static.speed
+        self._static_ticks = ticks(self.settings.static.time)
+
+    @property
+    def _name(self) -> str:
+        program = self._sequencer.program
+        return program.name if program else ""
+
+    def _law(self) -> Law:
+        if self._mode is Mode.FREE_DRIVE:
+            return Law.FREE
+        if self._mode is Mode.STOP:
+            return Law.BRAKE
+        if self._sequencer.move is not None:
+            self._braking = False
+            return Law.FOLLOW
+        if self._static:
+            self._braking = False
+        return Law.BRAKE if self._braking else Law.HOLD
+
+    def _publish(self, events: list[Event]) -> Decision:
+        """The decision; the last one again when nothing is different."""
+        free = self._free
+        sequencer = self._sequencer
+        law = self._law()
+        key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
+        periods = () if free.idle else free.periods()
+        if self._decision is not None and not events and not periods and key == self._key:
+            return self._decision
+        active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
+        decision = Decision(
+            mode=self._mode,
+            safety=self._safety,
+            phase=free.phase,
+            law=law,
+            move=sequencer.move,
+            gain=self.settings.free_drive.gain if free.use_wrench else 0.0,
+            baseline=free.baseline,
+            periods=periods,
+            events=tuple(events),
+            program=sequencer.state,
+            step=sequencer.index + 1 if active else 0,
+        )
+        self._key = key
+        self._decision = None if events or periods else decision
+        return decision
+
+
+def _how_out(mode: Mode) -> str:
+    """What to do first, where `mode` forbids a command."""
+    if mode is Mode.STOP:
+        return "reset first"
+    if mode is Mode.FREE_DRIVE:
+        return "leave free-drive first"
+    if mode is Mode.RUN:
+        return "stop the program first"
+    return "switch to NORMAL or TEACH first"

@@ -1,0 +1,171 @@
+"""The one event table: effect on the mode, severity, texts, what clears it, who may override. Interfaces render from it."""
+
+from enum import IntEnum, StrEnum
+from typing import NamedTuple
+
+from pendant.events import Event, Kind
+
+
+class Effect(StrEnum):
+    """What an event does to the mode; all that state machines ask of an event."""
+
+    INFO = "INFO"  # nothing
+    ENTER = "ENTER"  # free-drive begins
+    NO_ENTRY = "NO_ENTRY"  # free-drive is refused, the mode stays
+    LEAVE = "LEAVE"  # free-drive ends, back to the remembered mode
+    LEAVE_TO_STOP = "LEAVE_TO_STOP"  # free-drive ends in STOP
+    PROTECTIVE_STOP = "PROTECTIVE_STOP"  # STOP, safety PROTECTIVE_STOP
+    EMERGENCY_STOP = "EMERGENCY_STOP"  # STOP, safety EMERGENCY_STOP
+
+
+LEAVING = frozenset({Effect.LEAVE, Effect.LEAVE_TO_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP})
+"""Effects that end free-drive."""
+
+
+class Severity(IntEnum):
+    """How loud an interface shows it."""
+
+    INFO = 0
+    NOTICE = 1
+    WARNING = 2
+    STOP = 3
+
+
+class Clears(StrEnum):
+    """What takes a shown event away."""
+
+    NEXT = "next"  # the next event
+    COOL_DOWN = "cool-down"  # the end of the cool-down
+    RESET = "reset"  # a reset, and nothing else
+
+
+class Row(NamedTuple):
+    """What an event of one kind does and says. Texts name the event's values in braces."""
+
+    effect: Effect
+    severity: Severity
+    headline: str
+    guidance: str
+    keys: tuple[str, ...] = ()  # the values that the event carries
+    clears: Clears = Clears.NEXT
+    override: str = "nobody"  # who may override it
+    cool_down: bool = False  # starts the cool-down (FD-12c)
+
+
+def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
+    return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
+
+
+def _refused(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
+    return Row(Effect.NO_ENTRY, Severity.WARNING, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+
+
+def _left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Severity = Severity.NOTICE) -> Row:
+    return Row(Effect.LEAVE, severity, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+
+
+def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
+    return Row(Effect.INFO, Severity.WARNING, headline, guidance, keys)
+
+
+TABLE: dict[Kind, Row] = {
+    # Activation and entry (FD-7, FD-8a, FD-12)
+    Kind.ACTIVATION_STARTED: _info("Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)),
+    Kind.ACTIVATION_CANCELLED: _info(
+        "Free-drive not started: let go too early",
+        "Held for {value:.2f} s. Hold the button for {limit:.2f} s.",
+        ("value", "limit"),
+    ),
+    Kind.ENTERED: Row(Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")),
+    Kind.REFUSED_MODE: _refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
+    Kind.REFUSED_SENSORS: _refused("Free-drive refused: joint sensors not valid", "Check {sensor}, then try again.", ("sensor",)),
+    Kind.REFUSED_MOVING: _refused(
+        "Free-drive refused: the arm moves",
+        "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Hands off, then try again.",
+        ("joint", "value", "limit", "time"),
+    ),
+    Kind.NOT_YET: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Free-drive not yet",
+        "Let go first; ready in {remaining:.1f} s.",
+        ("remaining",),
+        Clears.COOL_DOWN,
+    ),
+    # While it lasts (FD-13, FD-15, FD-23)
+    Kind.MANIPULATION: _info(
+        "The arm is guided", "{parameter}: {value:.2f} {unit}, limit {limit:.2f} {unit}.", ("parameter", "value", "limit", "unit")
+    ),
+    Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
+    Kind.WRENCH_LOST: Row(
+        Effect.INFO, Severity.WARNING, "Flange force sensor not valid", "The arm is heavier to move: no help from the force sensor."
+    ),
+    Kind.HOLD_SILENT: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "Button counts as released",
+        "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s. Check the connection.",
+        ("value", "limit"),
+    ),
+    # Leaving (FD-8a, FD-12, FD-14, FD-15, FD-17)
+    Kind.LEFT_PERIOD: _left("Free-drive ended: nobody moved the arm", "No motion for {limit:.1f} s. Hold the button to start again.", ("limit",)),
+    Kind.LEFT_RESTART: _left("Free-drive ended: the arm stood still", "Still for {limit:.1f} s. Hold the button to start again.", ("limit",)),
+    Kind.LEFT_PRESS: _left("Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")),
+    Kind.LEFT_RELEASE: _left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
+    Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
+    Kind.SENSORS_LOST: Row(
+        Effect.LEAVE_TO_STOP,
+        Severity.STOP,
+        "Stopped: joint sensors not valid",
+        "Free-drive needs {sensor}. Check it, then reset.",
+        ("sensor",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    # Safety (FD-1)
+    Kind.RUN_SENSORS_LOST: Row(
+        Effect.PROTECTIVE_STOP,
+        Severity.STOP,
+        "Protective stop: joint sensors not valid",
+        "The program needs {sensor}. Check it, then reset.",
+        ("sensor",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    Kind.EMERGENCY_STOP: Row(
+        Effect.EMERGENCY_STOP,
+        Severity.STOP,
+        "Emergency stop",
+        "It was {mode}. Make sure that nobody is in danger, then reset.",
+        ("mode",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    Kind.RESET: _info("Reset to TEACH"),
+    Kind.RESET_REFUSED_SIGNAL: _denied("Reset refused: free-drive button held", "Let go of it, then reset."),
+    Kind.RESET_REFUSED_MOVING: _denied(
+        "Reset refused: the arm moves",
+        "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Wait, then reset.",
+        ("joint", "value", "limit", "time"),
+    ),
+    Kind.RESET_REFUSED_SENSORS: _denied("Reset refused: joint sensors not valid", "Check {sensor}, then reset.", ("sensor",)),
+    # Mode and program
+    Kind.MODE_CHANGED: _info("Mode {to}", "It was {from}.", ("from", "to")),
+    Kind.COMMAND_REFUSED: _denied("Not possible in {mode}: {command}", "{reason}.", ("command", "mode", "reason")),
+    Kind.PROGRAM_LOADED: _info("Program {name} loaded", "{steps} steps.", ("name", "steps")),
+    Kind.PROGRAM_REFUSED: _denied("Program {name} refused", "{reason}.", ("name", "reason")),
+    Kind.PROGRAM_STARTED: _info("Program {name} started", "", ("name",)),
+    Kind.PROGRAM_PAUSED: _info("Program {name} paused", "At step {step}. Resume or stop it.", ("name", "step")),
+    Kind.PROGRAM_RESUMED: _info("Program {name} resumed", "At step {step}.", ("name", "step")),
+    Kind.PROGRAM_STOPPED: _info("Program {name} stopped", "At step {step}.", ("name", "step")),
+    Kind.PROGRAM_FINISHED: _info("Program {name} finished", "", ("name",)),
+    # Settings
+    Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
+    Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),
+}
+
+
+def render(event: Event) -> tuple[str, str]:
+    """Headline and guidance of an event, with its numbers."""
+    row = TABLE[event.kind]
+    return row.headline.format_map(event.values), row.guidance.format_map(event.values)

@@ -1,0 +1,85 @@
+"""What the supervisor keeps of the estimates: validity, standing still, the mean of the user's wrench."""
+
+import math
+
+import numpy as np
+
+from pendant.estimate import Estimate
+from pendant.maintain import ZEROS
+from pendant.settings import ticks
+
+WINDOW = ticks(0.1)
+"""Ticks over which F_user is averaged before free-drive begins."""
+
+
+def joints_ok(estimate: Estimate) -> bool:
+    """Joint values are valid, and finite as well: validity is not taken on trust (FD-12)."""
+    if not estimate.joints_valid:
+        return False
+    total = sum(estimate.q.tolist()) + sum(estimate.qd.tolist()) + sum(estimate.tau_ext.tolist())
+    total += sum(estimate.theta.tolist()) + sum(estimate.theta_d.tolist()) + sum(estimate.tau_J.tolist())
+    return math.isfinite(total + sum(estimate.v_F.tolist()))
+
+
+def wrench_ok(estimate: Estimate) -> bool:
+    """The user's wrench is valid and finite."""
+    return estimate.wrench_valid and math.isfinite(sum(estimate.F_user.tolist()))
+
+
+class Stillness:
+    """Counts for how long the arm has been static."""
+
+    __slots__ = ("count", "joint", "speed")
+
+    def __init__(self) -> None:
+        self.count = 0  # ticks in a row with every joint slower than the limit
+        self.joint = 0  # the joint last seen too fast
+        self.speed = 0.0  # its |speed| then [rad/s]
+
+    def step(self, estimate: Estimate, limit: float) -> None:
+        """One tick; `limit` [rad/s]."""
+        if not estimate.joints_valid:
+            self.count = 0
+            return
+        for joint, value in enumerate(estimate.qd.tolist()):
+            if not -limit < value < limit:
+                self.count = 0
+                if math.isfinite(value):
+                    self.joint = joint
+                    self.speed = abs(value)
+                return
+        self.count += 1
+
+
+class WrenchMean:
+    """Mean of F_user over the last WINDOW ticks; begins afresh after the sensor was not valid."""
+
+    __slots__ = ("_next", "_ring", "count")
+
+    def __init__(self) -> None:
+        self._ring = np.zeros((WINDOW, 6))
+        self._next = 0
+        self.count = 0  # ticks in the window
+
+    def step(self, estimate: Estimate) -> bool:
+        """One tick. Returns whether the wrench is valid in it."""
+        if not wrench_ok(estimate):
+            self.count = 0
+            self._next = 0
+            return False
+        self._ring[self._next] = estimate.F_user
+        self._next = (self._next + 1) % WINDOW
+        if self.count < WINDOW:
+            self.count += 1
+        return True
+
+    def mean(self) -> tuple[float, ...]:
+        """The mean [N, N·m]; zeros without a valid value."""
+        if self.count == 0:
+            return ZEROS
+        return tuple((self._ring[: self.count].sum(axis=0) / self.count).tolist())
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self.count, self._next, self._ring[: self.count].tobytes())
