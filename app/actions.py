@@ -1,0 +1,207 @@
+"""What a session's time line can do: each action is one struct, told apart by `do`."""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from app.profiles import AnyProfile, Constant, HalfSine, Ramp
+from app.triggers import When
+from pendant.inputs import Button, Command
+from sim.arm import Positive
+from sim.changes import AnyChange
+from sim.scenario import Vector
+from sim.touch import ZERO, Push, Triple
+
+PLANNED_CONTROLS: dict[str, str] = {
+    "confirm": "FD-8",
+    "restart_period": "FD-16",
+    "register_waypoint": "FD-13",
+    "axis_locks": "FD-4",
+    "detection": "CD-1",
+    "enabling_device": "FD-23",
+}
+"""Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
+
+Control = Literal[
+    "free_drive",
+    "emergency_stop",
+    "reset",
+    "leave_free_drive",
+    "normal",
+    "teach",
+    "remote",
+    "confirm",
+    "restart_period",
+    "register_waypoint",
+    "axis_locks",
+    "detection",
+    "enabling_device",
+]
+HOLDABLE = tuple(button.value for button in Button)
+
+
+class Action(When, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="do"):
+    """Base of all actions."""
+
+    def planned(self) -> str | None:
+        """The requirement that brings what this action needs, where it is not there yet."""
+        return None
+
+
+class Press(Action, tag="press", frozen=True, kw_only=True):
+    """A control goes down and stays held, until `release`."""
+
+    control: Control
+
+    def __post_init__(self) -> None:
+        """Check that the control can be held."""
+        super().__post_init__()
+        must_be_holdable(self.control)
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class Release(Action, tag="release", frozen=True, kw_only=True):
+    """A held control is let go."""
+
+    control: Control
+
+    def __post_init__(self) -> None:
+        """Check that the control can be held."""
+        super().__post_init__()
+        must_be_holdable(self.control)
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class Tap(Action, tag="tap", frozen=True, kw_only=True):
+    """A control is pressed shortly; for a control that acts once, this is how to use it."""
+
+    control: Control
+    length: Positive = msgspec.field(default=0.2, name="for")  # [s]
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
+    """A digital input changes."""
+
+    input: Annotated[int, Meta(ge=0, le=7)]
+    high: bool
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return "FD-5"
+
+
+class Effort(Action, frozen=True, kw_only=True):
+    """Base of what a hand does to a point of the arm for a while."""
+
+    length: Positive = msgspec.field(name="for")  # [s]
+    part: str = "flange"  # "base", a joint's link by its joint name, "flange", "tool"
+    point: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # in the part's frame [m]
+
+
+class Wrench(Effort, frozen=True, kw_only=True):
+    """Base of efforts that are a force or a torque given over time."""
+
+    def push(self, t: float) -> Push:
+        """The wrench `t` seconds after the start, 0 <= t <= length."""
+        raise NotImplementedError
+
+
+class Pushing(Wrench, tag="push", frozen=True, kw_only=True):
+    """A force on a point, by default all at once."""
+
+    force: Vector  # in W [N]
+    profile: AnyProfile = Constant()
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, self.profile.factor(t, self.length)))
+
+
+class Twisting(Wrench, tag="twist", frozen=True, kw_only=True):
+    """A torque on a part, by default all at once."""
+
+    torque: Vector  # in W [N·m]
+    profile: AnyProfile = Constant()
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), ZERO, triple(self.torque, self.profile.factor(t, self.length)))
+
+
+class Bump(Wrench, tag="bump", frozen=True, kw_only=True):
+    """A short knock: half a sine."""
+
+    force: Vector  # at its peak, in W [N]
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, HalfSine().factor(t, self.length)))
+
+
+class Lean(Wrench, tag="lean", frozen=True, kw_only=True):
+    """Somebody leans on a point: the force comes and goes slowly."""
+
+    force: Vector  # in W [N]
+    profile: AnyProfile = Ramp(rise=0.5, fall=0.5)
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, self.profile.factor(t, self.length)))
+
+
+class Hold(Effort, tag="hold", frozen=True, kw_only=True):
+    """A hand grabs a point and keeps it where it is, or carries it: a spring and damper, its force capped."""
+
+    carry: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # by the end, evenly, in W [m]
+    cap: Positive = 50.0  # [N]
+
+
+class Program(Action, tag="program", frozen=True, kw_only=True):
+    """The session's program is started, paused, resumed or stopped."""
+
+    command: Literal["start", "pause", "resume", "stop"]
+
+
+class Settings(Action, tag="settings", frozen=True, kw_only=True):
+    """Settings are changed, by dotted name."""
+
+    set: Annotated[dict[str, float | bool | str], Meta(min_length=1)]
+
+
+class Laboratory(Action, tag="change", frozen=True, kw_only=True):
+    """The true arm or world is changed: payload, sensors, friction, temperature, objects."""
+
+    change: AnyChange
+
+
+AnyAction = Press | Release | Tap | DigitalInput | Pushing | Twisting | Bump | Lean | Hold | Program | Settings | Laboratory
+
+COMMAND_OF_PROGRAM = {
+    "start": Command.START_PROGRAM,
+    "pause": Command.PAUSE_PROGRAM,
+    "resume": Command.RESUME_PROGRAM,
+    "stop": Command.STOP_PROGRAM,
+}
+
+
+def triple(values: list[float], factor: float = 1.0) -> Triple:
+    """Three numbers times `factor`, as a touch wants them."""
+    x, y, z = values
+    return (x * factor, y * factor, z * factor)
+
+
+def must_be_holdable(control: str) -> None:
+    """Raise ValueError when `control` acts once and cannot be held."""
+    if control not in HOLDABLE and control not in PLANNED_CONTROLS:
+        raise ValueError(f'control: "{control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}')

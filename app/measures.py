@@ -1,0 +1,172 @@
+"""Follows numbers that a session wants within bounds: quantities and displacements. `watch` picks the watch of an expectation."""
+
+import math
+from dataclasses import dataclass, field
+
+from app.expectations import AnyExpectation, Displacement, Happens, Never, Period, State, Value
+from app.parts import point_of
+from app.triggers import Trigger
+from app.watch import EventWatch, PeriodWatch, StateWatch, Watch, at
+from pendant.decision import Decision
+from pendant.modes import TICK
+from pendant.settings import ticks
+from sim.snapshot import Snapshot
+from sim.touch import Triple
+
+UNITS = {
+    "flange_speed": "m/s",
+    "tcp_speed": "m/s",
+    "elbow_speed": "m/s",
+    "joint_angle": "rad",
+    "joint_speed": "rad/s",
+    "user_force": "N",
+    "user_torque": "N·m",
+    "payload_true": "kg",
+}
+
+
+@dataclass(slots=True)
+class BoundsWatch(Watch):
+    """Base of what follows numbers within bounds."""
+
+    min: float | None = field(kw_only=True)
+    max: float | None = field(kw_only=True)
+    low: tuple[float, int] = (math.inf, 0)  # the smallest seen, and its tick
+    high: tuple[float, int] = (-math.inf, 0)
+
+    def wants(self, tick: int) -> bool:
+        """See `Watch.wants`: a trigger may happen in the very tick, so only what is surely outside is spared."""
+        start = self.trigger.happened
+        return start is None or self.inside(tick)
+
+    def number(self, value: float, tick: int) -> None:
+        """Take in a number. One that is not finite counts as out of bounds."""
+        if value < self.low[0] or math.isnan(value):
+            self.low = (value, tick)
+        if value > self.high[0] or math.isnan(value):
+            self.high = (value, tick)
+
+    def unit(self) -> str:
+        """The numbers' unit."""
+        raise NotImplementedError
+
+    def name(self) -> str:
+        """What is measured, in words."""
+        raise NotImplementedError
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        low = "" if self.min is None else f"at least {self.min:g}"
+        high = "" if self.max is None else f"at most {self.max:g}"
+        return f"{self.name()} {' and '.join(filter(None, (low, high)))} {self.unit()} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.high[0] == -math.inf:
+            return False, "nothing was measured"
+        low, high = self.min, self.max
+        too_low = low is not None and not self.low[0] >= low
+        too_high = high is not None and not self.high[0] <= high
+        if too_high or (high is not None and not too_low):
+            return not too_high, f"{self.high[0]:.6g} {self.unit()} at {at(self.high[1])}"
+        return not too_low, f"{self.low[0]:.6g} {self.unit()} at {at(self.low[1])}"
+
+
+@dataclass(slots=True)
+class ValueWatch(BoundsWatch):
+    """Follows `Value`."""
+
+    wanted: Value = field(kw_only=True)
+    place: Triple | None = None  # of the flange, a tick before
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """See `Watch.look`."""
+        assert snapshot is not None
+        estimate = snapshot.estimate
+        match self.wanted.of:
+            case "flange_speed":
+                now = point_of(snapshot, self.joints, "flange")
+                if self.place is not None:
+                    self.number(math.dist(now, self.place) / TICK, tick)
+                self.place = now
+            case "tcp_speed":
+                self.number(estimate.v_tcp, tick)
+            case "elbow_speed":
+                self.number(estimate.v_elbow, tick)
+            case "joint_angle":
+                self.number(float(estimate.q[self.joints.index(self.wanted.joint or "")]), tick)
+            case "joint_speed":
+                self.number(float(estimate.qd[self.joints.index(self.wanted.joint or "")]), tick)
+            case "user_force":
+                self.number(math.hypot(*estimate.F_user[:3]), tick)
+            case "user_torque":
+                self.number(math.hypot(*estimate.F_user[3:]), tick)
+            case "payload_true":
+                self.number(snapshot.truth_payload_mass, tick)
+
+    def unit(self) -> str:
+        """See `BoundsWatch.unit`."""
+        return UNITS[self.wanted.of]
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        return self.wanted.of.replace("_", " ") + (f" of {self.wanted.joint}" if self.wanted.joint else "")
+
+
+@dataclass(slots=True)
+class DisplacementWatch(BoundsWatch):
+    """Follows `Displacement`."""
+
+    wanted: Displacement = field(kw_only=True)
+    place: Triple | None = None  # of the part, at the interval's begin
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """See `Watch.look`."""
+        assert snapshot is not None
+        now = point_of(snapshot, self.joints, self.wanted.part)
+        if self.place is None:
+            self.place = now
+        way = [b - a for a, b in zip(self.place, now, strict=True)]
+        along = self.wanted.along
+        distance = math.hypot(*way)
+        if along is not None:
+            distance = sum(a * b for a, b in zip(way, along, strict=True)) / math.hypot(*along)
+        if self.wanted.measure == "final":
+            self.low = self.high = (distance, tick)
+        else:
+            # The largest way is one number at the interval's end, so that `min` asks for a part that has moved that far.
+            if distance > self.high[0] or math.isnan(distance):
+                self.high = (distance, tick)
+            self.low = self.high
+
+    def unit(self) -> str:
+        """See `BoundsWatch.unit`."""
+        return "m"
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        along = "" if self.wanted.along is None else f" along {self.wanted.along}"
+        return f"{self.wanted.measure} displacement of {self.wanted.part}{along}"
+
+
+def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
+    """The watch that follows an expectation, for an arm with these joint names."""
+    trigger = Trigger(expectation.after, expectation.nth)
+    match expectation:
+        case State(at=float(time)):
+            return StateWatch(joints, trigger, ticks(time), ticks(time), wanted=expectation)
+        case State(by=float(time)):
+            return StateWatch(joints, trigger, 0, ticks(time), wanted=expectation)
+        case State():
+            return StateWatch(joints, trigger, ticks(expectation.begin or 0.0), ticks(expectation.end or 0.0), wanted=expectation)
+        case Period():
+            return PeriodWatch(joints, trigger, wanted=expectation)
+    begin, end = ticks(expectation.begin), None if expectation.end is None else ticks(expectation.end)
+    match expectation:
+        case Happens() | Never():
+            return EventWatch(joints, trigger, begin, end, wanted=expectation)
+        case Value():
+            return ValueWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+        case Displacement():
+            return DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+    raise AssertionError(f"{type(expectation).__name__} is planned, and app.session.prepare refuses it")

@@ -1,0 +1,102 @@
+"""Runs a session without a window: as fast as it goes, or in real time; the same either way, and the same for a seed."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from app.events_file import EventsFile
+from app.measures import watch
+from app.session import Prepared, Session
+from app.timeline import Timeline
+from app.watch import Verdict
+from pendant.decision import Decision
+from pendant.events import Event
+from pendant.modes import TICK, Mode
+from pendant.settings import ticks
+from sim.desk import Wishes
+from sim.simulation import Simulation
+from sim.snapshot import Snapshot
+
+
+class Simulated(Protocol):
+    """What the runner needs of a simulation."""
+
+    def tick(self, wishes: Wishes) -> Decision:
+        """One control tick."""
+        ...
+
+    def snapshot(self) -> Snapshot:
+        """A copy of the tick done last."""
+        ...
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of a session."""
+
+    modes: list[tuple[float, Mode]] = field(default_factory=list)  # time at which each mode began [s], the mode
+    events: list[Event] = field(default_factory=list)
+    verdicts: list[Verdict] = field(default_factory=list)
+    seconds: float = 0.0  # simulated
+    took: float = 0.0  # on the wall clock [s]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every expectation was met."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+
+def simulate(prepared: Prepared) -> Simulation:
+    """A simulation of what a session or a configuration asks for."""
+    return Simulation(prepared.arm, prepared.scenario, prepared.settings, prepared.program)
+
+
+def run(
+    session: Session,
+    prepared: Prepared,
+    simulation: Simulated,
+    out: Path,
+    realtime: bool = False,
+    progress: Callable[[float], None] = lambda seconds: None,
+) -> Outcome:
+    """Run a session to its end and write `out`/events.jsonl.
+
+    Args:
+        session: what happens and what is expected.
+        prepared: the same session, checked.
+        simulation: of `prepared`, at its start.
+        out: folder for the results; made when missing.
+        realtime: keep the pace of the wall clock.
+        progress: told the simulated seconds done, ten times a simulated second.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    joints = prepared.arm.chain.joints
+    timeline = Timeline(session.timeline, joints)
+    watches = [watch(expectation, joints) for expectation in session.expectations]
+    outcome = Outcome(seconds=session.duration)
+    begun = time.perf_counter()
+    with EventsFile(out / "events.jsonl") as file:
+        for tick in range(ticks(session.duration)):
+            decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
+            timeline.see(tick, decision)
+            snapshot = simulation.snapshot() if any(each.wants(tick) for each in watches) else None
+            for each in watches:
+                each.see(tick, decision, snapshot)
+            file.write(tick, decision.events)
+            outcome.events += decision.events
+            if not outcome.modes or outcome.modes[-1][1] != decision.mode:
+                outcome.modes.append((tick * TICK, decision.mode))
+            if tick % ticks(0.1) == 0:
+                progress(tick * TICK)
+            if realtime:
+                time.sleep(max(0.0, begun + (tick + 1) * TICK - time.perf_counter()))
+    outcome.took = time.perf_counter() - begun
+    outcome.verdicts = [each.verdict() for each in watches]
+    for place, action in timeline.unstarted():
+        seen = f'"{action.after}" never came (time {action.nth}), or too late'
+        outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen))
+    return outcome

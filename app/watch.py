@@ -1,0 +1,187 @@
+"""Follows what a session expects through its run. A failed expectation says what was expected, what was seen, and when."""
+
+from dataclasses import dataclass, field
+
+from app.expectations import Happens, Never, Period, State
+from app.triggers import Trigger
+from pendant.decision import Decision
+from pendant.modes import TICK
+from sim.snapshot import Snapshot
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What became of an expectation."""
+
+    passed: bool
+    expected: str
+    seen: str  # with the time at which it was seen
+
+
+@dataclass(slots=True)
+class Watch:
+    """Base: one expectation, followed through a run. Call `see` once a tick, with tick counted from 0, then `verdict` once."""
+
+    joints: list[str]
+    trigger: Trigger
+    begin: int = 0  # ticks after the trigger
+    end: int | None = None  # ticks after the trigger; None: the session's end
+    last: int = -1  # the last tick seen
+
+    def wants(self, tick: int) -> bool:
+        """Whether `see` needs a snapshot of `tick`. The answer is right only before that tick's `see`."""
+        return False
+
+    def see(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """Take in one tick."""
+        self.trigger.see(tick, decision)
+        self.last = tick
+        if self.inside(tick):
+            self.look(tick, decision, snapshot)
+
+    def inside(self, tick: int) -> bool:
+        """Whether `tick` is in the interval."""
+        start = self.trigger.happened
+        return start is not None and start + self.begin <= tick and (self.end is None or tick <= start + self.end)
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """Take in one tick of the interval."""
+        raise NotImplementedError
+
+    def verdict(self) -> Verdict:
+        """The end of the run: what became of it."""
+        start = self.trigger.happened
+        if start is None:
+            return Verdict(False, self.expected(), f'"{self.trigger.after}" never came (time {self.trigger.nth})')
+        if self.last < start + (self.end if self.end is not None else self.begin) and not self.settled():
+            return Verdict(False, self.expected(), f"the session ended at {at(self.last)}, before the interval did")
+        passed, seen = self.judge()
+        return Verdict(passed, self.expected(), seen)
+
+    def settled(self) -> bool:
+        """Whether the verdict cannot change any more, although the interval has not ended."""
+        return False
+
+    def expected(self) -> str:
+        """The expectation, in words."""
+        raise NotImplementedError
+
+    def judge(self) -> tuple[bool, str]:
+        """Whether it is met, and what was seen."""
+        raise NotImplementedError
+
+    def span(self) -> str:
+        """The interval, in words."""
+        since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
+        until = "the end" if self.end is None else at(self.end)
+        return (f"at {until}" if self.begin == self.end else f"from {at(self.begin)} to {until}") + since
+
+
+@dataclass(slots=True)
+class StateWatch(Watch):
+    """Follows `State`."""
+
+    wanted: State = field(kw_only=True)
+    met: int | None = None  # first tick of the interval in which it held
+    broken: int | None = None  # first in which it did not
+    seen: str = ""  # the last state in the interval, or the first wrong one
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """See `Watch.look`."""
+        wanted = self.wanted
+        holds = (
+            wanted.mode in (None, decision.mode)
+            and wanted.phase in (None, decision.phase)
+            and wanted.safety in (None, decision.safety.name)
+        )
+        if holds and self.met is None:
+            self.met = tick
+        if self.broken is None:
+            self.seen = f"mode {decision.mode.value}, phase {decision.phase.value}, safety {decision.safety.name} at {at(tick)}"
+            if not holds and wanted.by is None:
+                self.broken = tick
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return self.broken is not None if self.wanted.by is None else self.met is not None
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        words = [("mode", wanted.mode), ("phase", wanted.phase), ("safety", wanted.safety)]
+        state = ", ".join(f"{word} {name}" for word, name in words if name is not None)
+        since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
+        return f"{state} by {wanted.by:g} s{since}" if wanted.by is not None else f"{state} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.wanted.by is None:
+            return self.broken is None, self.seen
+        return self.met is not None, self.seen if self.met is None else f"reached at {at(self.met)}"
+
+
+@dataclass(slots=True)
+class EventWatch(Watch):
+    """Follows `Happens` and `Never`."""
+
+    wanted: Happens | Never = field(kw_only=True)
+    found: list[int] = field(default_factory=list)
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """See `Watch.look`."""
+        self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return len(self.found) >= (self.wanted.times if isinstance(self.wanted, Happens) else 1)
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        if isinstance(wanted, Never):
+            return f"no event {wanted.kind.value} {self.span()}"
+        return f"event {wanted.kind.value}{f' {wanted.times} times' if wanted.times > 1 else ''} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        seen = "none" if not self.found else f"{len(self.found)}, at {', '.join(at(tick) for tick in self.found[:5])}"
+        return self.settled() == isinstance(self.wanted, Happens), seen
+
+
+@dataclass(slots=True)
+class PeriodWatch(Watch):
+    """Follows `Period`: a run is the ticks in which the period is present without its remainder rising."""
+
+    wanted: Period = field(kw_only=True)
+    runs: list[tuple[int, int]] = field(default_factory=list)  # first tick, length in ticks, of each run that has ended
+    began: int | None = None
+    before: int = 0  # the remainder a tick before
+
+    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+        """See `Watch.look`."""
+        left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
+        if self.began is not None and (left is None or left > self.before):
+            self.runs.append((self.began, tick - self.began))
+            self.began = None
+        if left is not None:
+            self.began = tick if self.began is None else self.began
+            self.before = left
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        return f"period {wanted.name}, run {wanted.run}, lasts {wanted.length:g} s within {wanted.tolerance:g} s"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if len(self.runs) < self.wanted.run:
+            return False, f"{len(self.runs)} ended runs"
+        first, length = self.runs[self.wanted.run - 1]
+        # Half a tick of grace, since lengths are whole ticks.
+        passed = abs(length * TICK - self.wanted.length) <= self.wanted.tolerance + 0.5 * TICK
+        return passed, f"{length * TICK:.3f} s, from {at(first)}"
+
+
+def at(tick: int) -> str:
+    """The time of a tick, in words."""
+    return f"{tick * TICK:.3f} s"
