@@ -17,6 +17,8 @@ SUBSTEPS = 8
 
 PASSIVE = 16  # mjINPUT_NONE: an actuator without an input
 STRIBECK = 0.1  # [rad/s]; without effect, for breakaway and Coulomb torque are set alike, once a tick
+BRISTLE_RATIO = 0.7
+"""Damping of a stuck rotor on its bristles: without any, a stuck joint rings for seconds and creeps."""
 SENSORS = ("force", "torque", "accelerometer_flange", "gyro_flange", "accelerometer_tool", "gyro_tool")
 """What MuJoCo measures at the flange, three values each. Forces: what the flange exerts on what it carries, in F."""
 
@@ -125,17 +127,18 @@ def _add_transmission(spec: mujoco.MjSpec, arm: Arm, i: int) -> None:
 def _add_friction(spec: mujoco.MjSpec, arm: Arm, friction: Friction, i: int) -> None:
     name = arm.chain.joints[i]
     sides = (
-        (f"theta/{name}", friction.breakaway[i], arm.motors.ripple[i], 0.0),
-        (f"q/{name}", friction.output_coulomb[i], 0.0, friction.output_viscous[i]),
+        (f"theta/{name}", friction.breakaway[i], arm.motors.ripple[i], 0.0, BRISTLE_RATIO),
+        (f"q/{name}", friction.output_coulomb[i], 0.0, friction.output_viscous[i], 0.0),
     )
     bristle = arm.frictions.presliding[i] / arm.frictions.breakaway[i]
-    for joint, coulomb, ripple, viscous in sides:
+    for joint, coulomb, ripple, viscous, ratio in sides:
+        stiffness = bristle * coulomb
         actuator = spec.add_actuator(name=f"friction/{joint}", target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         actuator.set_to_dcmotor(
             [0, 0],
             1.0,
             cogging=[ripple, 2.0 * arm.motors.gear[i], 0.0],
-            lugre=[bristle * coulomb, 0.0, coulomb, coulomb, STRIBECK],
+            lugre=[stiffness, 2.0 * ratio * (stiffness * arm.motors.rotor_inertia[i]) ** 0.5, coulomb, coulomb, STRIBECK],
             ctrlspec=PASSIVE,
         )
         actuator.damping[0] = viscous

@@ -1,0 +1,175 @@
+"""What a real controller could measure: averaged, distorted, noisy, quantised, saturated and late."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm import Arm, Channels
+from sim.calibration import Calibration
+from sim.changes import SensorFault
+from sim.plant import Plant
+
+Array = NDArray[np.float64]
+
+LATENCY = 1
+"""Ticks between a measurement and its arrival at the controller."""
+
+NOISE_BLOCK = 500  # ticks of noise drawn at once
+TEMPERATURE_TICKS = 50  # a temperature is read every 0.1 s
+
+
+@dataclass(slots=True)
+class Sample:
+    """One tick's measurements, n joints; a channel that is out is not a number."""
+
+    values: Array  # (3n + 18,) all of the below in one row
+    theta: Array  # (n,) motor encoders, referred to the output [rad]
+    q: Array  # (n,) output encoders [rad]
+    current: Array  # (n,) motor currents [A]
+    wrench: Array  # (6,) what the flange exerts on what it carries, in F [N, N·m]
+    acceleration_flange: Array  # (3,) specific force before the flange sensor, in F [m/s²]
+    gyro_flange: Array  # (3,) [rad/s]
+    acceleration_tool: Array  # (3,) specific force behind the flange sensor, in F [m/s²]
+    gyro_tool: Array  # (3,) [rad/s]
+    temperature: Array  # (n,) [°C]
+    joints_valid: bool
+    wrench_valid: bool
+    acceleration_valid: bool
+
+
+class Sensors:
+    """All sensors of an arm.
+
+    Encoders are latched at the end of a tick, everything else is the mean over it. The errors come from `calibration`, the
+    noise from `rng`.
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, rng: np.random.Generator) -> None:
+        n, sensors = arm.n, arm.sensors
+        self._n, self._rng, self._calibration = n, rng, calibration
+        self._groups = {
+            "motor_encoder": slice(0, n),
+            "output_encoder": slice(n, 2 * n),
+            "current": slice(2 * n, 3 * n),
+            "force_torque": slice(3 * n, 3 * n + 6),
+            "accelerometer": np.r_[3 * n + 6 : 3 * n + 9, 3 * n + 12 : 3 * n + 15],
+            "gyro": np.r_[3 * n + 9 : 3 * n + 12, 3 * n + 15 : 3 * n + 18],
+        }
+        size = 3 * n + 18
+        encoders, force_torque = sensors.encoders, sensors.force_torque
+        motor = 2.0 * np.pi / encoders.motor_counts / np.array(arm.motors.gear)
+        output = 2.0 * np.pi / encoders.output_counts
+        self._quantum, self._sigma, self._range = np.ones(size), np.zeros(size), np.full(size, np.inf)
+        self._quantum[:n], self._sigma[:n] = motor, encoders.noise_counts * motor
+        self._quantum[n : 2 * n], self._sigma[n : 2 * n] = output, encoders.noise_counts * output
+        self._set("current", sensors.current)
+        self._set("accelerometer", sensors.accelerometer)
+        self._set("gyro", sensors.gyro)
+        if force_torque is not None:
+            for start, channels in ((3 * n, force_torque.force), (3 * n + 3, force_torque.torque)):
+                part = slice(start, start + 3)
+                self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
+        self._per_quantum = 1.0 / self._quantum
+        self._gain = np.ones(size)
+        self._bias = np.zeros(size)
+        self._drifts = np.zeros(size)
+        self._bias[self._groups["force_torque"]] = calibration.wrench_offset
+        self._drifts[self._groups["force_torque"]] = calibration.wrench_drift
+        self._out = np.zeros(size, dtype=bool)
+        for name, present in (("force_torque", force_torque), ("accelerometer", sensors.accelerometer), ("gyro", sensors.gyro)):
+            if present is None:
+                self._out[self._groups[name]] = True
+        self._noise = np.empty((NOISE_BLOCK, size))
+        self._temperature_sensor = sensors.temperature
+        self._temperature = np.zeros(n)
+        self._line: list[Array] = []
+        self._raw = np.empty(size)
+        self._ripple_angle = calibration.ripple_phase.T.copy()
+        self._ripple = calibration.ripple.T.copy()
+        self._any_out = bool(self._out.any())
+
+    def _set(self, name: str, channels: Channels | None) -> None:
+        if channels is not None:
+            part = self._groups[name]
+            self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
+
+    def fault(self, fault: SensorFault) -> None:
+        """Let a sensor drift, get noisier or fail, from now on; a later fault of the same channels replaces the drift."""
+        part = self._groups[fault.sensor]
+        index = np.arange(self._bias.size)[part]
+        if fault.channel is not None:
+            index = index[fault.channel]
+        self._bias[index] += fault.offset
+        self._drifts[index] = fault.drift
+        self._gain[index] = fault.noise_factor
+        self._out[index] = fault.outage
+        self._any_out = bool(self._out.any())
+
+    def read(self, plant: Plant, current: Array) -> Sample:
+        """Measure the tick that `plant` has just finished; returns what arrives now, `LATENCY` ticks later.
+
+        Args:
+            plant: the true arm.
+            current: true motor currents (n,) [A] during that tick.
+        """
+        n, raw, row = self._n, self._raw, plant.tick % NOISE_BLOCK
+        if row == 0 or not self._line:
+            self._rng.standard_normal(out=self._noise)
+            self._noise *= self._sigma
+        if plant.tick % TEMPERATURE_TICKS == 0 or not self._line:
+            self._read_temperature(plant)
+        raw[:n] = plant.theta
+        raw[n : 2 * n] = plant.q
+        turn = self._ripple * np.sin(self._harmonics * plant.q + self._ripple_angle)
+        raw[n : 2 * n] += turn[0]
+        raw[n : 2 * n] += turn[1]
+        raw[2 * n : 3 * n] = current
+        raw[3 * n : 3 * n + 6] = self._calibration.wrench_gain @ plant.flange[:6]
+        raw[3 * n + 6 :] = plant.flange[6:]
+        self._bias += self._drifts * plant.step.tick
+        value = raw + self._bias
+        value += self._noise[row] * self._gain
+        value *= self._per_quantum
+        np.rint(value, out=value)
+        value *= self._quantum
+        np.minimum(value, self._range, out=value)
+        np.maximum(value, -self._range, out=value)
+        if self._any_out:
+            value[self._out] = np.nan
+        line = self._line
+        line.append(value)
+        if len(line) > LATENCY + 1:
+            line.pop(0)
+        return self._sample(line[0])
+
+    _harmonics = np.array([[1.0], [2.0]])
+
+    def _read_temperature(self, plant: Plant) -> None:
+        sensor = self._temperature_sensor
+        noisy = plant.temperature + sensor.noise * self._rng.standard_normal(self._n)
+        self._temperature = np.rint(noisy / sensor.quantum) * sensor.quantum
+
+    def _sample(self, values: Array) -> Sample:
+        n = self._n
+        k = 3 * n + 6
+        joints = wrench = acceleration = True
+        if self._any_out:
+            joints = bool(np.isfinite(values[: 3 * n]).all())
+            wrench = bool(np.isfinite(values[3 * n : k]).all())
+            acceleration = bool(np.isfinite(values[k:]).all())
+        return Sample(
+            values,
+            values[:n],
+            values[n : 2 * n],
+            values[2 * n : 3 * n],
+            values[3 * n : k],
+            values[k : k + 3],
+            values[k + 3 : k + 6],
+            values[k + 6 : k + 9],
+            values[k + 9 :],
+            self._temperature,
+            joints,
+            wrench,
+            acceleration,
+        )
