@@ -105,7 +105,7 @@ class Effort(Action, frozen=True, kw_only=True):
     """Base of what a hand does to a point of the arm for a while."""
 
     length: Positive = msgspec.field(name="for")  # [s]
-    part: str = "flange"  # "base", a joint's link by its joint name, "flange", "tool"
+    part: str = "flange"  # "foot", a joint's link by its joint name, "flange", "tool"
     point: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # in the part's frame [m]
 
 

@@ -1,4 +1,4 @@
-"""events.jsonl: one event a line, written while the session runs. No wall time and no path in it: same session and seed, same bytes."""
+"""events.jsonl: one event a line, written as the session runs. No wall time, no path: same session and seed, same bytes."""
 
 from pathlib import Path
 from types import TracebackType

@@ -14,10 +14,10 @@ def point_of(snapshot: Snapshot, joints: list[str], part: str, point: Sequence[f
     Args:
         snapshot: whose truth is read.
         joints: the arm's joint names, base to flange.
-        part: "base", a joint's link by its joint name, "flange" or "tool"; these two are the tool-side face of the flange sensor.
+        part: "foot", a joint's link by its joint name, "flange" or "tool"; these two are the tool-side face of the flange sensor.
         point: in the part's frame [m].
     """
-    row = -1 if part in ("flange", "tool") else 0 if part == "base" else 1 + joints.index(part)
+    row = -1 if part in ("flange", "tool") else 0 if part == "foot" else 1 + joints.index(part)
     x, y, z, w, i, j, k = snapshot.truth_links[row]
     axis = np.array([i, j, k])
     # Rotation by the unit quaternion (w, axis): p + 2 w (axis x p) + 2 axis x (axis x p).

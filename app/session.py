@@ -171,7 +171,7 @@ def _applied(settings: Settings, changes: dict[str, float | bool | str], where: 
 
 def _check_session(session: Session, prepared: Prepared, where: str) -> None:
     arm = prepared.arm
-    parts = ["base", *arm.chain.joints, "flange", "tool"]
+    parts = ["foot", *arm.chain.joints, "flange", "tool"]
     for i, action in enumerate(session.timeline):
         field = f"timeline[{i}]"
         if (ident := action.planned()) is not None:

@@ -1,0 +1,179 @@
+"""The command line `pendant`. Exit codes: 0 done, 1 an expectation or a check failed, 2 bad input, said in one line."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from app.checked import ABSENT, BadInput, load
+from app.library import load_arm, robots
+from app.session import Session, Setup, find, prepare
+from pendant.settings import SettingError
+from pendant.settings import find as find_setting
+from sim.arm import Arm
+
+# Usage errors, whichever click typer was built on: the base of the one that typer exports.
+UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
+PORT = 8080
+"""Where the web app is, when this port is free and no other was asked for."""
+
+app = typer.Typer(
+    name="pendant",
+    help="A teach pendant and the cobot behind it, simulated: in the browser, or headless.",
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+)
+Robot = Annotated[str | None, typer.Option(help="Arm to serve: a name that `pendant robots` lists, or a file.")]
+Config = Annotated[
+    Path | None, typer.Option(help="YAML file: the header of a session, without its time line.", show_default=False)
+]
+Host = Annotated[str, typer.Option(help="Address to listen on.")]
+Port = Annotated[
+    int | None, typer.Option(help=f"Port; 0 for any free one. Without it {PORT}, or any free one.", min=0, max=65535)
+]
+SessionName = Annotated[str, typer.Argument(metavar="SESSION", help="A session file, or the name of a bundled session.")]
+Out = Annotated[Path, typer.Option(help="Folder for the results: events.jsonl.")]
+Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
+Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
+
+
+def example(*lines: str) -> str:
+    """Examples at the end of a command's help."""
+    return "Examples:\n" + "\n".join(f"  {escape(line)}" for line in lines)
+
+
+@app.command(
+    epilog=example("pendant serve --open", "pendant serve --robot ur10e --port 9000", "pendant serve --config cell.yaml")
+)
+def serve(
+    robot: Robot = None,
+    config: Config = None,
+    host: Host = "127.0.0.1",
+    port: Port = None,
+    open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+) -> None:
+    """Serve the web app: push the arm, hold its free-drive button, read why it stopped."""
+    from app.serving import serve_until_interrupted
+
+    setup = Setup() if config is None else load(config, Setup)
+    if robot is not None:
+        setup = msgspec.structs.replace(setup, robot=robot)
+    where = "serve" if config is None else config.name
+    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser) as url:
+        Console().print(f"Serving the {escape(setup.robot)} at {url}  (stop with Ctrl-C)")
+
+
+@app.command(
+    epilog=example(
+        "pendant run free-drive",
+        "pendant run my.yaml --out results --seed 7 --set free_drive.period=5",
+        "pendant run hold --realtime",
+    )
+)
+def run(
+    session: SessionName,
+    out: Out = Path("out"),
+    seed: Seed = None,
+    realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
+    set_: Set = None,
+) -> None:
+    """Run a session without a window, as fast as it goes. Exit code 1 when an expectation is not met."""
+    from app.runner import run as run_session
+    from app.runner import simulate
+    from app.summary import progress, show
+
+    path = find(session)
+    content = load(path, Session)
+    changes = dict(setting(text) for text in set_ or [])
+    content = msgspec.structs.replace(
+        content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
+    )
+    prepared = prepare(content, path.name)
+    with progress(content) as advance:
+        outcome = run_session(content, prepared, simulate(prepared), out, realtime, advance)
+    show(content, outcome, out)
+    if not outcome.passed:
+        raise typer.Exit(1)
+
+
+@app.command(epilog=example("pendant check my.yaml", "pendant check cell.yaml", "pendant check my-arm.yaml"))
+def check(file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")]) -> None:
+    """Check a file without running it: a session, a configuration or a robot."""
+    path = find(file)
+    raw = load(path, dict[str, object])
+    if "chain" in raw:
+        load_arm(path)
+        what = "robot"
+    elif "duration" in raw or "timeline" in raw or "title" in raw:
+        prepare(load(path, Session), path.name)
+        what = "session"
+    else:
+        prepare(load(path, Setup), path.name)
+        what = "configuration"
+    Console().print(f"{escape(path.name)}: a valid {what}")
+
+
+@app.command("robots", epilog=example("pendant robots", "pendant serve --robot ur3e"))
+def robots_() -> None:
+    """List the arms, with reach, payload, mass, joints and the source of their data."""
+    table = Table("name", "title", "reach [m]", "payload [kg]", "mass [kg]", "joints", "source", box=None, pad_edge=False)
+    for column in (2, 3, 4, 5):
+        table.columns[column].justify = "right"
+    for name in robots():
+        arm = load_arm(name)
+        table.add_row(
+            name, arm.title, f"{arm.reach:g}", f"{arm.payload:g}", f"{sum(arm.masses.mass):.1f}", str(arm.n), _source(arm)
+        )
+    Console().print(table)
+
+
+def setting(text: str) -> tuple[str, float | bool | str]:
+    """A `--set KEY=VALUE` as name and value.
+
+    Raises BadInput: it has no "=", or there is no such setting. The value is checked with the session's own.
+    """
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise BadInput("--set", "", text, "expected KEY=VALUE, such as free_drive.period=5")
+    try:
+        find_setting(name)
+    except SettingError as error:
+        raise BadInput("--set", name, ABSENT, f"no such setting; allowed: {error.allowed}") from None
+    if value in ("true", "false"):
+        return name, value == "true"
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
+
+
+def _source(arm: Arm) -> str:
+    """Where the masses come from, without the fine print after the first semicolon; the file says the rest."""
+    return " ".join(arm.masses.source.split()).partition(";")[0]
+
+
+def main() -> None:
+    """Entry point: bad input is one line on standard error and exit code 2, never a traceback."""
+    try:
+        code = typer.main.get_command(app).main(sys.argv[1:] or ["--help"], prog_name="pendant", standalone_mode=False)
+    except UsageError as error:
+        text = error.format_message() if hasattr(error, "format_message") else str(error)  # type: ignore[attr-defined]
+        sys.exit(_refuse(text))
+    except BadInput as error:
+        sys.exit(_refuse(str(error)))
+    except typer.Abort:
+        sys.exit(1)
+    sys.exit(code or 0)
+
+
+def _refuse(text: str) -> int:
+    """Say one line on standard error; the exit code to end with."""
+    sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
+    return 2
