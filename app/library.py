@@ -43,7 +43,7 @@ def load_tool(name_or_path: str | Path) -> Tool:
 
 
 def mesh_path(arm_name: str, link: str) -> Path:
-    """The picture of a link: a GLB in the link's joint frame [m]. `link` is "mount" for the fixed base, else its joint's name.
+    """The picture of a link: a GLB in the link's joint frame [m]. `link` is "foot" for the fixed base, else its joint's name.
 
     Raises:
         BadInput: there is none.

@@ -248,8 +248,8 @@ def _postures(arm: Arm) -> list[Problem]:
     c = arm.chain
     found: list[Problem] = []
     for k, name in enumerate(c.joints):
-        if not name or name in c.joints[:k] or name in ("base", "flange", "tool") and k > 0:
-            found.append((f"chain.joints[{k}]", name, "expected names that differ, and not flange or tool"))
+        if not name or name in c.joints[:k] or name in ("foot", "flange", "tool"):
+            found.append((f"chain.joints[{k}]", name, "expected names that differ, and not foot, flange or tool"))
         if abs(c.home[k]) > arm.limits.position[k]:
             found.append((f"chain.home[{k}]", c.home[k], f"expected within ±{arm.limits.position[k]:g} rad"))
     if not 0 <= c.elbow < arm.n:
