@@ -1,0 +1,74 @@
+"""The messages a browser may send, as strict types: anything that does not decode into one of them is refused."""
+
+from typing import Any, Literal
+
+import msgspec
+
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
+
+
+class Message(msgspec.Struct, tag_field="type", forbid_unknown_fields=True):
+    """Base of the admitted messages. Names and fields are those of viser's dataclasses; a test compares them."""
+
+
+class Camera(Message, tag="ViewerCameraMessage"):
+    """Where the client looks from; it concerns this client alone."""
+
+    wxyz: tuple[float, float, float, float]
+    position: Triple
+    fov: float
+    near: float
+    far: float
+    image_height: int
+    image_width: int
+    look_at: Triple
+    up_direction: Triple
+
+
+class Update(Message, tag="GuiUpdateMessage"):
+    """A control was used."""
+
+    uuid: str
+    updates: dict[str, Any]
+
+
+class Hold(Message, tag="GuiButtonHoldMessage"):
+    """A button is held: sent again and again."""
+
+    uuid: str
+    frequency: float
+
+
+class Drag(Message, tag="SceneNodeDragMessage"):
+    """A part of the scene is dragged."""
+
+    phase: Literal["start", "update", "end"]
+    name: str
+    instance_index: None
+    start_position: Triple
+    start_screen_pos: Pair
+    end_position: Triple
+    end_screen_pos: Pair
+    button: Literal["left", "middle", "right"]
+    modifier: str | None
+    owner: str = ""
+
+
+Admitted = Camera | Update | Hold | Drag
+
+_decoder = msgspec.msgpack.Decoder(Admitted)
+_encoder = msgspec.msgpack.Encoder()
+
+
+def decode(raw: bytes) -> Admitted | None:
+    """The message in `raw`, or None if it is none of the admitted types or has a field too many, too few or of another type."""
+    try:
+        return _decoder.decode(raw)
+    except (msgspec.DecodeError, UnicodeDecodeError):
+        return None
+
+
+def encode(message: Admitted) -> bytes:
+    """The bytes handed on to viser: written anew, so that nothing reaches it that was not understood here."""
+    return _encoder.encode(message)

@@ -1,0 +1,189 @@
+"""The picture: arm, tool, payload, world and touches, drawn from snapshots."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import trimesh
+import viser
+from numpy.typing import NDArray
+
+from sim.arm import Arm
+from sim.scenario import Plane, Scenario
+from sim.snapshot import Snapshot
+
+Array = NDArray[np.float64]
+
+STEP = 2e-5
+"""Changes smaller than this are not sent [m, and 1 for quaternions]."""
+
+METRES_PER_NEWTON = 0.004
+METRES_PER_NEWTON_METRE = 0.03
+SHORTEST = 0.06
+LONGEST = 0.4
+"""Length of the arrows of touches [m]."""
+
+TOUCHES = 4
+"""Touches shown at once."""
+
+FORCE_COLOUR = (25, 113, 194)
+TORQUE_COLOUR = (156, 54, 181)
+WORLD_COLOURS = {"box": (173, 181, 189), "pad": (150, 190, 160), "snap-fit": (190, 170, 140), "two-frictions": (170, 170, 200)}
+
+
+def frames_of(arm: Arm) -> dict[str, int]:
+    """For each part of the arm, the row of `Snapshot.truth_links` with its frame."""
+    rows = {name: row for row, name in enumerate(("foot", *arm.chain.joints))}
+    return rows | {"flange": arm.n + 1, "tool": arm.n + 1}
+
+
+class Scene:
+    """What viser shows. `meshes` has a GLB file for each part that has a shape."""
+
+    def __init__(self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot) -> None:
+        self._server = server
+        self._frames = frames_of(arm)
+        self._last: dict[str, Array] = {}
+        self._nodes: dict[str, viser.SceneNodeHandle] = {}
+        self.draggable: dict[str, viser.GlbHandle] = {}
+        self._stage()
+        self._frame(first.truth_links[:, :3], arm.reach)
+        for part, row in self._frames.items():
+            if part in meshes:
+                self.draggable[part] = server.scene.add_glb(f"/arm/{part}", meshes[part], cast_shadow=False, receive_shadow=False)
+                self._nodes[f"link {row} {part}"] = self.draggable[part]
+        self._add_tool(scenario)
+        self._add_world(scenario)
+        self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
+        self._arrows = [self._arrow(i) for i in range(TOUCHES)]
+        self._shown: list[tuple[float, ...]] = [()] * TOUCHES
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
+        changed = False
+        with self._server.atomic():
+            for key, node in self._nodes.items():
+                kind, row, _ = key.split(" ", 2)
+                poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
+                changed |= self._place(key, node, poses[int(row)])
+            changed |= self._show_payload(snapshot)
+            changed |= self._show_touches(snapshot)
+        if changed:
+            self._server.flush()
+        return changed
+
+    def _place(self, key: str, node: viser.SceneNodeHandle, pose: Array) -> bool:
+        last = self._last.get(key)
+        if last is not None and float(np.max(np.abs(last - pose))) < STEP:
+            return False
+        if last is None or float(np.max(np.abs(last[:3] - pose[:3]))) >= STEP:
+            node.position = np.round(pose[:3], 5)
+        if last is None or float(np.max(np.abs(last[3:] - pose[3:]))) >= STEP:
+            node.wxyz = np.round(pose[3:], 5)
+        self._last[key] = pose.copy()
+        return True
+
+    def _show_payload(self, snapshot: Snapshot) -> bool:
+        pose = snapshot.truth_payload
+        visible = pose is not None
+        changed = self._payload.visible != visible
+        if changed:
+            self._payload.visible = visible
+        if pose is None:
+            return changed
+        radius = round((max(snapshot.truth_payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0), 4)
+        if snapshot.truth_payload_mass > 0.0 and self._payload.scale != radius:
+            self._payload.scale = radius
+            changed = True
+        return self._place("payload", self._payload, pose) or changed
+
+    def _show_touches(self, snapshot: Snapshot) -> bool:
+        changed = False
+        for i, (arrow, label) in enumerate(self._arrows):
+            shown: tuple[float, ...] = ()
+            if i < len(snapshot.touches):
+                _, point, force, torque = snapshot.touches[i]
+                shown = tuple(np.round([*point, *force, *torque], 3))
+            if shown == self._shown[i]:
+                continue
+            changed = True
+            self._shown[i] = shown
+            arrow.visible = label.visible = bool(shown)
+            if shown:
+                self._draw(arrow, label, np.array(shown))
+        return changed
+
+    def _draw(self, arrow: viser.ArrowsHandle, label: viser.LabelHandle, touch: Array) -> None:
+        point, force, torque = touch[:3], touch[3:6], touch[6:]
+        turning = float(np.linalg.norm(force)) < 1e-9
+        vector, size, unit = (torque, METRES_PER_NEWTON_METRE, "N·m") if turning else (force, METRES_PER_NEWTON, "N")
+        amount = float(np.linalg.norm(vector))
+        length = min(max(amount * size, SHORTEST), LONGEST)
+        tip = point + (vector / amount * length if amount > 0.0 else 0.0)
+        arrow.points = np.array([[point, tip]], dtype=np.float32)
+        arrow.colors = np.array(TORQUE_COLOUR if turning else FORCE_COLOUR, dtype=np.uint8)
+        label.position = tip
+        label.text = f"{amount:.1f} {unit}" if turning else f"{amount:.0f} {unit}"
+
+    def _arrow(self, i: int) -> tuple[viser.ArrowsHandle, viser.LabelHandle]:
+        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        arrow = self._server.scene.add_arrows(
+            f"/touch/{i}/arrow", nothing, FORCE_COLOUR, shaft_radius=0.006, head_radius=0.016, head_length=0.04, visible=False
+        )
+        return arrow, self._server.scene.add_label(f"/touch/{i}/label", "", visible=False, anchor="bottom-center")
+
+    def _add_tool(self, scenario: Scenario) -> None:
+        tool = scenario.tool
+        if tool is None or tool.length <= 0.0:
+            return
+        shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
+        shape.apply_translation([0.0, 0.0, tool.length / 2])
+        shape.visual = trimesh.visual.ColorVisuals(shape, face_colors=[73, 80, 87, 255])
+        handle = self._server.scene.add_mesh_trimesh("/arm/tool", shape, cast_shadow=False, receive_shadow=False)
+        self.draggable["tool"] = handle
+        self._nodes[f"link {self._frames['tool']} tool"] = handle
+
+    def _add_world(self, scenario: Scenario) -> None:
+        for row, thing in enumerate(scenario.world):
+            plane = isinstance(thing, Plane)
+            size = (3.0, 3.0, 0.002) if plane else tuple(thing.size)
+            colour = WORLD_COLOURS.get(type(thing).__struct_config__.tag, (173, 181, 189))
+            self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
+                f"/world/{row}", dimensions=size, color=colour, opacity=0.35 if plane else None, cast_shadow=False, receive_shadow=False
+            )
+
+    def _stage(self) -> None:
+        """Light, floor and background."""
+        scene = self._server.scene
+        scene.set_up_direction("+z")
+        scene.configure_default_lights(cast_shadow=False)
+        scene.add_grid(
+            "/floor",
+            width=6.0,
+            height=6.0,
+            cell_size=0.1,
+            section_size=0.5,
+            cell_color=(226, 230, 234),
+            section_color=(203, 209, 215),
+            cell_thickness=0.6,
+            section_thickness=1.0,
+            fade_distance=6.0,
+            fade_from="origin",
+            plane_color=(244, 246, 248),
+            plane_opacity=1.0,
+            shadow_opacity=0.0,
+        )
+        shades = np.linspace((214, 221, 229), (247, 248, 250), 128).astype(np.uint8)
+        scene.set_background_image(np.repeat(shades[:, None, :], 2, axis=1), format="png")
+
+    def _frame(self, points: Array, reach: float) -> None:
+        """Look at the arm from its front, a little from above, so that its whole reach is in view."""
+        centre = (points.min(axis=0) + points.max(axis=0)) / 2
+        side = points[-1] - points[0]
+        side[2] = 0.0
+        side = side / max(float(np.linalg.norm(side)), 1e-6)
+        across = np.array([-side[1], side[0], 0.0])
+        camera = self._server.initial_camera
+        camera.look_at = tuple(centre)
+        camera.position = tuple(centre + reach * (0.9 * side + 1.9 * across + np.array([0.0, 0.0, 0.75])))
+        camera.fov = math.radians(40.0)

@@ -1,0 +1,130 @@
+"""The web app as a whole: one viser server behind the guard, one thread that draws."""
+
+import socket
+import threading
+import webbrowser
+from collections.abc import Mapping
+
+import viser
+
+from app.checked import BadInput
+from app.library import mesh_path
+from app.web.control import Control
+from app.web.guard import LOOPBACK, Guard
+from app.web.hand import Hand
+from app.web.operator import Operator
+from app.web.panel import Panel, Running
+from app.web.scene import Scene, frames_of
+from sim.arm import Arm
+from sim.scenario import Scenario
+
+FRAME = 1.0 / 60.0
+"""Time between two pictures [s]."""
+
+FRAMES_A_PANEL = 4
+"""The pendant is brought up to date with every so many pictures."""
+
+
+class Served:
+    """A running web app."""
+
+    def __init__(self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], host: str, port: int) -> None:
+        self._loop = loop
+        self.guard = Guard(Operator())
+        with self.guard.installed():
+            self.server = viser.ViserServer(host=host, port=port, verbose=False)
+        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194))
+        self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
+        self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
+        self.panel = Panel(self.server, self.guard, loop, self.hand, f"pendant · {arm.title}")
+        self.control = Control(self.guard, self._let_go)
+        for part, node in self.scene.draggable.items():
+            self._make_draggable(part, node)
+        self.server.on_client_connect(self._welcome)
+        self.server.on_client_disconnect(self._farewell)
+        self.guard.open(self.server, frozenset(node.name for node in self.scene.draggable.values()), self._let_go)
+        self._closing = threading.Event()
+        self._painter = threading.Thread(target=self._paint, name="web-painter", daemon=True)
+        self._painter.start()
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://127.0.0.1:{self.server.get_port()}"
+
+    def close(self) -> None:
+        """Stop serving; connections are closed, and what they held is released."""
+        self._closing.set()
+        self._painter.join()
+        self.server.stop()
+
+    def _paint(self) -> None:
+        frame = 0
+        shown = -1
+        while not self._closing.wait(FRAME):
+            snapshot = self._loop.latest()
+            if snapshot.tick != shown:
+                self.scene.show(snapshot)
+                shown = snapshot.tick
+            if frame % FRAMES_A_PANEL == 0:
+                self.panel.show(snapshot)
+                self.control.show()
+            frame += 1
+
+    async def _welcome(self, client: viser.ClientHandle) -> None:
+        self.control.welcome(client)
+
+    async def _farewell(self, client: viser.ClientHandle) -> None:
+        self.control.farewell(client.client_id)
+
+    def _let_go(self, client: int) -> None:
+        self.hand.let_go(client)
+        self.panel.let_go(client)
+        self.guard.operator.engage(client, False, self.guard.now())
+
+    def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:
+        async def dragged(event: viser.SceneNodeDragEvent) -> None:
+            client = event.client_id
+            if event.phase == "end":
+                self.hand.let_go(client)
+            elif event.phase == "start":
+                self.hand.grab(client, part, event.start_position, turning=event.modifier is not None)
+            if event.phase != "end":
+                eye = event.client.camera.position
+                self.hand.move(client, event.start_position, event.end_position, (float(eye[0]), float(eye[1]), float(eye[2])))
+            self.guard.operator.engage(client, self.hand.holds(client), self.guard.now())
+
+        node.on_drag("left")(dragged)
+        node.on_drag("left", modifier="shift")(dragged)
+        node.on_drag("left", modifier="cmd/ctrl")(dragged)
+
+
+def serve(loop: Running, arm: Arm, scenario: Scenario, host: str = "127.0.0.1", port: int = 0, open_browser: bool = False) -> Served:
+    """Serve the web app of a running loop.
+
+    Args:
+        host: an address of this machine alone.
+        port: 0 for any free one.
+
+    Raises:
+        BadInput: the host is on a network, or the port is taken.
+    """
+    if host not in LOOPBACK:
+        raise BadInput("serve", "--host", host, f"one of {', '.join(LOOPBACK)}: opening it to a network is not available yet")
+    host = "::1" if host == "[::1]" else host
+    _must_be_free(host, port)
+    meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
+    served = Served(loop, arm, scenario, meshes, host, port)
+    if open_browser:
+        webbrowser.open(served.url)
+    return served
+
+
+def _must_be_free(host: str, port: int) -> None:
+    """viser would quietly take another port."""
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError:
+            raise BadInput("serve", "--port", port, "a port that is free") from None

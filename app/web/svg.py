@@ -1,0 +1,120 @@
+"""Small pictures for the pendant: mode light, countdown rings, tables. Every text that comes from elsewhere is escaped here."""
+
+import math
+from collections.abc import Iterable
+from enum import StrEnum
+from html import escape
+
+
+class Colour(StrEnum):
+    """The colours of states; a word always stands beside them."""
+
+    GREEN = "#2b8a3e"  # ready
+    BLUE = "#1971c2"  # free-drive
+    AMBER = "#e67700"  # about to end
+    RED = "#c92a2a"  # stopped
+    GREY = "#868e96"  # watching, waiting
+
+
+RADIUS = 26.0
+_AROUND = 2 * math.pi * RADIUS
+
+
+def light(mode: str, word: str, safety: str, colour: Colour) -> str:
+    """The mode light: mode in large letters, what it means in a word, safety mode beside it."""
+    return (
+        f'<div class="pd-light" style="--c:{colour.value}"><i></i><div><b>{escape(mode)}</b><span>{escape(word)}</span></div>'
+        f'<em>Safety<strong>{escape(safety)}</strong></em></div>'
+    )
+
+
+def ring(name: str, left: float, share: float, colour: Colour) -> str:
+    """A countdown ring: `left` seconds in the middle, `share` (0..1) of the circle, `name` below."""
+    arc = _AROUND * min(max(share, 0.0), 1.0)
+    return (
+        '<figure><svg viewBox="0 0 64 64" width="64" height="64" role="img">'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="#e9ecef" stroke-width="6"/>'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="{colour.value}" stroke-width="6" stroke-linecap="round" '
+        f'stroke-dasharray="{arc:.1f} {_AROUND:.1f}" transform="rotate(-90 32 32)"/>'
+        f'<text x="32" y="37" text-anchor="middle" font-size="15" font-weight="600" fill="#343a40">{left:.1f}</text></svg>'
+        f"<figcaption>{escape(name)}</figcaption></figure>"
+    )
+
+
+def rings(pictures: Iterable[str]) -> str:
+    """Rings side by side, or a line that says there are none: the room they take stays the same."""
+    inside = "".join(pictures) or "<p>No period is running</p>"
+    return f'<div class="pd-rings">{inside}</div>'
+
+
+def note(headline: str, text: str, colour: Colour) -> str:
+    """A short message: a headline and what to do."""
+    return (
+        f'<div class="pd-note" style="--c:{colour.value}"><b>{escape(headline)}</b>'
+        f"{f'<span>{escape(text)}</span>' if text else ''}</div>"
+    )
+
+
+def who(text: str, colour: Colour, button: str) -> str:
+    """Who has control, in a line; the button with the id `button` stands at its end."""
+    return (
+        f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
+        f'<style>div:has(>[id="{button}"]){{margin:-36px 12px 6px auto!important;padding:0!important;width:76px;position:relative}}'
+        f'[id="{button}"]{{height:28px!important;font-size:12px;padding:0;border-radius:6px}}</style>'
+    )
+
+
+def facts(pairs: Iterable[tuple[str, str]]) -> str:
+    """Names and values in two columns."""
+    rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in pairs)
+    return f'<dl class="pd-facts">{rows}</dl>'
+
+
+def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
+    """The event log: time, text, colour of its mark."""
+    lines = "".join(
+        f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>' for time, text, colour in rows
+    )
+    return f'<div class="pd-log"><table>{lines}</table></div>' if lines else '<p class="pd-empty">Nothing has happened yet</p>'
+
+
+def style(stop: str, free_drive: str, reset: str) -> str:
+    """The style sheet of the pendant; the arguments are the ids of its buttons.
+
+    The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
+    gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
+    """
+    main, low = f':has([id="{free_drive}"])', f':has([id="{stop}"])'
+    return f"""<style>
+{main}>{low}:not({main}){{flex:0 0 170px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
+[style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
+.pd-light{{display:flex;align-items:center;gap:12px;margin:2px 12px 10px;padding:12px 14px;border-radius:8px;
+  background:color-mix(in srgb,var(--c) 9%,transparent);border:1px solid color-mix(in srgb,var(--c) 35%,transparent)}}
+.pd-light i{{width:18px;height:18px;border-radius:50%;background:var(--c);box-shadow:0 0 0 4px color-mix(in srgb,var(--c) 22%,transparent)}}
+.pd-light div{{flex:1;line-height:1.15}}
+.pd-light b{{display:block;font-size:17px;letter-spacing:.02em}}
+.pd-light span{{font-size:12.5px;color:var(--c);font-weight:600}}
+.pd-light em{{font-style:normal;font-size:10.5px;text-align:right;opacity:.75;text-transform:uppercase;letter-spacing:.06em}}
+.pd-light strong{{display:block;font-size:12px;letter-spacing:0}}
+.pd-rings{{display:flex;gap:10px;justify-content:center;align-items:center;min-height:92px;margin:2px 12px 6px}}
+.pd-rings figure{{margin:0;text-align:center}} .pd-rings svg{{display:block;margin:0 auto}}
+.pd-rings figcaption{{font-size:11.5px;margin-top:3px;opacity:.8}}
+.pd-rings p{{margin:0;font-size:12px;opacity:.5}}
+.pd-who{{display:flex;align-items:center;gap:8px;height:30px;margin:0 12px 6px;font-size:12.5px}}
+.pd-who i{{width:8px;height:8px;border-radius:50%;background:var(--c)}} .pd-who b{{font-weight:600}}
+.pd-note{{margin:2px 12px 10px;padding:8px 12px;border-left:3px solid var(--c);border-radius:0 6px 6px 0;
+  background:color-mix(in srgb,var(--c) 7%,transparent);font-size:12.5px;line-height:1.4}}
+.pd-note b{{display:block}} .pd-note span{{opacity:.8}}
+.pd-facts{{display:grid;grid-template-columns:1fr auto;gap:3px 12px;margin:4px 14px 10px;font-size:12.5px}}
+.pd-facts dt{{opacity:.65}} .pd-facts dd{{margin:0;font-variant-numeric:tabular-nums;font-weight:500}}
+.pd-log{{padding:4px 4px 8px;font-size:12.5px}}
+.pd-log table{{border-collapse:collapse;width:100%}}
+.pd-log td{{padding:5px 6px;vertical-align:top;border-bottom:1px solid rgba(128,128,128,.14);line-height:1.35}}
+.pd-log td:nth-child(1){{width:8px;padding-right:0}}
+.pd-log td:nth-child(2){{font-variant-numeric:tabular-nums;opacity:.6;white-space:nowrap;width:1%}}
+.pd-log i{{display:block;width:7px;height:7px;border-radius:50%;background:var(--c);margin-top:5px}}
+.pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
+[id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
+[id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
+[id="{reset}"]{{height:34px!important;border-radius:8px}}
+</style>"""
