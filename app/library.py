@@ -4,7 +4,8 @@ from pathlib import Path
 
 import assets
 from app.checked import ABSENT, BadInput, load
-from sim.arm import Arm, problems
+from sim.arm import Arm
+from sim.arm_problems import problems
 from sim.scenario import Tool
 
 ASSETS = Path(assets.__file__).parent

@@ -32,10 +32,10 @@ FOOT = "foot"
 PAINT: dict[str, tuple[tuple[float, float, float], float, float]] = {
     # colour (linear), metallic, roughness
     "body": ((0.56, 0.575, 0.59), 0.25, 0.42),
-    "tube": ((0.50, 0.52, 0.54), 0.55, 0.36),
+    "tube": ((0.47, 0.49, 0.51), 0.4, 0.36),
     "lid": ((0.165, 0.315, 0.435), 0.05, 0.38),
     "seal": ((0.035, 0.038, 0.042), 0.0, 0.7),
-    "steel": ((0.42, 0.43, 0.44), 0.8, 0.3),
+    "steel": ((0.40, 0.41, 0.42), 0.45, 0.35),
 }
 
 
@@ -53,21 +53,21 @@ class Picture:
 
     def glb(self) -> bytes:
         """The picture as a binary glTF."""
-        import trimesh  # slow to import
+        import trimesh.exchange.gltf  # slow to import
+        from trimesh.visual.material import PBRMaterial
+        from trimesh.visual.texture import TextureVisuals
 
         scene = trimesh.Scene()
         for paint in sorted(self.surfaces):
             colour, metallic, roughness = PAINT[paint]
-            material = trimesh.visual.material.PBRMaterial(
-                name=paint, baseColorFactor=[*colour, 1.0], metallicFactor=metallic, roughnessFactor=roughness
-            )
+            material = PBRMaterial(name=paint, baseColorFactor=[*colour, 1.0], metallicFactor=metallic, roughnessFactor=roughness)
             parts = self.surfaces[paint]
             starts = np.cumsum([0, *(len(points) for points, _, _ in parts)])
             mesh = trimesh.Trimesh(
                 vertices=np.round(np.vstack([points for points, _, _ in parts]), 6),
                 vertex_normals=np.round(np.vstack([normals for _, normals, _ in parts]), 4),
                 faces=np.vstack([faces + start for (_, _, faces), start in zip(parts, starts, strict=False)]),
-                visual=trimesh.visual.TextureVisuals(material=material),
+                visual=TextureVisuals(material=material),
                 process=False,
             )
             scene.add_geometry(mesh, node_name=paint, geom_name=paint)
@@ -165,7 +165,12 @@ def foot(arm: Arm) -> Picture:
     radius, wide, seam = outline.housing_radius[0], outline.foot_radius, outline.seam[0]
     upright = np.eye(4)
     picture.lathe("body", drum(wide, 0.0, 0.2 * radius, 0.001, 0.06 * radius), upright)
-    shoulder = [(0.0, 0.1 * radius), (0.5 * (wide + radius), 0.1 * radius), (1.03 * radius, 0.36 * radius), (radius, 0.5 * radius)]
+    shoulder = [
+        (0.0, 0.1 * radius),
+        (0.5 * (wide + radius), 0.1 * radius),
+        (1.03 * radius, 0.36 * radius),
+        (radius, 0.5 * radius),
+    ]
     picture.lathe("body", [*shoulder, *_rounded(radius, seam - 0.002, 0.05 * radius), (0.0, seam - 0.002)], upright)
     if wide > 1.12 * radius:
         screws(picture, transform(np.eye(3), [0.0, 0.0, 0.2 * radius]), 0.92 * wide, 0.06 * radius, 0.07 * radius, 4)

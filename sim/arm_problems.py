@@ -1,0 +1,131 @@
+"""What makes an arm's file unusable although each of its values is in range by itself."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import msgspec
+import numpy as np
+
+from sim.arm import Arm, Sourced
+
+Problem = tuple[str, object, str]
+"""A field, its value, and what is allowed."""
+
+
+def problems(arm: Arm) -> list[Problem]:
+    """What the types cannot say: lengths, ranges between fields, tensors of real bodies. Empty for a usable arm."""
+    found = _lengths(arm)
+    return found or [*_assumed(arm), *_postures(arm), *_tensors(arm), *_curves(arm), *_shapes(arm)]
+
+
+def _lengths(arm: Arm) -> list[Problem]:
+    n = arm.n
+    if n == 0:
+        return [("chain.joints", [], "expected at least one joint")]
+    c, m, t, f, o = arm.chain, arm.motors, arm.transmissions, arm.frictions, arm.outline
+    lists: dict[str, Sequence[object]] = {
+        **{f"chain.{name}": getattr(c, name) for name in ("a", "d", "alpha", "home")},
+        **{f"masses.{name}": getattr(arm.masses, name) for name in ("mass", "com")},
+        "inertias.tensor": arm.inertias.tensor,
+        **{f"limits.{name}": getattr(arm.limits, name) for name in ("position", "speed", "acceleration", "torque")},
+        **{f"motors.{name}": getattr(m, name) for name in ("gear", "torque_constant", "current", "rotor_inertia", "ripple")},
+        **{f"transmissions.{name}": getattr(t, name) for name in ("stiffness", "stiffening", "damping")},
+        **{f"transmissions.{name}": getattr(t, name) for name in ("hysteresis_stiffness", "hysteresis_yield")},
+        **{f"frictions.{name}": getattr(f, name) for name in ("torque", "breakaway", "load", "presliding")},
+        **{f"thermals.{name}": getattr(arm.thermals, name) for name in ("capacity", "resistance")},
+        **{f"outline.{name}": getattr(o, name) for name in ("seam", "housing_radius", "tube_offset", "tube_radius")},
+    }
+    rows = {
+        **{f"masses.com[{k}]": (row, 3) for k, row in enumerate(arm.masses.com)},
+        **{f"inertias.tensor[{k}]": (row, 6) for k, row in enumerate(arm.inertias.tensor)},
+        **{f"frictions.torque[{k}]": (row, len(f.speed)) for k, row in enumerate(f.torque)},
+        **{f"shapes[{k}].start": (shape.start, 3) for k, shape in enumerate(arm.shapes)},
+        **{f"shapes[{k}].end": (shape.end, 3) for k, shape in enumerate(arm.shapes)},
+    }
+    found: list[Problem] = []
+    for name, value in lists.items():
+        if len(value) != n:
+            found.append((name, value, f"expected a list of {n}, one a joint"))
+    for name, (row, length) in rows.items():
+        if len(row) != length:
+            found.append((name, row, f"expected a list of {length}"))
+    return found
+
+
+def _groups(value: msgspec.Struct, path: str = "") -> Iterator[tuple[str, Sourced]]:
+    """All sourced groups below `value`, with their dotted paths."""
+    for name in value.__struct_fields__:
+        inner = getattr(value, name)
+        if isinstance(inner, Sourced):
+            yield path + name, inner
+        if isinstance(inner, msgspec.Struct):
+            yield from _groups(inner, f"{path}{name}.")
+
+
+def _assumed(arm: Arm) -> list[Problem]:
+    """Every name in an `assumed` list is a field of its group."""
+    found: list[Problem] = []
+    for path, group in _groups(arm):
+        allowed = [field for field in group.__struct_fields__ if field not in Sourced.__struct_fields__]
+        found += [
+            (f"{path}.assumed[{k}]", name, f"expected one of {', '.join(allowed) or 'nothing'}")
+            for k, name in enumerate(group.assumed)
+            if name not in allowed
+        ]
+    return found
+
+
+def _postures(arm: Arm) -> list[Problem]:
+    c = arm.chain
+    found: list[Problem] = []
+    for k, name in enumerate(c.joints):
+        if not name or name in c.joints[:k] or name in ("foot", "flange", "tool"):
+            found.append((f"chain.joints[{k}]", name, "expected names that differ, and not foot, flange or tool"))
+        if abs(c.home[k]) > arm.limits.position[k]:
+            found.append((f"chain.home[{k}]", c.home[k], f"expected within ±{arm.limits.position[k]:g} rad"))
+    if not 0 <= c.elbow < arm.n:
+        found.append(("chain.elbow", c.elbow, f"expected 0 to {arm.n - 1}"))
+    return found
+
+
+def _tensors(arm: Arm) -> list[Problem]:
+    """A body's principal moments are positive and none exceeds the sum of the others."""
+    found: list[Problem] = []
+    for k, (xx, yy, zz, xy, xz, yz) in enumerate(arm.inertias.tensor):
+        low, middle, high = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        if low <= 0 or high > low + middle:
+            value = ", ".join(f"{moment:.3g}" for moment in (low, middle, high))
+            found.append((f"inertias.tensor[{k}]", value, "expected principal moments > 0, each at most the sum of the others"))
+    return found
+
+
+def _curves(arm: Arm) -> list[Problem]:
+    f, t = arm.frictions, arm.transmissions
+    found: list[Problem] = []
+    if len(f.speed) < 2 or any(b <= a for a, b in pairwise(f.speed)):
+        found.append(("frictions.speed", f.speed, "expected at least 2 speeds, rising"))
+    for k in range(arm.n):
+        if any(b < a for a, b in pairwise(f.torque[k])):
+            found.append((f"frictions.torque[{k}]", f.torque[k], "expected torques that do not fall with speed"))
+        if f.breakaway[k] < f.torque[k][0] * 0.9:
+            found.append((f"frictions.breakaway[{k}]", f.breakaway[k], f"expected at least 0.9 times {f.torque[k][0]:g}"))
+        if t.hysteresis_stiffness[k] > 0 and t.hysteresis_yield[k] == 0:
+            found.append((f"transmissions.hysteresis_yield[{k}]", 0.0, "expected > 0 where hysteresis_stiffness is"))
+        full = arm.motors.gear[k] * arm.motors.torque_constant[k] * arm.motors.current[k]
+        if full < arm.limits.torque[k]:
+            allowed = f"expected a current for the torque limit {arm.limits.torque[k]:g} N·m, this gives {full:.3g}"
+            found.append((f"motors.current[{k}]", arm.motors.current[k], allowed))
+        if arm.sensors.current.range < arm.motors.current[k]:
+            allowed = f"expected at least the largest current {arm.motors.current[k]:g} A"
+            found.append(("sensors.current.range", arm.sensors.current.range, allowed))
+    if f.output_share > 1:
+        found.append(("frictions.output_share", f.output_share, "expected 0 to 1"))
+    return found
+
+
+def _shapes(arm: Arm) -> list[Problem]:
+    return [
+        (f"shapes[{k}].link", shape.link, f"expected -1 to {arm.n - 1}")
+        for k, shape in enumerate(arm.shapes)
+        if not -1 <= shape.link < arm.n
+    ]
