@@ -101,7 +101,11 @@ class Panel:
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self._facts = Html(gui)
         self.force = gui.add_slider("Hand force [N]", min=FORCE[0], max=FORCE[2], step=5.0, initial_value=FORCE[1])
-        with gui.add_folder("Simulation"):
+        self._log_panel = gui.add_panel()
+        with self._log_panel.add_tab("Events"):
+            self._events = Html(gui, svg.table(()))
+        self._sim_panel = gui.add_panel()
+        with self._sim_panel.add_tab("Simulation"):
             self.clock = gui.add_button_group("Clock", ("Run", "Pause", "Step"))
             self.speed = gui.add_slider("Speed", min=0.1, max=1.0, step=0.1, initial_value=1.0)
             self.restart = gui.add_button("Start over", color="gray")
@@ -112,15 +116,18 @@ class Panel:
         with self._stop_panel.add_tab("Safety"):
             self.stop = gui.add_button("EMERGENCY STOP", color=(201, 42, 42), icon=viser.Icon.ALERT_OCTAGON)
             self.reset = gui.add_button("Reset", color="gray", disabled=True)
-        self._style.content = svg.style(self.stop._impl.uuid, self.free_drive._impl.uuid, self.reset._impl.uuid)
-        self._log_panel = gui.add_panel()
-        with self._log_panel.add_tab("Events"):
-            self._events = Html(gui, svg.table(()))
+        self._style.content = svg.style(
+            self.stop._impl.uuid,
+            self.free_drive._impl.uuid,
+            self.restart._impl.uuid,
+            [button._impl.uuid for button in (self.leave, self.reset, self.restart)],
+        )
         gui.main_panel.dock_right()
         gui.main_panel.set_width(304)
         self._stop_panel.dock_below(gui.main_panel)
         self._log_panel.dock_left()
-        self._log_panel.set_width(260)
+        self._log_panel.set_width(264)
+        self._sim_panel.dock_below(self._log_panel)
         guard.for_anyone(self.stop)
         self._connect()
 

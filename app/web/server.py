@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import viser
 
-from app.checked import BadInput
+from app.bad_input import BadInput
 from app.library import mesh_path
 from app.web.control import Control
 from app.web.guard import LOOPBACK, Guard

@@ -16,6 +16,9 @@ class Colour(StrEnum):
     GREY = "#868e96"  # watching, waiting
 
 
+QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28)"
+"""How a button looks that needs no eye."""
+
 RADIUS = 26.0
 _AROUND = 2 * math.pi * RADIUS
 
@@ -60,7 +63,7 @@ def who(text: str, colour: Colour, button: str) -> str:
     return (
         f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
         f'<style>div:has(>[id="{button}"]){{margin:-36px 12px 6px auto!important;padding:0!important;width:76px;position:relative}}'
-        f'[id="{button}"]{{height:28px!important;font-size:12px;padding:0;border-radius:6px}}</style>'
+        f'[id="{button}"]{{height:28px!important;font-size:12px;padding:0;border-radius:6px;{QUIET}}}</style>'
     )
 
 
@@ -75,18 +78,20 @@ def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
     lines = "".join(
         f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>' for time, text, colour in rows
     )
-    return f'<div class="pd-log"><table>{lines}</table></div>' if lines else '<p class="pd-empty">Nothing has happened yet</p>'
+    return f'<div class="pd-events pd-log"><table>{lines}</table></div>' if lines else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
 
 
-def style(stop: str, free_drive: str, reset: str) -> str:
-    """The style sheet of the pendant; the arguments are the ids of its buttons.
+def style(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str:
+    """The style sheet of the pendant; the arguments are the ids of its controls, `quiet` those of the buttons that need no eye.
 
     The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
     gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
     """
-    main, low = f':has([id="{free_drive}"])', f':has([id="{stop}"])'
+    main, low, left = f':has([id="{free_drive}"])', f':has([id="{stop}"])', f':has([id="{restart}"])'
+    plain = ",".join(f'[id="{button}"]' for button in quiet)
     return f"""<style>
 {main}>{low}:not({main}){{flex:0 0 170px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
+:has(.pd-events)>{left}:not(:has(.pd-events)){{flex:0 0 262px!important}} {left}>:has(.pd-events):not({left}){{flex:1 1 0!important}}
 [style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
 .pd-light{{display:flex;align-items:center;gap:12px;margin:2px 12px 10px;padding:12px 14px;border-radius:8px;
   background:color-mix(in srgb,var(--c) 9%,transparent);border:1px solid color-mix(in srgb,var(--c) 35%,transparent)}}
@@ -116,5 +121,5 @@ def style(stop: str, free_drive: str, reset: str) -> str:
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 [id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
-[id="{reset}"]{{height:34px!important;border-radius:8px}}
+{plain}{{{QUIET};height:34px!important;border-radius:8px}}
 </style>"""
