@@ -1,6 +1,7 @@
 """Follows numbers that a session wants within bounds: quantities and displacements. `watch` picks the watch of an expectation."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.expectations import AnyExpectation, Displacement, Happens, Never, Period, State, Value
@@ -33,11 +34,6 @@ class BoundsWatch(Watch):
     max: float | None = field(kw_only=True)
     low: tuple[float, int] = (math.inf, 0)  # the smallest seen, and its tick
     high: tuple[float, int] = (-math.inf, 0)
-
-    def wants(self, tick: int) -> bool:
-        """See `Watch.wants`: a trigger may happen in the very tick, so only what is surely outside is spared."""
-        start = self.trigger.happened
-        return start is None or self.inside(tick)
 
     def number(self, value: float, tick: int) -> None:
         """Take in a number. One that is not finite counts as out of bounds."""
@@ -79,16 +75,16 @@ class ValueWatch(BoundsWatch):
     wanted: Value = field(kw_only=True)
     place: Triple | None = None  # of the flange, a tick before
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
-        assert snapshot is not None
-        estimate = snapshot.estimate
+        now = snapshot()
+        estimate = now.estimate
         match self.wanted.of:
             case "flange_speed":
-                now = point_of(snapshot, self.joints, "flange")
+                place = point_of(now, self.joints, "flange")
                 if self.place is not None:
-                    self.number(math.dist(now, self.place) / TICK, tick)
-                self.place = now
+                    self.number(math.dist(place, self.place) / TICK, tick)
+                self.place = place
             case "tcp_speed":
                 self.number(estimate.v_tcp, tick)
             case "elbow_speed":
@@ -102,7 +98,7 @@ class ValueWatch(BoundsWatch):
             case "user_torque":
                 self.number(math.hypot(*estimate.F_user[3:]), tick)
             case "payload_true":
-                self.number(snapshot.truth_payload_mass, tick)
+                self.number(now.truth_payload_mass, tick)
 
     def unit(self) -> str:
         """See `BoundsWatch.unit`."""
@@ -120,10 +116,9 @@ class DisplacementWatch(BoundsWatch):
     wanted: Displacement = field(kw_only=True)
     place: Triple | None = None  # of the part, at the interval's begin
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
-        assert snapshot is not None
-        now = point_of(snapshot, self.joints, self.wanted.part)
+        now = point_of(snapshot(), self.joints, self.wanted.part)
         if self.place is None:
             self.place = now
         way = [b - a for a, b in zip(self.place, now, strict=True)]
@@ -154,7 +149,8 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
     trigger = Trigger(expectation.after, expectation.nth)
     match expectation:
         case State(at=float(time)):
-            return StateWatch(joints, trigger, ticks(time), ticks(time), wanted=expectation)
+            moment = max(ticks(time), 1 if expectation.after is None else 0)  # there is no tick before the first
+            return StateWatch(joints, trigger, moment, moment, wanted=expectation)
         case State(by=float(time)):
             return StateWatch(joints, trigger, 0, ticks(time), wanted=expectation)
         case State():

@@ -1,5 +1,6 @@
 """Runs a session without a window: as fast as it goes, or in real time; the same either way, and the same for a seed."""
 
+import functools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -50,7 +51,7 @@ class Outcome:
 
 def simulate(prepared: Prepared) -> Simulation:
     """A simulation of what a session or a configuration asks for."""
-    return Simulation(prepared.arm, prepared.scenario, prepared.settings, prepared.program)
+    return Simulation(prepared.arm, prepared.scenario, prepared.settings)
 
 
 def run(
@@ -75,15 +76,15 @@ def run(
         BadInput: the file cannot be written.
     """
     joints = prepared.arm.chain.joints
-    timeline = Timeline(session.timeline, joints)
+    timeline = Timeline(session.timeline, joints, prepared.program)
     watches = [watch(expectation, joints) for expectation in session.expectations]
     outcome = Outcome(seconds=session.duration)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
-        for tick in range(ticks(session.duration)):
+        for tick in range(1, ticks(session.duration) + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
-            snapshot = simulation.snapshot() if any(each.wants(tick) for each in watches) else None
+            snapshot = functools.cache(simulation.snapshot)  # one copy a tick, and none where nobody looks
             for each in watches:
                 each.see(tick, decision, snapshot)
             file.write(tick, decision.events)
@@ -93,7 +94,7 @@ def run(
             if tick % ticks(0.1) == 0:
                 progress(tick * TICK)
             if realtime:
-                time.sleep(max(0.0, begun + (tick + 1) * TICK - time.perf_counter()))
+                time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
     outcome.took = time.perf_counter() - begun
     outcome.verdicts = [each.verdict() for each in watches]
     for place, action in timeline.unstarted():

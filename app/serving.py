@@ -30,7 +30,7 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: ended.set())
-    loop = Loop(simulate(prepared))
+    loop = Loop(lambda: simulate(prepared))
     loop.start()
     try:
         served = _serve(loop, prepared, host, port, usual, open_browser)

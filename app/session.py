@@ -49,7 +49,6 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
     world: list[AnyObject] | str = []  # objects, or the name of a bundled world
-    program: Steps | None = None
 
 
 class Session(Setup, frozen=True, kw_only=True):
@@ -57,6 +56,7 @@ class Session(Setup, frozen=True, kw_only=True):
 
     title: str
     duration: Annotated[float, Meta(gt=0, le=3600)]  # [s]
+    program: Steps | None = None  # loaded at the start
     timeline: list[AnyAction] = []
     expectations: list[AnyExpectation] = []
 
@@ -114,9 +114,10 @@ def prepare(setup: Setup, where: str) -> Prepared:
     if setup.posture is not None:
         _check_posture(setup.posture, arm, where)
     _check_features(setup.features, where)
-    if setup.program is not None and (why := misfit(setup.program, arm.n)) is not None:
+    program = setup.program if isinstance(setup, Session) else None
+    if program is not None and (why := misfit(program, arm.n)) is not None:
         raise BadInput(where, "program", ABSENT, why)
-    prepared = Prepared(arm, _scenario(setup, where), _applied(Settings(), setup.settings, where, "settings"), setup.program)
+    prepared = Prepared(arm, _scenario(setup, where), _applied(Settings(), setup.settings, where, "settings"), program)
     if isinstance(setup, Session):
         _check_session(setup, prepared, where)
     return prepared
@@ -194,6 +195,10 @@ def _check_session(session: Session, prepared: Prepared, where: str) -> None:
         field = f"expectations[{i}]"
         if (ident := expectation.planned()) is not None:
             raise _planned(where, field, ident)
+        for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
+            moment = getattr(expectation, name, None)
+            if expectation.after is None and moment is not None and moment > session.duration:
+                raise BadInput(where, f"{field}.{key}", moment, f"at most the duration, {session.duration:g} s")
         if isinstance(expectation, Value) and expectation.joint is not None:
             _one_of(expectation.joint, arm.chain.joints, where, f"{field}.joint")
         elif isinstance(expectation, Displacement):

@@ -41,6 +41,5 @@ def show(session: Session, outcome: Outcome, out: Path) -> None:
             table.add_row(mark, escape(verdict.expected), escape(verdict.seen))
         console.print(table)
     failed = sum(not verdict.passed for verdict in outcome.verdicts)
-    console.print(
-        f"{len(outcome.verdicts) - failed} expectations met, {failed} not; {len(outcome.events)} events in {escape(str(out / 'events.jsonl'))}"
-    )
+    console.print(f"{len(outcome.verdicts) - failed} expectations met, {failed} not")
+    console.print(f"{len(outcome.events)} events in {escape(str(out / 'events.jsonl'))}")

@@ -21,6 +21,7 @@ from app.triggers import Trigger
 from pendant.decision import Decision
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import TICK
+from pendant.program import Program as Steps
 from pendant.settings import ticks
 from sim.changes import AnyChange
 from sim.desk import Wishes
@@ -43,7 +44,8 @@ class Entry:
     def due(self) -> int | None:
         """The first tick in which the action acts, None while that is not known."""
         if self.action.at is not None:
-            return ticks(self.action.at)
+            # A hand can take hold of an arm whose place is known, that is after one tick.
+            return max(ticks(self.action.at), 2 if isinstance(self.action, Hold) else 1)
         if self.trigger.happened is None:
             return None
         # What the robot did in a tick is seen after it, so the next tick is the first that can answer.
@@ -62,16 +64,18 @@ class _Tick:
 
 
 class Timeline:
-    """Plays a list of actions. Call `wishes` before each tick and `see` after it, with tick counted from 0.
+    """Plays a list of actions. Call `wishes` before each tick and `see` after it, with ticks counted from 1, as in events.
 
     Args:
         actions: checked by app.session.prepare.
         joints: the arm's joint names, base to flange.
+        program: loaded in the first tick.
     """
 
-    def __init__(self, actions: Sequence[Action], joints: list[str]) -> None:
+    def __init__(self, actions: Sequence[Action], joints: list[str], program: Steps | None = None) -> None:
         self._entries = [Entry(action, Trigger(action.after, action.nth)) for action in actions]
         self._joints = joints
+        self._program = program
         self._held: set[Button] = set()
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
@@ -86,7 +90,8 @@ class Timeline:
             if entry.start is None:
                 entry.start = tick
             self._act(entry, tick - entry.start, now, snapshot)
-        inputs = Inputs(frozenset(self._held), frozenset(now.released), tuple(now.commands), now.settings)
+        program, self._program = self._program, None
+        inputs = Inputs(frozenset(self._held), frozenset(now.released), tuple(now.commands), now.settings, program)
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:

@@ -68,7 +68,7 @@ def parse(text: str) -> tuple[str, str]:
 
 @dataclass(slots=True)
 class Trigger:
-    """Watches for the `nth` time of `after`; with None it has happened at tick 0."""
+    """Watches for the `nth` time of `after`; with None it has happened at tick 0, the start."""
 
     after: str | None
     nth: int = 1

@@ -1,5 +1,6 @@
 """Follows what a session expects through its run. A failed expectation says what was expected, what was seen, and when."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.expectations import Happens, Never, Period, State
@@ -20,7 +21,7 @@ class Verdict:
 
 @dataclass(slots=True)
 class Watch:
-    """Base: one expectation, followed through a run. Call `see` once a tick, with tick counted from 0, then `verdict` once."""
+    """Base: one expectation, followed through a run. Call `see` once a tick, with ticks counted from 1, then `verdict` once."""
 
     joints: list[str]
     trigger: Trigger
@@ -28,12 +29,8 @@ class Watch:
     end: int | None = None  # ticks after the trigger; None: the session's end
     last: int = -1  # the last tick seen
 
-    def wants(self, tick: int) -> bool:
-        """Whether `see` needs a snapshot of `tick`. The answer is right only before that tick's `see`."""
-        return False
-
-    def see(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
-        """Take in one tick."""
+    def see(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+        """Take in one tick; `snapshot` copies it, and is called only where the tick is in the interval and it is needed."""
         self.trigger.see(tick, decision)
         self.last = tick
         if self.inside(tick):
@@ -44,7 +41,7 @@ class Watch:
         start = self.trigger.happened
         return start is not None and start + self.begin <= tick and (self.end is None or tick <= start + self.end)
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """Take in one tick of the interval."""
         raise NotImplementedError
 
@@ -86,7 +83,7 @@ class StateWatch(Watch):
     broken: int | None = None  # first in which it did not
     seen: str = ""  # the last state in the interval, or the first wrong one
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
         wanted = self.wanted
         holds = (
@@ -127,7 +124,7 @@ class EventWatch(Watch):
     wanted: Happens | Never = field(kw_only=True)
     found: list[int] = field(default_factory=list)
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
         self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
 
@@ -157,7 +154,7 @@ class PeriodWatch(Watch):
     began: int | None = None
     before: int = 0  # the remainder a tick before
 
-    def look(self, tick: int, decision: Decision, snapshot: Snapshot | None) -> None:
+    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
         left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
         if self.began is not None and (left is None or left > self.before):
