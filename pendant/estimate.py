@@ -36,3 +36,4 @@ class Estimate:
     v_tcp: float  # speed of the tool centre point [m/s]
     v_elbow: float  # speed of the elbow [m/s]
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
+    move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given

@@ -243,7 +243,8 @@ class Supervisor:
                 events.append(Event(Kind.SETTING_REFUSED, estimate.tick, values))
                 continue
             new = value_of(self.settings, name)
-            events.append(Event(Kind.SETTING_CHANGED, estimate.tick, {"name": name, "old": old, "new": new}))
+            if new != old:
+                events.append(Event(Kind.SETTING_CHANGED, estimate.tick, {"name": name, "old": old, "new": new}))
         self._refresh()
 
     def _refresh(self) -> None:
@@ -286,6 +287,7 @@ class Supervisor:
             law=law,
             move=sequencer.move,
             gain=self.settings.free_drive.gain if free.use_wrench else 0.0,
+            force_cap=self.settings.free_drive.force_cap,
             baseline=free.baseline,
             periods=periods,
             events=tuple(events),

@@ -80,3 +80,10 @@ class Desk:
             self._settings = {}
             self._changes = []
             return wishes
+
+    def clear(self) -> None:
+        """Forget every wish, touches too: after a reset nobody holds anything."""
+        with self._lock:
+            self._held, self._released = set(), set()
+            self._commands, self._settings, self._changes = [], {}, []
+            self._touches.clear()

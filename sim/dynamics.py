@@ -1,5 +1,7 @@
 """The controller's rigid-body model: Pinocchio, with the links as believed and the payload as configured."""
 
+import math
+
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
@@ -54,10 +56,10 @@ class Dynamics:
         jacobian = pin.getFrameJacobian(model, data, self._flange, pin.LOCAL_WORLD_ALIGNED)
         return placement.translation, placement.rotation, jacobian
 
-    def elbow_speed(self, qd: Array) -> float:
-        """Speed of the elbow [m/s], after `update`."""
-        linear = pin.getJointJacobian(self.model, self.data, self._elbow, pin.LOCAL_WORLD_ALIGNED)[:3] @ qd
-        return float(linear @ linear) ** 0.5
+    def elbow_speed(self) -> float:
+        """Speed of the elbow [m/s] in the motion that `inverse` was last given."""
+        x, y, z = self.data.v[self._elbow].linear.tolist()
+        return math.sqrt(x * x + y * y + z * z)
 
     def gravity(self, q: Array) -> Array:
         """Gravity torque (n,) [N·m]."""

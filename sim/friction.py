@@ -1,5 +1,6 @@
 """True joint friction: a curve through the measured points, with load, temperature and wear. Known to the plant alone."""
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,17 +35,33 @@ class Friction:
         self.factor = np.ones(arm.n)
         """Wear or grease: a factor a joint, 1 when new."""
 
-    def input_side(self, speed: Array, tau_J: Array, temperature: Array) -> Array:
-        """Friction torque (n,) [N·m], never negative, at |speed| [rad/s], transmission torque [N·m] and temperature [°C].
+    def input_side(self, speed: Array, tau_J: Array, temperature: Array, out: Array) -> None:
+        """Put the friction torque (n,) [N·m], never negative, into `out`.
 
-        Below the slowest measured speed the curve goes straight to the breakaway torque; above the fastest it stays level.
+        Below the slowest measured speed the curve goes straight (in the root of the speed) to the breakaway torque; above
+        the fastest it stays level.
+
+        Args:
+            speed: of the motors (n,) [rad/s].
+            tau_J: transmission torque (n,) [N·m].
+            temperature: of the joints (n,) [°C].
+            out: (n,).
         """
-        root = np.sqrt(np.abs(speed))
-        inside = np.minimum(np.maximum(root, self._root_low), self._root_high)
-        curve = self._coefficients[0]
-        for row in self._coefficients[1:]:
-            curve = curve * inside + row
-        rest = np.minimum(root / self._root_low, 1.0)
-        curve = self.breakaway + rest * (curve - self.breakaway)
-        warmth = np.maximum(1.0 + self._per_kelvin * (temperature - self._reference), 0.2)
-        return (curve * warmth + self._load * np.abs(tau_J)) * self.factor
+        roots = (self._root_low, self._root_high)
+        warmth = (self._reference, self._per_kelvin)
+        _input_side(speed, tau_J, temperature, self._coefficients, roots, self.breakaway, warmth, self._load, self.factor, out)
+
+
+@numba.njit(cache=True)
+def _input_side(speed, tau_J, temperature, coefficients, roots, breakaway, warmth, load, factor, out) -> None:
+    low, high = roots
+    reference, per_kelvin = warmth
+    for i in range(out.size):
+        root = np.sqrt(abs(speed[i]))
+        inside = min(max(root, low), high)
+        curve = coefficients[0, i]
+        for k in range(1, coefficients.shape[0]):
+            curve = curve * inside + coefficients[k, i]
+        curve = breakaway[i] + min(root / low, 1.0) * (curve - breakaway[i])
+        heat = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
+        out[i] = (curve * heat + load[i] * abs(tau_J[i])) * factor[i]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 import mujoco
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -47,19 +48,29 @@ class Plant:
         self._springs = np.array([model.tendon(f"spring/{name}").id for name in joints])
         self._slips = np.array([model.tendon(f"hysteresis/{name}").id for name in joints])
         self._slip_state = model.tendon_plasticadr[self._slips]
+        self._dof_q = np.array([model.joint(f"q/{name}").dofadr[0] for name in joints])
+        self._dof_theta = np.array([model.joint(f"theta/{name}").dofadr[0] for name in joints])
+        values = arm.transmissions
+        self._stiffness, self._cubic = np.array(values.stiffness), np.array(values.stiffening)
+        self._damping, self._slip_stiffness = np.array(values.damping), np.array(values.hysteresis_stiffness)
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
         self._parts["tool"] = self._parts["flange"]
         self._payload = model.body("payload").id
         self._objects = np.array([model.body(f"object/{item.name}").id for item in scenario.world], dtype=int)
+        self._tip = model.geom("shape/tool").id
+        self._pairs = [[model.pair(f"shape/tool {item.name}").id] for item in scenario.world]
         self._history = self._history_indices()
-        self._rows = np.empty(self._history.shape)
         self.flange = np.zeros(3 * len(SENSORS))
         self.temperature = np.full(arm.n, arm.frictions.temperature)
-        self._ambient = arm.thermals.ambient
-        self.tau_J = np.zeros(arm.n)
-        self.friction_in = np.zeros(arm.n)
+        self.ambient = arm.thermals.ambient
+        self._heat = np.zeros(arm.n)
+        self.q, self.theta, self.qd, self.theta_d = np.zeros((4, arm.n))
+        self.tau_J, self.friction_in = np.zeros((2, arm.n))
+        self._springs_of = (self._stiffness, self._cubic, self._damping, self._slip_stiffness)
+        self._addresses = np.stack([self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state])
+        self._bias = model.actuator_biasprm
         self.touched: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...] = ()
         self.load = scenario.payload_true
         self.fallen: Array | None = None
@@ -86,13 +97,13 @@ class Plant:
             mujoco.mj_forward(self.model, data)
             for i in slides:
                 at = self.model.jnt_qposadr[i]
-                data.qpos[at] = -data.qfrc_bias[self.model.jnt_dofadr[i]] / self.model.jnt_stiffness[i, 0]
-            data.qpos[self._at_theta] = posture + self._deflection(data.qfrc_bias[self._at_q])
-        data.plastic[self._slip_state] = data.ten_length[self._slips]
-        self.q, self.theta = data.qpos[self._at_q], data.qpos[self._at_theta]
-        self.qd, self.theta_d = data.qvel[self._at_q], data.qvel[self._at_theta]
+                data.qpos[at] = -data.qfrc_bias[self.model.jnt_dofadr[i]] / self.model.jnt_stiffness[i]
+            data.qpos[self._at_theta] = posture + self._deflection(data.qfrc_bias[self._dof_q])
         mujoco.mj_forward(self.model, data)
-        self._read_tau()
+        # The hysteresis springs start relaxed: both ends of their slack range sit at the present deflection.
+        data.plastic[self._slip_state] = data.plastic[self._slip_state + 1] = data.ten_length[self._slips]
+        mujoco.mj_forward(self.model, data)
+        self._read()
         self.flange[:] = self.data.sensordata[self._sensor_order()]
 
     def _deflection(self, torque: Array) -> Array:
@@ -117,11 +128,198 @@ class Plant:
             rows[:, 3 * j : 3 * j + 3] = start + np.arange(3 * k).reshape(k, 3)
         return rows
 
-    def _read_tau(self) -> None:
-        length, speed = self.data.ten_length[self._springs], self.data.ten_velocity[self._springs]
-        values = self.model
-        stiffness = values.tendon_stiffness[self._springs]
-        poly = values.tendon_stiffnesspoly[self._springs]
-        main = stiffness * length + poly[:, 0] * length * np.abs(length) + poly[:, 1] * length**3
-        slip = values.tendon_stiffness[self._slips] * (length - self.data.plastic[self._slip_state])
-        self.tau_J = main + values.tendon_damping[self._springs] * speed + slip
+    def advance(self, motor_torque: Array, touches: Sequence[Touch] = ()) -> None:
+        """Advance by one control tick.
+
+        Args:
+            motor_torque: true motor torque referred to the output (n,) [N·m], constant over the tick.
+            touches: what hands do to parts during the tick.
+
+        Raises:
+            KeyError: a touch names a part that does not exist; `parts` has those that do.
+        """
+        model, data = self.model, self.data
+        self._touch(touches)
+        if self._objects.size:
+            self._move_world()
+        self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
+        _set_friction(self._bias, self._rubs, self.friction_in)
+        _scatter(data.qfrc_applied, self._dof_theta, motor_torque)
+        mujoco.mj_step(model, data, nstep=self.step.substeps)
+        _mean(data.history, self._history, self.flange)
+        self._read()
+        self.tick += 1
+        _add_loss(self._heat, self.friction_in, self.theta_d)
+        if self.tick % WARMTH_TICKS == 0:
+            self._warm()
+        if self.fallen is not None:
+            self._fall()
+
+    def _touch(self, touches: Sequence[Touch]) -> None:
+        data = self.data
+        for body in self._pushed:
+            data.xfrc_applied[body] = 0.0
+        self._pushed.clear()
+        if not touches:
+            self.touched = ()
+            return
+        seen = []
+        for touch in touches:
+            body = self._parts[touch.part]
+            point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ touch.point
+            if isinstance(touch, Pull):
+                force, torque = self._hand_force(touch, body, point), np.zeros(3)
+            else:
+                force, torque = np.array(touch.force), np.array(touch.torque)
+            data.xfrc_applied[body, :3] += force
+            data.xfrc_applied[body, 3:] += torque + np.cross(point - data.xipos[body], force)
+            self._pushed.add(body)
+            seen.append((touch.part, tuple(point.tolist()), tuple(force.tolist()), tuple(torque.tolist())))
+        self.touched = tuple(seen)
+
+    def _hand_force(self, pull: Pull, body: int, point: Array) -> Array:
+        """Spring and damper of the virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
+        speed = self.velocity(body, point)
+        force = HAND_STIFFNESS * (np.array(pull.target) - point) - HAND_DAMPING * speed
+        size = math.sqrt(float(force @ force))
+        return force * (pull.cap / size) if size > pull.cap else force
+
+    def velocity(self, body: int, point: Array) -> Array:
+        """True linear velocity (3,) in W of a point of a MuJoCo body [m/s]."""
+        six = np.empty(6)
+        mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_BODY, body, six, 0)
+        return six[3:] + np.cross(six[:3], point - self.data.xpos[body])
+
+    def _move_world(self) -> None:
+        """Drive moving objects, let snap-fits go, choose the friction under the tool: what objects need once a tick."""
+        model, data, time = self.model, self.data, self.data.time
+        for k, item in enumerate(self.scenario.world):
+            if isinstance(item, Moving):
+                rate = 2.0 * math.pi / item.period
+                middle = time + 0.5 * self.step.tick
+                amplitude = data.xmat[self._objects[k]].reshape(3, 3).T @ item.amplitude
+                dofs = slice(model.body_dofadr[self._objects[k]], model.body_dofadr[self._objects[k]] + 3)
+                at = slice(model.jnt_qposadr[model.body_jntadr[self._objects[k]]], None)
+                data.qpos[at][:3] = amplitude * math.sin(rate * time)
+                data.qvel[dofs] = amplitude * rate * math.cos(rate * middle)
+            elif isinstance(item, SnapFit):
+                dof = int(model.body_dofadr[self._objects[k]])
+                given = data.qpos[model.jnt_qposadr[model.body_jntadr[self._objects[k]]]] > SNAP_SLIP
+                model.dof_frictionloss[dof] = item.force * (SNAP_REST if given else 1.0)
+            elif isinstance(item, TwoFrictions):
+                R = data.xmat[self._objects[k]].reshape(3, 3)
+                tip = data.geom_xpos[self._tip] - data.xpos[self._objects[k]]
+                friction = item.friction_beyond if float(R[:, 0] @ tip) > 0.0 else item.friction
+                model.pair_friction[self._pairs[k], :2] = friction
+
+    def _warm(self) -> None:
+        """First-order warming of each joint by its own friction loss."""
+        thermals = self.arm.thermals
+        span = WARMTH_TICKS * self.step.tick
+        loss = self._heat / WARMTH_TICKS
+        outflow = (self.temperature - self.ambient) / np.array(thermals.resistance)
+        self.temperature = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
+        self._heat[:] = 0.0
+
+    def attach(self, load: Load) -> None:
+        """Make `load` the true payload from now on; what was attached before is gone."""
+        self.load = load
+        self.fallen = None
+        body = load_body(load)
+        values, axes = np.linalg.eigh(body.inertia)
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] *= -1.0
+        model = self.model
+        model.body_mass[self._payload] = body.mass
+        model.body_ipos[self._payload] = body.com
+        model.body_inertia[self._payload] = values
+        model.body_iquat[self._payload] = quaternion_from_matrix(axes)
+        mujoco.mj_setConst(model, self._scratch)
+        set_contact_stiffness(model, self.scenario.world)
+
+    def drop(self) -> None:
+        """Let the payload fall: it leaves with the flange's velocity and is a picture from then on."""
+        if self.load.mass == 0.0:
+            return
+        position = self.data.xipos[self._payload].copy()
+        self._fall_speed = self.velocity(self._parts["flange"], position)
+        orientation = self.data.xquat[self._payload].copy()
+        self.attach(Load(mass=0.0))
+        self.fallen = np.concatenate([position, orientation])
+
+    def _fall(self) -> None:
+        assert self.fallen is not None
+        radius = 0.05
+        if self.fallen[2] > radius:
+            self._fall_speed[2] -= GRAVITY * self.step.tick
+            self.fallen[:3] += self._fall_speed * self.step.tick
+            self.fallen[2] = max(self.fallen[2], radius)
+
+    def move_object(self, name: str, position: Sequence[float]) -> None:
+        """Put the world object `name` at `position` (3,) in W [m]."""
+        body = self.model.body(f"object/{name}").id
+        self.model.body_pos[body] = position
+
+    def poses(self) -> Array:
+        """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
+        return np.hstack([self.data.xpos[self._links], self.data.xquat[self._links]])
+
+    def object_poses(self) -> Array:
+        """Poses (m, 7) in W of the world objects."""
+        return np.hstack([self.data.xpos[self._objects], self.data.xquat[self._objects]])
+
+    def payload_pose(self) -> Array | None:
+        """Pose (7,) in W of the payload's centre, attached or fallen; None without one."""
+        if self.fallen is not None:
+            return self.fallen.copy()
+        if self.load.mass == 0.0:
+            return None
+        return np.concatenate([self.data.xipos[self._payload], self.data.xquat[self._payload]])
+
+    def _read(self) -> None:
+        """Gather the state at the tick's end, and the true transmission torque."""
+        data = self.data
+        state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
+        _gather(*state, self._addresses, *self._springs_of, self.q, self.theta, self.qd, self.theta_d, self.tau_J)
+
+
+# Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
+
+
+@numba.njit(cache=True)
+def _gather(  # noqa: PLR0913, PLR0917 - all of a tick in one call
+    qpos, qvel, length, rate, plastic, at, stiffness, cubic, damping, slip_stiffness, q, theta, qd, theta_d, tau_J
+) -> None:
+    for i in range(q.size):
+        q[i], theta[i] = qpos[at[0, i]], qpos[at[1, i]]
+        qd[i], theta_d[i] = qvel[at[2, i]], qvel[at[3, i]]
+        x = length[at[4, i]]
+        slip = slip_stiffness[i] * (length[at[5, i]] - plastic[at[6, i]])
+        tau_J[i] = x * (stiffness[i] + cubic[i] * x * x) + damping[i] * rate[at[4, i]] + slip
+
+
+@numba.njit(cache=True)
+def _set_friction(bias, rows, torque) -> None:
+    for i in range(rows.size):
+        bias[rows[i], 3] = bias[rows[i], 4] = torque[i]
+
+
+@numba.njit(cache=True)
+def _scatter(target, at, values) -> None:
+    for i in range(at.size):
+        target[at[i]] = values[i]
+
+
+@numba.njit(cache=True)
+def _mean(history, at, out) -> None:
+    for j in range(out.size):
+        total = 0.0
+        for k in range(at.shape[0]):
+            total += history[at[k, j]]
+        out[j] = total / at.shape[0]
+
+
+@numba.njit(cache=True)
+def _add_loss(heat, torque, speed) -> None:
+    for i in range(heat.size):
+        heat[i] += abs(torque[i] * speed[i])

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -70,7 +71,6 @@ class Sensors:
             for start, channels in ((3 * n, force_torque.force), (3 * n + 3, force_torque.torque)):
                 part = slice(start, start + 3)
                 self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
-        self._per_quantum = 1.0 / self._quantum
         self._gain = np.ones(size)
         self._bias = np.zeros(size)
         self._drifts = np.zeros(size)
@@ -84,9 +84,7 @@ class Sensors:
         self._temperature_sensor = sensors.temperature
         self._temperature = np.zeros(n)
         self._line: list[Array] = []
-        self._raw = np.empty(size)
-        self._ripple_angle = calibration.ripple_phase.T.copy()
-        self._ripple = calibration.ripple.T.copy()
+        self._ripple, self._ripple_phase = calibration.ripple, calibration.ripple_phase
         self._any_out = bool(self._out.any())
 
     def _set(self, name: str, channels: Channels | None) -> None:
@@ -113,28 +111,17 @@ class Sensors:
             plant: the true arm.
             current: true motor currents (n,) [A] during that tick.
         """
-        n, raw, row = self._n, self._raw, plant.tick % NOISE_BLOCK
+        row = plant.tick % NOISE_BLOCK
         if row == 0 or not self._line:
             self._rng.standard_normal(out=self._noise)
             self._noise *= self._sigma
         if plant.tick % TEMPERATURE_TICKS == 0 or not self._line:
             self._read_temperature(plant)
-        raw[:n] = plant.theta
-        raw[n : 2 * n] = plant.q
-        turn = self._ripple * np.sin(self._harmonics * plant.q + self._ripple_angle)
-        raw[n : 2 * n] += turn[0]
-        raw[n : 2 * n] += turn[1]
-        raw[2 * n : 3 * n] = current
-        raw[3 * n : 3 * n + 6] = self._calibration.wrench_gain @ plant.flange[:6]
-        raw[3 * n + 6 :] = plant.flange[6:]
-        self._bias += self._drifts * plant.step.tick
-        value = raw + self._bias
-        value += self._noise[row] * self._gain
-        value *= self._per_quantum
-        np.rint(value, out=value)
-        value *= self._quantum
-        np.minimum(value, self._range, out=value)
-        np.maximum(value, -self._range, out=value)
+        value = np.empty_like(self._bias)
+        truth = (plant.theta, plant.q, current, plant.flange)
+        distortion = (self._calibration.wrench_gain, self._ripple, self._ripple_phase)
+        channel = (self._bias, self._drifts, self._noise[row], self._gain, self._quantum, self._range)
+        _measure(truth, distortion, channel, plant.step.tick, value)
         if self._any_out:
             value[self._out] = np.nan
         line = self._line
@@ -142,8 +129,6 @@ class Sensors:
         if len(line) > LATENCY + 1:
             line.pop(0)
         return self._sample(line[0])
-
-    _harmonics = np.array([[1.0], [2.0]])
 
     def _read_temperature(self, plant: Plant) -> None:
         sensor = self._temperature_sensor
@@ -173,3 +158,26 @@ class Sensors:
             wrench,
             acceleration,
         )
+
+
+@numba.njit(cache=True)
+def _measure(truth, distortion, channel, tick, out) -> None:
+    theta, q, current, flange = truth
+    wrench_gain, ripple, phase = distortion
+    bias, drift, noise, noise_gain, quantum, span = channel
+    n = theta.size
+    for i in range(n):
+        out[i] = theta[i]
+        out[n + i] = q[i] + ripple[i, 0] * np.sin(q[i] + phase[i, 0]) + ripple[i, 1] * np.sin(2.0 * q[i] + phase[i, 1])
+        out[2 * n + i] = current[i]
+    for j in range(6):
+        total = 0.0
+        for k in range(6):
+            total += wrench_gain[j, k] * flange[k]
+        out[3 * n + j] = total
+    for j in range(6, flange.size):
+        out[3 * n + j] = flange[j]
+    for k in range(out.size):
+        bias[k] += drift[k] * tick
+        value = np.rint((out[k] + bias[k] + noise[k] * noise_gain[k]) / quantum[k]) * quantum[k]
+        out[k] = min(max(value, -span[k]), span[k])

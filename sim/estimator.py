@@ -1,0 +1,194 @@
+"""From measurements to what the controller knows: speeds, accelerations, transmission torque, external wrench."""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.estimate import Estimate
+from pendant.modes import TICK
+from sim.arm import Arm
+from sim.calibration import Calibration
+from sim.chain import Body
+from sim.dynamics import Dynamics
+from sim.frames import skew
+from sim.sensors import Sample
+
+Array = NDArray[np.float64]
+
+SPEED_BANDWIDTH = 60.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
+TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
+
+
+def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
+    """Gains alpha, beta [1/s], gamma [1/s²] of a third-order tracking filter with one triple pole at `bandwidth` [Hz].
+
+    Source: the fading-memory filter of order two (alpha-beta-gamma filter), pole r = exp(-2 pi f T):
+    alpha = 1 - r³, beta = 1.5 (1 - r²)(1 - r) / T, gamma = (1 - r)³ / T².
+    """
+    r = math.exp(-2.0 * math.pi * bandwidth * TICK)
+    return 1.0 - r**3, 1.5 * (1.0 - r * r) * (1.0 - r) / TICK, (1.0 - r) ** 3 / (TICK * TICK)
+
+
+class Estimator:
+    """The controller's view of the arm, n joints, in B.
+
+    Args:
+        arm: the arm's numbers.
+        calibration: error of the constants that the controller uses.
+        dynamics: the controller's rigid model, which holds the configured payload.
+        tcp: tool centre point in F (3,) [m].
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+        n, motors, spring = arm.n, arm.motors, arm.transmissions
+        self._dynamics, self._tcp = dynamics, tcp
+        # The hysteresis element counts as a spring here: the controller does not know on which branch it is.
+        stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
+        torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
+        self._constants = (torque_constant, stiffness, np.array(spring.stiffening) * calibration.stiffness, np.array(spring.damping))
+        self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
+        self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
+        self.tau_m, self.tau_J, self.tau_ext = np.zeros((3, n))
+        self._started = False
+        self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
+        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
+        self.tick = 0
+        self.set_load(dynamics.load)
+
+    def set_load(self, load: Body) -> None:
+        """Take `load` (in F) as everything beyond the flange."""
+        cross = skew(load.com)
+        about_flange = load.inertia - load.mass * cross @ cross
+        self._load = (load.mass, np.array(load.com), about_flange)
+
+    def update(self, sample: Sample, move_done: int, move_refused: str) -> Estimate:
+        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`.
+
+        Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
+        """
+        dynamics = self._dynamics
+        self.tick += 1
+        theta, q = self._theta, self._q
+        if sample.joints_valid:
+            if not self._started:
+                theta[0], q[0] = sample.theta, sample.q
+                self._started = True
+            _follow(sample.theta, sample.q, sample.current, self._gains, self._constants, theta, q, self.tau_m, self.tau_J)
+            self.q = sample.q
+        qd = q[1]
+        self.tau_ext = dynamics.inverse(self.q, qd, q[2]) - self.tau_J
+        v_elbow = dynamics.elbow_speed()
+        p, R, self.jacobian = dynamics.update(self.q)
+        F_user, v_F = np.zeros(6), np.empty(6)
+        v_tcp = _tcp_speed(self.jacobian, qd, R, self._tcp, v_F)
+        if sample.wrench_valid:
+            if sample.acceleration_valid:
+                force, gyro = sample.acceleration_tool, sample.gyro_tool
+                _differentiate(gyro, self._gyro, self._turn, self._smoothing)
+                turn = self._turn
+            else:
+                force, turn = dynamics.specific_force(self.q, qd, q[2])
+                gyro = R.T @ v_F[3:]
+            _user_wrench(sample.wrench, force, gyro, turn, *self._load, R, F_user)
+        return Estimate(
+            self.tick,
+            sample.joints_valid,
+            sample.wrench_valid,
+            sample.acceleration_valid,
+            self.q,
+            qd,
+            q[2],
+            theta[0],
+            theta[1],
+            self.tau_m,
+            self.tau_J,
+            self.tau_ext,
+            sample.wrench,
+            F_user,
+            sample.acceleration_flange,
+            p,
+            R,
+            v_F,
+            v_tcp,
+            v_elbow,
+            move_done,
+            move_refused,
+        )
+
+
+@numba.njit(cache=True)
+def _track(measured, gains, state, i) -> None:
+    alpha, beta, gamma = gains
+    coasting = state[1, i] + TICK * state[2, i]
+    predicted = state[0, i] + TICK * state[1, i] + 0.5 * TICK * TICK * state[2, i]
+    error = measured - predicted
+    state[0, i] = predicted + alpha * error
+    state[1, i] = coasting + beta * error
+    state[2, i] += gamma * error
+
+
+@numba.njit(cache=True)
+def _follow(theta_measured, q_measured, current, gains, constants, theta, q, tau_m, tau_J) -> None:
+    """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3)."""
+    torque_constant, stiffness, stiffening, damping = constants
+    for i in range(tau_m.size):
+        _track(theta_measured[i], gains[0], theta, i)
+        _track(q_measured[i], gains[1], q, i)
+        tau_m[i] = torque_constant[i] * current[i]
+        x = theta_measured[i] - q_measured[i]
+        tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i])
+
+
+@numba.njit(cache=True)
+def _tcp_speed(jacobian, qd, R, tcp, v_F) -> float:
+    """Fill the flange velocity (6,) and return the speed of the tool centre point [m/s]."""
+    for j in range(6):
+        total = 0.0
+        for i in range(qd.size):
+            total += jacobian[j, i] * qd[i]
+        v_F[j] = total
+    x = R[0, 0] * tcp[0] + R[0, 1] * tcp[1] + R[0, 2] * tcp[2]
+    y = R[1, 0] * tcp[0] + R[1, 1] * tcp[1] + R[1, 2] * tcp[2]
+    z = R[2, 0] * tcp[0] + R[2, 1] * tcp[1] + R[2, 2] * tcp[2]
+    vx = v_F[0] + v_F[4] * z - v_F[5] * y
+    vy = v_F[1] + v_F[5] * x - v_F[3] * z
+    vz = v_F[2] + v_F[3] * y - v_F[4] * x
+    return np.sqrt(vx * vx + vy * vy + vz * vz)
+
+
+@numba.njit(cache=True)
+def _differentiate(gyro, last, turn, smoothing) -> None:
+    for k in range(3):
+        turn[k] += smoothing * ((gyro[k] - last[k]) / TICK - turn[k])
+        last[k] = gyro[k]
+
+
+@numba.njit(cache=True)
+def _cross(a, b):  # noqa: ANN202 - a tuple of three floats
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@numba.njit(cache=True)
+def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
+    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
+
+    The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
+    c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
+    """
+    tangential = _cross(turn, com)
+    normal = _cross(gyro, _cross(gyro, com))
+    lever = _cross(com, force)
+    spin, torque = np.empty(3), np.empty(3)
+    for k in range(3):
+        spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
+        torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
+    whirl = _cross(gyro, spin)
+    rest = np.empty(6)
+    for k in range(3):
+        rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]
+        rest[3 + k] = mass * lever[k] + torque[k] + whirl[k] - measured[3 + k]
+    for k in range(3):
+        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
+        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]

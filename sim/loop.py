@@ -1,0 +1,152 @@
+"""The paced loop: ticks a simulation in a thread of its own, in step with the clock, and never chases a debt."""
+
+import gc
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+
+from pendant.events import Event, Kind
+from pendant.modes import TICK, TICK_RATE
+from sim.desk import Desk
+from sim.simulation import Simulation
+from sim.snapshot import Snapshot
+
+SNAPSHOT_TICKS = 8
+"""A snapshot every 16 ms: one for each frame of a 60 Hz picture."""
+
+DEBT = 0.05
+"""Lateness up to which the loop catches up [s]; what is beyond is dropped and told as an event."""
+
+RATE_TICKS = TICK_RATE // 2  # the actual rate is a mean over this many ticks
+QUIET_TICKS = TICK_RATE  # dropped debt is told at most once a second
+SWITCH_INTERVAL = 5e-4  # [s] Python's default of 5 ms would let a busy web thread hold up two ticks
+PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
+
+
+class Loop:
+    """Runs `make()`'s simulation in real time, or slower.
+
+    Args:
+        make: builds the simulation; called again by `reset`, so that a reset leads back to the scenario's very start.
+    """
+
+    def __init__(self, make: Callable[[], Simulation]) -> None:
+        self._make = make
+        self.simulation = make()
+        self.desk = Desk()
+        self.speed = 1.0
+        self.paused = False
+        self.actual_rate = 0.0
+        self.lateness: deque[float] = deque(maxlen=60 * TICK_RATE)  # of each tick's start [s], for measurements
+        self.dropped = 0.0  # debt dropped so far [s]
+        self._steps = 0
+        self._reset = False
+        self._stop = threading.Event()
+        self._events: list[Event] = []
+        self._snapshot: Snapshot | None = None
+        self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
+        self.failure: BaseException | None = None
+
+    @property
+    def seed(self) -> int:
+        """Seed of the running scenario."""
+        return self.simulation.scenario.seed
+
+    def start(self) -> None:
+        """Start the thread; returns once the first tick is done."""
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._do_tick()
+        gc.collect()
+        gc.freeze()  # the model and the modules never become garbage: collections stay short
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop the thread and wait for it."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def latest(self) -> Snapshot:
+        """The newest snapshot.
+
+        Raises:
+            RuntimeError: the loop has not been started, or its thread died of an error.
+        """
+        if self.failure is not None:
+            raise RuntimeError(f"the simulation stopped: {self.failure}") from self.failure
+        if self._snapshot is None:
+            raise RuntimeError("the loop has not been started")
+        return self._snapshot
+
+    def events(self, since: int) -> list[Event]:
+        """Events from index `since` on, in order; a reset keeps those that were."""
+        return self._events[since:]
+
+    def step_once(self) -> None:
+        """While paused: do one tick."""
+        self._steps += 1
+
+    def reset(self) -> None:
+        """Go back to the scenario's start at the next tick."""
+        self._reset = True
+
+    def _do_tick(self) -> None:
+        decision = self.simulation.tick(self.desk.take())
+        if decision.events:
+            self._events.extend(decision.events)
+        if self.simulation.plant.tick % SNAPSHOT_TICKS == 1 or self.paused:
+            self._snapshot = self.simulation.snapshot()
+
+    def _run(self) -> None:
+        try:
+            self._pace()
+        except BaseException as error:
+            self.failure = error
+            raise
+
+    def _pace(self) -> None:
+        due = time.perf_counter()
+        since, ticks, quiet = due, 0, 0
+        while not self._stop.is_set():
+            if self._reset:
+                self._reset = False
+                self.simulation = self._make()
+                self.desk.clear()
+                self._do_tick()
+                due = time.perf_counter()
+            if self.paused:
+                self.actual_rate = 0.0
+                if self._steps > 0:
+                    self._steps -= 1
+                    self._do_tick()
+                else:
+                    time.sleep(PAUSE_NAP)
+                due = since = time.perf_counter()
+                ticks = 0
+                continue
+            length = TICK / self.speed
+            now = time.perf_counter()
+            if now < due:
+                time.sleep(due - now)
+                now = time.perf_counter()
+            late = now - due
+            self.lateness.append(late)
+            due += length
+            if late > DEBT:
+                self.dropped += late
+                due = now + length
+                if quiet <= 0:
+                    quiet = QUIET_TICKS
+                    self._tell(Event(Kind.OVERRUN, self.simulation.plant.tick, {"late": round(1000.0 * late, 1)}))
+            quiet -= 1
+            self._do_tick()
+            ticks += 1
+            if ticks == RATE_TICKS:
+                now = time.perf_counter()
+                self.actual_rate = ticks * TICK / (now - since)
+                since, ticks = now, 0
+
+    def _tell(self, event: Event) -> None:
+        self._events.append(event)

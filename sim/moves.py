@@ -1,0 +1,184 @@
+"""References that a joint controller follows: a posture kept, a stop, a joint move, a straight line."""
+
+import math
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import ruckig
+from numpy.typing import NDArray
+
+from pendant.modes import TICK
+from pendant.program import JointMove, LinearMove
+from sim.dynamics import Dynamics
+from sim.frames import matrix_from_quaternion, quaternion_from_matrix
+
+Array = NDArray[np.float64]
+
+JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
+SAMPLES = 24  # places along a line where joint speeds are checked beforehand
+LINE_GAIN = 20.0  # pulls the line's reference back onto the line [1/s]
+
+
+class Reference(NamedTuple):
+    """What the joints should do now: angles, speeds, accelerations, each (n,)."""
+
+    q: Array
+    qd: Array
+    qdd: Array
+
+
+class Motion(Protocol):
+    """Something that yields a reference a tick until it is done."""
+
+    done: bool
+
+    def step(self) -> Reference:
+        """The reference of the next tick."""
+        ...
+
+
+class MoveRefused(ValueError):
+    """A move cannot be done; the text says why, with value and limit."""
+
+
+class Stop:
+    """Decelerate from a motion as fast as the limits allow, all joints along the path they were on, then stand.
+
+    Every joint keeps its share of the speed, so the tool stays on its path; the slowest joint's limit decides.
+    """
+
+    def __init__(self, q: Array, qd: Array, deceleration: Array) -> None:
+        self._q, self._qd = q.copy(), qd.copy()
+        self._left = float(np.max(np.abs(qd) / deceleration))  # time to rest [s]
+        self._rate = qd / self._left if self._left > 0.0 else np.zeros_like(qd)
+        self._zero = np.zeros_like(qd)
+        self.done = self._left <= 0.0
+
+    def step(self) -> Reference:
+        """The reference of the next tick; at rest it stays where it is."""
+        if self.done:
+            return Reference(self._q, self._zero, self._zero)
+        span = min(TICK, self._left)
+        self._q = self._q + span * self._qd - 0.5 * span * span * self._rate
+        self._qd = self._qd - span * self._rate
+        self._left -= span
+        if self._left <= 0.0:
+            self._qd = self._zero
+            self.done = True
+        return Reference(self._q, self._qd, -self._rate)
+
+
+class JointTrajectory:
+    """All joints to a target at rest, at the same time, within speed, acceleration and jerk limits (ruckig)."""
+
+    def __init__(self, q: Array, move: JointMove, speed: Array, acceleration: Array) -> None:
+        n = q.size
+        entry = ruckig.InputParameter(n)
+        entry.current_position, entry.target_position = q.tolist(), list(move.q)
+        entry.max_velocity = (move.speed * speed).tolist()
+        entry.max_acceleration = (move.acceleration * acceleration).tolist()
+        entry.max_jerk = (move.acceleration * acceleration / JERK_TIME).tolist()
+        self._trajectory = ruckig.Trajectory(n)
+        result = ruckig.Ruckig(n).calculate(entry, self._trajectory)
+        if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+            raise MoveRefused(f"joint move: no trajectory to {list(move.q)} ({result.name})")
+        self._time = 0.0
+        self.done = False
+
+    def step(self) -> Reference:
+        """The reference of the next tick; at the end it stays at the target."""
+        self._time += TICK
+        self.done = self._time >= self._trajectory.duration
+        position, velocity, acceleration = self._trajectory.at_time(min(self._time, self._trajectory.duration))
+        return Reference(np.array(position), np.array(velocity), np.array(acceleration))
+
+
+class LinearTrajectory:
+    """The tool centre point along a straight line, turning about one axis, at rest at both ends.
+
+    Path speed and acceleration follow ruckig in one dimension; joint angles follow from resolved motion rates
+    (qd = J^-1 (v + k e)) against the model's own kinematics. Beforehand the line is walked through once: a joint that would
+    exceed its speed slows the whole move down, a line through a singularity or out of reach is refused.
+    """
+
+    def __init__(
+        self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, speed: Array, acceleration: Array, position: Array
+    ) -> None:
+        self._dynamics, self._tcp = dynamics, tcp
+        p, R, _ = dynamics.update(q)
+        self._start, self._R = p + R @ tcp, R.copy()
+        self._way = np.array(move.position) - self._start
+        self._turn = _rotation_vector(R.T @ matrix_from_quaternion(move.quaternion))
+        length, angle = float(np.linalg.norm(self._way)), float(np.linalg.norm(self._turn))
+        span = max(length, 0.3 * angle)  # a pure turn counts as an arc of 0.3 m radius
+        self._q, self._qd = q.copy(), np.zeros_like(q)
+        self._time, self.done = 0.0, span < 1e-6
+        self._trajectory = ruckig.Trajectory(1)
+        if self.done:
+            return
+        fraction = min(1.0, self._slowest(q, speed, acceleration, position, move, span))
+        entry = ruckig.InputParameter(1)
+        entry.current_position, entry.target_position = [0.0], [1.0]
+        entry.max_velocity = [fraction * move.speed / span]
+        entry.max_acceleration = [fraction**2 * move.acceleration / span]
+        entry.max_jerk = [fraction**3 * move.acceleration / span / JERK_TIME]
+        ruckig.Ruckig(1).calculate(entry, self._trajectory)
+
+    def _slowest(self, q: Array, speed: Array, acceleration: Array, position: Array, move: LinearMove, span: float) -> float:
+        """Factor on the path's speed that keeps every joint within its speed and acceleration, and the line in reach."""
+        q, worst, previous = q.copy(), 1e-9, np.zeros_like(q)
+        for k in range(SAMPLES):
+            rate = self._solve(q, (k + 0.5) / SAMPLES, 1.0)
+            ratio = np.abs(rate) * (move.speed / span) / speed
+            bend = np.abs(rate - previous) * SAMPLES * (move.speed / span) ** 2 / acceleration if k else np.zeros_like(q)
+            worst = max(worst, float(ratio.max()), math.sqrt(float(bend.max())))
+            previous = rate
+            q = q + rate / SAMPLES
+            beyond = np.abs(q) - position
+            if beyond.max() > 0.0:
+                joint = int(np.argmax(beyond))
+                raise MoveRefused(f"linear move: joint {joint + 1} would reach {q[joint]:.3f} rad, allowed ±{position[joint]:.3f}")
+        p, R, _ = self._dynamics.update(q)
+        miss = float(np.linalg.norm(p + R @ self._tcp - self._start - self._way))
+        if worst > 20.0 or miss > 0.02:
+            raise MoveRefused(f"linear move: the line passes a singularity or leaves the reach (ends {1000 * miss:.0f} mm off)")
+        return 1.0 / worst
+
+    def _solve(self, q: Array, s: float, rate: float) -> Array:
+        """Joint speeds (n,) for path position s in 0..1 and its rate [1/s]."""
+        p, R, jacobian = self._dynamics.update(q)
+        lever = R @ self._tcp
+        at_tcp = jacobian.copy()
+        at_tcp[:3] += np.cross(jacobian[3:].T, lever).T
+        twist = np.empty(6)
+        twist[:3] = rate * self._way + LINE_GAIN * (self._start + s * self._way - p - lever)
+        error = _rotation_vector(R.T @ self._R @ _rotation(s * self._turn))
+        twist[3:] = self._R @ (rate * self._turn) + LINE_GAIN * (R @ error)
+        # Damping only bites near a singularity, where the plan has been refused or slowed down already.
+        return np.linalg.solve(at_tcp.T @ at_tcp + 1e-8 * np.eye(q.size), at_tcp.T @ twist)
+
+    def step(self) -> Reference:
+        """The reference of the next tick; at the end it stays at the target."""
+        if not self.done:
+            self._time += TICK
+            self.done = self._time >= self._trajectory.duration
+            position, velocity, _ = self._trajectory.at_time(min(self._time, self._trajectory.duration))
+            qd = self._solve(self._q, position[0], velocity[0])
+            qdd = (qd - self._qd) / TICK
+            self._q, self._qd = self._q + TICK * qd, qd
+            return Reference(self._q, qd, qdd)
+        return Reference(self._q, np.zeros_like(self._q), np.zeros_like(self._q))
+
+
+def _rotation_vector(R: Array) -> Array:
+    """Axis times angle (3,) [rad] of a rotation matrix."""
+    w, *v = quaternion_from_matrix(R)
+    size = math.sqrt(sum(float(x) ** 2 for x in v))
+    return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
+
+
+def _rotation(vector: Array) -> Array:
+    """Rotation matrix (3, 3) of axis times angle (3,) [rad]."""
+    angle = float(np.linalg.norm(vector))
+    half = 0.5 * angle
+    return matrix_from_quaternion([math.cos(half), *(vector * (math.sin(half) / angle if angle > 1e-12 else 0.5))])

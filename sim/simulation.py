@@ -1,0 +1,140 @@
+"""One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
+
+import copy
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.decision import Decision
+from pendant.settings import Settings
+from pendant.supervisor import Supervisor
+from sim import calibration
+from sim.arm import Arm
+from sim.chain import Body, chain, load_body, plate_body, tool_body
+from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.controller import Controller
+from sim.desk import Wishes
+from sim.dynamics import Dynamics
+from sim.estimator import Estimator
+from sim.model import Step
+from sim.plant import Plant
+from sim.scenario import Load, Scenario
+from sim.sensors import Sensors
+from sim.snapshot import Snapshot
+
+Array = NDArray[np.float64]
+
+
+class Simulation:
+    """An arm, its world, its sensors and its controller. Same arguments and same wishes give the same ticks, bit for bit.
+
+    Args:
+        arm: the arm's numbers.
+        scenario: mounting, tool, payload, world, seed.
+        settings: the pendant's.
+        step: the physics step.
+    """
+
+    def __init__(self, arm: Arm, scenario: Scenario, settings: Settings, step: Step | None = None) -> None:
+        self.arm, self.scenario = arm, scenario
+        errors, noise = np.random.default_rng(scenario.seed).spawn(2)
+        calibrated = calibration.nominal(arm) if scenario.mismatch == "nominal" else calibration.draw(arm, errors)
+        self.plant = Plant(arm, scenario, step)
+        self.sensors = Sensors(arm, calibrated, noise)
+        rigid = chain(arm)
+        tcp = np.array(scenario.tool.tcp if scenario.tool is not None else [0.0, 0.0, 0.0])
+        self._carried = plate_body(arm) + tool_body(scenario.tool)
+        self.configured = scenario.payload_configured
+        links = calibration.believed(rigid, calibrated)
+        self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
+        self.estimator = Estimator(arm, calibrated, self.dynamics, tcp)
+        self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints))
+        self.controller = Controller(arm, calibrated, self.dynamics, tcp)
+        self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
+        self._current = self.dynamics.gravity(self.plant.q) / self._motor
+        self._decision: Decision | None = None
+        self._estimate = None
+
+    def _load(self) -> Body:
+        return self._carried + load_body(self.configured)
+
+    @property
+    def tick_count(self) -> int:
+        """Ticks done so far."""
+        return self.plant.tick
+
+    @property
+    def settings(self) -> Settings:
+        """The pendant's settings as they are now."""
+        return self.supervisor.settings
+
+    def tick(self, wishes: Wishes) -> Decision:
+        """One control tick; the only path that data takes (docs/architecture.md).
+
+        Raises:
+            KeyError: a touch names a part that does not exist.
+        """
+        for change in wishes.changes:
+            self.apply(change)
+        sample = self.sensors.read(self.plant, self._current)
+        estimate = self.estimator.update(sample, self.controller.move_done, self.controller.refusal)
+        decision = self.supervisor.step(estimate, wishes.inputs)
+        self._current = self.controller.update(estimate, decision, self.estimator.jacobian)
+        self.plant.advance(self._current * self._motor, wishes.touches)
+        self._estimate, self._decision = estimate, decision
+        return decision
+
+    def configure_payload(self, load: Load) -> None:
+        """Make `load` the payload that the controller believes in."""
+        self.configured = load
+        body = self._load()
+        self.dynamics.set_load(body)
+        self.estimator.set_load(body)
+
+    def apply(self, change: AnyChange) -> None:
+        """Change the true arm or world, as a laboratory does.
+
+        Raises:
+            KeyError: the change names a joint or object that does not exist.
+        """
+        plant = self.plant
+        if isinstance(change, AttachPayload):
+            plant.attach(change.load)
+        elif isinstance(change, DropPayload):
+            plant.drop()
+        elif isinstance(change, SensorFault):
+            self.sensors.fault(change)
+        elif isinstance(change, Friction):
+            plant.friction.factor[self._joints(change.joint)] = change.factor
+        elif isinstance(change, Temperature):
+            plant.temperature[self._joints(change.joint)] = change.celsius
+        elif isinstance(change, MoveObject):
+            plant.move_object(change.name, change.position)
+
+    def _joints(self, name: str | None) -> slice | int:
+        if name is None:
+            return slice(None)
+        if name not in self.arm.chain.joints:
+            raise KeyError(f"joint {name!r}: there are {', '.join(self.arm.chain.joints)}")
+        return self.arm.chain.joints.index(name)
+
+    def snapshot(self) -> Snapshot:
+        """What pictures and logs need of the last tick, copied.
+
+        Raises:
+            RuntimeError: no tick has been done yet.
+        """
+        if self._decision is None or self._estimate is None:
+            raise RuntimeError("a snapshot needs at least one tick")
+        plant = self.plant
+        return Snapshot(
+            plant.tick,
+            self._decision,
+            copy.deepcopy(self._estimate),
+            plant.poses(),
+            plant.object_poses(),
+            plant.payload_pose(),
+            plant.load.mass,
+            self.configured.mass,
+            plant.touched,
+        )
