@@ -67,14 +67,14 @@ class Html:
     """A piece of HTML that is sent only when it differs from what is shown."""
 
     def __init__(self, gui: viser.GuiApi, content: str = "", order: float | None = None) -> None:
-        self._shown = content
+        self.shown = content
         self._handle = gui.add_html(content, order=order)
 
     def show(self, content: str) -> bool:
         """Show `content`; True if that changed anything."""
-        if content == self._shown:
+        if content == self.shown:
             return False
-        self._shown = content
+        self.shown = content
         self._handle.content = content
         return True
 
@@ -93,23 +93,23 @@ class Panel:
         gui = server.gui
         gui.set_panel_label(title)
         self._style = gui.add_html("")
-        self._light = Html(gui)
+        self.light = Html(gui)
         self.free_drive = gui.add_button("Hold for free-drive", color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
-        self._rings = Html(gui)
-        self._note = Html(gui)
+        self.rings = Html(gui)
+        self.note = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True)
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
-        self._facts = Html(gui)
+        self.facts = Html(gui)
         self.force = gui.add_slider("Hand force [N]", min=FORCE[0], max=FORCE[2], step=5.0, initial_value=FORCE[1])
         self._log_panel = gui.add_panel()
         with self._log_panel.add_tab("Events"):
-            self._events = Html(gui, svg.table(()))
+            self.events = Html(gui, svg.table(()))
         self._sim_panel = gui.add_panel()
         with self._sim_panel.add_tab("Simulation"):
             self.clock = gui.add_button_group("Clock", ("Run", "Pause", "Step"))
             self.speed = gui.add_slider("Speed", min=0.1, max=1.0, step=0.1, initial_value=1.0)
             self.restart = gui.add_button("Start over", color="gray")
-            self._rates = Html(gui)
+            self.rates = Html(gui)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
         # so that a held button beside it could swallow the stop of a second finger.
         self._stop_panel = gui.add_panel()
@@ -143,18 +143,23 @@ class Panel:
         if decision.phase is Phase.ACTIVATION:
             word, colour = "Keep holding", Colour.BLUE
         changed = [
-            self._light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
-            self._rings.show(svg.rings(self._ring(p.name, p.ticks, p.total, colour) for p in decision.periods)),
-            self._facts.show(svg.facts(self._numbers(snapshot))),
-            self._rates.show(svg.facts(self._pace(snapshot))),
+            self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
+            self.rings.show(svg.rings(self._ring(p.name, p.ticks, p.total, colour) for p in decision.periods)),
+            self.facts.show(svg.facts(self._numbers(snapshot))),
+            self.rates.show(svg.facts(self._pace(snapshot))),
             _enable(self.leave, decision.mode is Mode.FREE_DRIVE),
             _enable(self.reset, decision.mode is Mode.STOP),
         ]
         if fresh or not self._message_shown:
             self._message_shown = True
-            changed.append(self._note.show(self._message()))
-            changed.append(self._events.show(svg.table(_line(event) for event in reversed(self._log))))
+            changed.append(self.note.show(self._message()))
+            changed.append(self.events.show(svg.table(_line(event) for event in reversed(self._log))))
         return any(changed)
+
+    def fail(self, reason: str) -> None:
+        """Say that the simulation is no more."""
+        self.light.show(svg.light("FAULT", "Stopped", "Unknown", Colour.RED))
+        self.note.show(svg.note("The simulation ended", f"{reason}. Start the program again.", Colour.RED))
 
     def let_go(self, client: int) -> None:
         """Release the button that `client` holds, if it does."""

@@ -1,9 +1,11 @@
 """The web app as a whole: one viser server behind the guard, one thread that draws."""
 
+import io
 import socket
 import threading
 import webbrowser
 from collections.abc import Mapping
+from contextlib import redirect_stdout
 
 import viser
 
@@ -31,7 +33,7 @@ class Served:
     def __init__(self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], host: str, port: int) -> None:
         self._loop = loop
         self.guard = Guard(Operator())
-        with self.guard.installed():
+        with self.guard.installed(), _quiet():
             self.server = viser.ViserServer(host=host, port=port, verbose=False)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194))
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
@@ -56,13 +58,18 @@ class Served:
         """Stop serving; connections are closed, and what they held is released."""
         self._closing.set()
         self._painter.join()
-        self.server.stop()
+        with _quiet():
+            self.server.stop()
 
     def _paint(self) -> None:
         frame = 0
         shown = -1
         while not self._closing.wait(FRAME):
-            snapshot = self._loop.latest()
+            try:
+                snapshot = self._loop.latest()
+            except RuntimeError as failure:
+                self.panel.fail(str(failure))
+                return
             if snapshot.tick != shown:
                 self.scene.show(snapshot)
                 shown = snapshot.tick
@@ -118,6 +125,11 @@ def serve(loop: Running, arm: Arm, scenario: Scenario, host: str = "127.0.0.1", 
     if open_browser:
         webbrowser.open(served.url)
     return served
+
+
+def _quiet() -> redirect_stdout[io.StringIO]:
+    """viser announces itself and its end on the terminal, also when it is told not to."""
+    return redirect_stdout(io.StringIO())
 
 
 def _must_be_free(host: str, port: int) -> None:

@@ -1,0 +1,180 @@
+"""What the pendant shows of a snapshot and its events, and what its controls do."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.web.server import Served, serve
+from app.web.svg import Colour
+from pendant.decision import Remaining
+from pendant.events import Kind
+from pendant.inputs import Button, Command
+from pendant.modes import Mode, Phase, Safety
+from sim.scenario import Scenario
+from tests.app.web.fake_loop import ARM, FakeLoop
+from tests.app.web.raw_client import RawClient, until
+
+Join = Callable[[], RawClient]
+
+
+@pytest.fixture
+def still(loop: FakeLoop) -> Iterator[Served]:
+    """A web app whose painter does not run, so that the test alone brings the pendant up to date."""
+    app = serve(loop, ARM, Scenario())
+    app._closing.set()
+    app._painter.join()
+    yield app
+    app.close()
+
+
+@pytest.mark.parametrize(
+    ("mode", "safety", "phase", "periods", "words", "colour"),
+    [
+        (Mode.TEACH, Safety.NORMAL, Phase.OFF, (), ("TEACH", "Ready", "Normal"), Colour.GREEN),
+        (Mode.NORMAL, Safety.REDUCED, Phase.OFF, (), ("NORMAL", "Holding still", "Reduced"), Colour.GREEN),
+        (Mode.TEACH, Safety.NORMAL, Phase.ACTIVATION, (Remaining("activation", 200, 500),), ("Keep holding", "0.4"), Colour.BLUE),
+        (Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, (), ("FREE-DRIVE",), Colour.BLUE),
+        (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 500, 1500),), ("1.0", "Free-drive"), Colour.BLUE),
+        (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 499, 1500),), ("About to end",), Colour.AMBER),
+        (Mode.FREE_DRIVE, Safety.NORMAL, Phase.RESTART, (Remaining("restart", 10, 1500),), ("About to end",), Colour.AMBER),
+        (Mode.TEACH, Safety.NORMAL, Phase.OFF, (Remaining("cool-down", 10, 1000),), ("Ready", "Cool-down"), Colour.GREEN),
+        (Mode.STOP, Safety.EMERGENCY_STOP, Phase.OFF, (), ("STOP", "Stopped", "Emergency stop"), Colour.RED),
+    ],
+)
+def test_the_light_and_the_rings_say_what_holds(
+    loop: FakeLoop,
+    still: Served,
+    mode: Mode,
+    safety: Safety,
+    phase: Phase,
+    periods: tuple[Remaining, ...],
+    words: tuple[str, ...],
+    colour: Colour,
+) -> None:
+    loop.mode, loop.safety, loop.phase, loop.periods = mode, safety, phase, periods
+    still.panel.show(loop.latest())
+    shown = still.panel.light.shown + still.panel.rings.shown
+    for word in words:
+        assert word in shown
+    assert f"--c:{colour.value}" in still.panel.light.shown
+
+
+def test_every_mode_and_safety_mode_has_words(loop: FakeLoop, still: Served) -> None:
+    for loop.mode in Mode:
+        for loop.safety in Safety:
+            still.panel.show(loop.latest())
+            assert loop.mode.replace("_", "-") in still.panel.light.shown
+
+
+def test_what_does_not_change_is_not_sent(loop: FakeLoop, still: Served) -> None:
+    assert still.panel.show(loop.latest())
+    assert not still.panel.show(loop.latest())
+    loop.note(Kind.RESET)
+    assert still.panel.show(loop.latest())
+    assert not still.panel.show(loop.latest())
+
+
+def test_a_refusal_shows_its_reason_and_guidance_until_something_else_does(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.REFUSED_MOVING, joint="elbow", value=0.25, limit=0.01, time=0.1)
+    loop.note(Kind.RESET)
+    still.panel.show(loop.latest())
+    assert "Free-drive refused: the arm moves" in still.panel.note.shown
+    assert "Joint elbow at 0.250 rad/s, limit 0.010 rad/s" in still.panel.note.shown
+    loop.note(Kind.LEFT_PERIOD, limit=3.0)
+    still.panel.show(loop.latest())
+    assert "nobody moved the arm" in still.panel.note.shown
+
+
+def test_the_log_is_newest_first_and_escaped(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.PROGRAM_STARTED, name="<b>evil</b>")
+    loop.tick = 1000
+    loop.note(Kind.RESET)
+    still.panel.show(loop.latest())
+    shown = still.panel.events.shown
+    assert shown.index("Reset to TEACH") < shown.index("&lt;b&gt;evil&lt;/b&gt;")
+    assert "<b>evil" not in shown
+    assert "2.00 s" in shown
+
+
+def test_leave_and_reset_are_there_when_they_can_do_something(loop: FakeLoop, still: Served) -> None:
+    for mode, leave, reset in ((Mode.TEACH, False, False), (Mode.FREE_DRIVE, True, False), (Mode.STOP, False, True)):
+        loop.mode = mode
+        still.panel.show(loop.latest())
+        assert (not still.panel.leave.disabled, not still.panel.reset.disabled) == (leave, reset)
+        assert not still.panel.stop.disabled
+
+
+def test_a_dead_simulation_is_a_fault(still: Served) -> None:
+    still.panel.fail("the simulation stopped: no more")
+    assert "FAULT" in still.panel.light.shown
+    assert "no more" in still.panel.note.shown
+
+
+def test_the_button_holds_and_its_click_lets_go(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    uuid = served.panel.free_drive._impl.uuid
+    client.hold(uuid)
+    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.held, "held")
+    client.set(uuid, value=True)
+    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "released")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "mode", "command"),
+    [
+        ("stop", True, Mode.TEACH, Command.EMERGENCY_STOP),
+        ("reset", True, Mode.STOP, Command.RESET),
+        ("leave", True, Mode.FREE_DRIVE, Command.LEAVE_FREE_DRIVE),
+        ("mode", "NORMAL", Mode.TEACH, Command.NORMAL),
+        ("mode", "TEACH", Mode.NORMAL, Command.TEACH),
+    ],
+)
+def test_a_press_is_a_command(served: Served, join: Join, loop: FakeLoop, name: str, value: object, mode: Mode, command: Command) -> None:
+    client = join()
+    loop.mode = mode
+    control = getattr(served.panel, name)
+    until(lambda: not control.disabled, "the control is enabled")
+    client.set(control._impl.uuid, value=value)
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.commands == (command,), "the command")
+
+
+def test_the_clock_is_paused_stepped_slowed_and_set_back(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    panel = served.panel
+    client.set(panel.clock._impl.uuid, value="Step")
+    until(lambda: loop.paused and loop.steps == 1, "a step")
+    client.set(panel.clock._impl.uuid, value="Run")
+    until(lambda: not loop.paused, "running")
+    client.set(panel.clock._impl.uuid, value="Pause")
+    until(lambda: loop.paused, "paused")
+    client.set(panel.speed._impl.uuid, value=0.3)
+    until(lambda: loop.speed == 0.3, "slower")
+    client.set(panel.restart._impl.uuid, value=True)
+    until(lambda: loop.resets == 1, "set back")
+
+
+def test_control_is_taken_shown_and_given_back(served: Served, join: Join, loop: FakeLoop) -> None:
+    first, second = join(), join()
+    strips = served.control._strips
+    until(lambda: len(strips) == 2, "both have a strip")
+    assert "Nobody has control" in strips[0].text.shown
+    first.set(strips[0].button._impl.uuid, value=True)
+    until(lambda: "You have control" in strips[0].text.shown and "Client 1 has control" in strips[1].text.shown, "client 1 has it")
+    until(lambda: strips[1].button.disabled, "nobody can take it")
+    first.drag("start")
+    until(lambda: bool(loop.desk.take().touches), "a touch")
+    first.set(strips[0].button._impl.uuid, value=True)
+    until(lambda: served.guard.operator.holder is None, "given back")
+    assert loop.desk.take().touches == ()
+    until(lambda: not strips[1].button.disabled, "it can be taken")
+    second.set(strips[1].button._impl.uuid, value=True)
+    until(lambda: "You have control" in strips[1].text.shown, "client 2 has it")
+
+
+def test_the_strip_of_another_client_cannot_be_pressed(served: Served, join: Join) -> None:
+    join()
+    second = join()
+    until(lambda: len(served.control._strips) == 2, "both have a strip")
+    second.set(served.control._strips[0].button._impl.uuid, value=True)
+    until(lambda: served.guard.refused["unknown control"] == 1, "refused")
+    assert served.guard.operator.holder is None
