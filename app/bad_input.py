@@ -19,8 +19,10 @@ class BadInput(Exception):
         self.allowed = allowed
 
     def __str__(self) -> str:
-        shown = "" if self.value is ABSENT else f" = {_shown(self.value)}" if self.field else f" {_shown(self.value)}"
-        return " ".join(f"{self.where}: {self.field}{shown}: {self.allowed}".replace(": :", ":").split())
+        what = [self.field] if self.field else []
+        what += [] if self.value is ABSENT else [shown(self.value)]
+        parts = [self.where, " = ".join(what), self.allowed]
+        return " ".join(": ".join(part for part in parts if part).split())
 
 
 class _Absent:
@@ -32,7 +34,15 @@ ABSENT = _Absent()
 """The value of a `BadInput` where there is none to show."""
 
 
-def _shown(value: object) -> str:
-    text = value.decode("latin-1").encode("unicode_escape").decode() if isinstance(value, bytes) else str(value)
-    text = " ".join(text.split()) if text.strip() else repr(text)
+def shown(value: object) -> str:
+    """A value as one short line, in the words of a file: null, true, and quotes where a text could pass for something else."""
+    if isinstance(value, bytes):
+        text = value.decode("latin-1").encode("unicode_escape").decode()
+    elif value is None or isinstance(value, bool):
+        text = {None: "null", True: "true", False: "false"}[value]
+    else:
+        text = " ".join(str(value).split())
+        if isinstance(value, str) and (not text or text in ("null", "true", "false") or text[0] in "+-.0123456789"):
+            text = f"'{text}'"
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     return text if len(text) <= 80 else f"{text[:77]}..."

@@ -28,7 +28,9 @@ def explained(error: msgspec.ValidationError, raw: object, kind: Any, where: str
         allowed = sorted({name for struct in _matching(structs, value) for name in _names(struct)})
         near = difflib.get_close_matches(unknown[1], allowed, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
-        return BadInput(where, _join(field, unknown[1]), ABSENT, f"unknown field, {hint}expected one of {', '.join(allowed)}")
+        return BadInput(
+            where, _join(field, unknown[1] or "''"), ABSENT, f"unknown field, {hint}expected one of {', '.join(allowed)}"
+        )
     if missing := re.search(r"missing required field `(.*)`", message):
         known = [_hints_of(struct) for struct in _matching(structs, value)]
         tags = [f"one of {', '.join(_tags(structs))}"] if missing[1] in {_tag_field(struct) for struct in structs} else []

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import yaml
 
-from app.bad_input import ABSENT, BadInput
+from app.bad_input import ABSENT, BadInput, shown
 
 LARGEST = 4_000_000
 """Largest file that is read [bytes]."""
@@ -47,12 +47,18 @@ class _Loader(yaml.SafeLoader):
     depth = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        event = self.peek_event()  # type: ignore[no-untyped-call]
+        event = self.peek_event()
         if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
             raise _Refused(event.start_mark.line, event.anchor, "expected no anchors and aliases")
+        if getattr(event, "tag", None) is not None:
+            raise _Refused(event.start_mark.line, event.tag, "expected no tags")
         self.depth += 1
         if self.depth > DEEPEST:
-            raise _Refused(event.start_mark.line, ABSENT, f"expected at most {DEEPEST} levels of nesting")
+            raise _Refused(
+                event.start_mark.line,
+                event.value if isinstance(event, yaml.ScalarEvent) else "here",
+                f"expected at most {DEEPEST} levels of nesting",
+            )
         node = super().compose_node(parent, index)
         self.depth -= 1
         return node
@@ -61,7 +67,8 @@ class _Loader(yaml.SafeLoader):
         seen: dict[str, int] = {}
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode) or key.tag != "tag:yaml.org,2002:str":
-                raise _Refused(key.start_mark.line, getattr(key, "value", ABSENT), "expected a text as key")
+                what = key.value if isinstance(key, yaml.ScalarNode) else "a list or mapping"
+                raise _Refused(key.start_mark.line, what, "expected a text as key")
             if key.value in seen:
                 raise _Refused(key.start_mark.line, key.value, f"expected each key once, it stands on line {seen[key.value]} too")
             seen[key.value] = key.start_mark.line + 1
@@ -102,13 +109,11 @@ def parsed(text: str, where: str) -> object:
     try:
         return yaml.load(text, Loader=_Loader)
     except _Refused as refused:
-        line, value, allowed = refused.args
-        raise BadInput(where, f"line {line + 1}", value, allowed) from None
+        line, what, allowed = refused.args
+        raise BadInput(where, f"line {line + 1}: {shown(what)}", ABSENT, allowed) from None
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f"line {mark.line + 1}" if mark else ""
         raise BadInput(where, line, ABSENT, f"expected YAML ({error.problem or error.context})") from None
     except yaml.YAMLError as error:
-        raise BadInput(where, "", ABSENT, f"expected YAML ({error})") from None
-    except (ValueError, OverflowError) as error:  # a tagged scalar that is not what its tag says
         raise BadInput(where, "", ABSENT, f"expected YAML ({error})") from None
