@@ -125,9 +125,8 @@ class FreeDrive:
         """The signal is present and free-drive is not on."""
         tick = around.estimate.tick
         events: list[Event] = []
-        if self.phase is Phase.OFF:
-            if self._blocked or self._cool > 0:
-                return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._began else events
+        if self.phase is Phase.OFF and (self._blocked or self._cool > 0):
+            return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._began else events
         if not may_enter(around.mode, settings):
             return [self._refuse(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
         if self.phase is Phase.OFF:

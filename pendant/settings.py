@@ -1,7 +1,6 @@
 """The one settings schema: every period and limit with default, range, unit, requirement and a line of text."""
 
 import hashlib
-import math
 from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 import msgspec
@@ -65,7 +64,7 @@ class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Free-drive itself."""
 
     allowed_from: Origins = Origins()
-    period: Annotated[float, _number(0.5, 30.0, "s", "FD-14", "leave when nobody moves the arm for this long", locked=False)] = 3.0
+    period: Annotated[float, _number(0.5, 30.0, "s", "FD-14", "leave when nobody moves it for this long", locked=False)] = 3.0
     restart_period: Annotated[
         float, _number(0.5, 30.0, "s", "FD-15", "leave when a guided arm stands still for this long", locked=False)
     ] = 3.0
@@ -174,7 +173,7 @@ def _checked(row: Row, value: object) -> Value:
     allowed = f"a number from {row.low:g} to {row.high:g}{unit}"
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise SettingError(row.name, value, allowed)
-    if not math.isfinite(value) or not row.low <= value <= row.high:
+    if not row.low <= value <= row.high:  # NaN is in no range
         raise SettingError(row.name, value, allowed)
     return float(value)
 

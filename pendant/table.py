@@ -70,13 +70,17 @@ def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
 
 TABLE: dict[Kind, Row] = {
     # Activation and entry (FD-7, FD-8a, FD-12)
-    Kind.ACTIVATION_STARTED: _info("Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)),
+    Kind.ACTIVATION_STARTED: _info(
+        "Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)
+    ),
     Kind.ACTIVATION_CANCELLED: _info(
         "Free-drive not started: let go too early",
         "Held for {value:.2f} s. Hold the button for {limit:.2f} s.",
         ("value", "limit"),
     ),
-    Kind.ENTERED: Row(Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")),
+    Kind.ENTERED: Row(
+        Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
+    ),
     Kind.REFUSED_MODE: _refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
     Kind.REFUSED_SENSORS: _refused("Free-drive refused: joint sensors not valid", "Check {sensor}, then try again.", ("sensor",)),
     Kind.REFUSED_MOVING: _refused(
@@ -98,7 +102,10 @@ TABLE: dict[Kind, Row] = {
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.WRENCH_LOST: Row(
-        Effect.INFO, Severity.WARNING, "Flange force sensor not valid", "The arm is heavier to move: no help from the force sensor."
+        Effect.INFO,
+        Severity.WARNING,
+        "Flange force sensor not valid",
+        "The arm is heavier to move: no help from the force sensor.",
     ),
     Kind.HOLD_SILENT: Row(
         Effect.INFO,
@@ -108,9 +115,15 @@ TABLE: dict[Kind, Row] = {
         ("value", "limit"),
     ),
     # Leaving (FD-8a, FD-12, FD-14, FD-15, FD-17)
-    Kind.LEFT_PERIOD: _left("Free-drive ended: nobody moved the arm", "No motion for {limit:.1f} s. Hold the button to start again.", ("limit",)),
-    Kind.LEFT_RESTART: _left("Free-drive ended: the arm stood still", "Still for {limit:.1f} s. Hold the button to start again.", ("limit",)),
-    Kind.LEFT_PRESS: _left("Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")),
+    Kind.LEFT_PERIOD: _left(
+        "Free-drive ended: nobody moved the arm", "No motion for {limit:.1f} s. Hold the button to start again.", ("limit",)
+    ),
+    Kind.LEFT_RESTART: _left(
+        "Free-drive ended: the arm stood still", "Still for {limit:.1f} s. Hold the button to start again.", ("limit",)
+    ),
+    Kind.LEFT_PRESS: _left(
+        "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
+    ),
     Kind.LEFT_RELEASE: _left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
     Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     Kind.SENSORS_LOST: Row(

@@ -1,0 +1,364 @@
+"""The spec's modes and phases said a second time: from time stamps and rows of rules, where pendant/ counts down.
+
+A stream is a list of steps, one a tick. `follow` gives what the spec asks for in each tick: mode, safety, phase, law, program
+and the kinds of events. `drive` gives the same of a supervisor.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import inf
+
+from pendant.events import Kind
+from pendant.inputs import Button, Command, Inputs
+from pendant.modes import Law, Mode, Phase, Safety
+from pendant.program import JointMove, Program, ProgramState
+from pendant.settings import Settings
+from pendant.supervisor import Supervisor
+from pendant.table import TABLE, render
+from tests.pendant.estimates import estimate
+
+PROGRAM = Program(name="two moves", steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
+WRONG = Program(name="five joints", steps=(JointMove(q=(0.0,) * 5),))
+
+Seen = tuple[Mode, Safety, Phase, Law, ProgramState, int, tuple[Kind, ...]]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One tick of a stream."""
+
+    held: bool = False
+    released: bool = False
+    commands: tuple[Command, ...] = ()
+    joints: bool = True  # valid
+    wrench: bool = True  # valid
+    qd: float = 0.0
+    force: float = 0.0
+    tau: float = 0.0
+    done: bool = False  # the FOLLOW law has finished the present move
+    load: Program | None = None
+    settings: dict[str, float | bool | str] = field(default_factory=dict)
+
+
+def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:
+    """What the supervisor does with the stream."""
+    seen: list[Seen] = []
+    move_done = 0
+    current = 0
+    last: Step | None = None
+    value = estimate()
+    for tick, step in enumerate(stream):
+        if last is None or step is not last:
+            value = estimate(joints_valid=step.joints, wrench_valid=step.wrench, qd=step.qd, force=step.force, tau_ext=step.tau)
+            button = frozenset({Button.FREE_DRIVE})
+            inputs = Inputs(
+                button if step.held else frozenset(),
+                button if step.released else frozenset(),
+                step.commands,
+                step.settings,
+                step.load,
+            )
+            last = step
+        if step.done:
+            move_done = current
+        value.tick = tick
+        value.move_done = move_done
+        decision = supervisor.step(value, inputs)
+        if decision.move is not None:
+            current = decision.move.id
+        for event in decision.events:
+            assert event.tick == tick
+            assert set(event.values) == set(TABLE[event.kind].keys)
+            assert render(event)[0]
+        kinds = tuple(event.kind for event in decision.events)
+        seen.append((decision.mode, decision.safety, decision.phase, decision.law, decision.program, decision.step, kinds))
+    return seen
+
+
+@dataclass
+class World:
+    """All that the oracle remembers: when things were last so."""
+
+    mode: Mode = Mode.TEACH
+    safety: Safety = Safety.NORMAL
+    phase: Phase = Phase.OFF
+    since: int = 0  # tick in which the phase began
+    refreshed: float = -inf
+    let_go: float = -inf
+    present_at: float = -inf  # last tick with the signal
+    fast_at: int = -1  # last tick in which a joint was too fast, or unknown
+    cool_from: float = -inf
+    blocked: bool = False
+    entering_press: bool = False
+    wrench: bool = False
+    force0: float = 0.0
+    tau0: float = 0.0
+    back: Mode = Mode.TEACH
+    origin: Mode = Mode.TEACH
+    brake: bool = False
+    loaded: bool = False
+    program: ProgramState = ProgramState.NONE
+    at: int = 0
+
+
+def follow(stream: list[Step], settings: Settings) -> list[Seen]:
+    """What the spec asks for. The stream's settings changes are not followed: give streams without them."""
+    world = World()
+    seen: list[Seen] = []
+    for tick, step in enumerate(stream):
+        kinds: list[Kind] = []
+        _tick(world, tick, step, settings, kinds)
+        number = world.at if world.program in (ProgramState.RUNNING, ProgramState.PAUSED) else 0
+        law = _law(world, tick, settings)
+        seen.append((world.mode, world.safety, world.phase, law, world.program, number, tuple(kinds)))
+    return seen
+
+
+def _n(seconds: float) -> int:
+    return int(seconds * 500 + 0.5)
+
+
+def _static(w: World, t: int, s: Settings) -> bool:
+    return t - w.fast_at >= _n(s.static.time)
+
+
+def _law(w: World, t: int, s: Settings) -> Law:
+    moving_law = {
+        Mode.FREE_DRIVE: Law.FREE,
+        Mode.STOP: Law.BRAKE,
+    }.get(w.mode)
+    if moving_law:
+        return moving_law
+    if w.program is ProgramState.RUNNING:
+        w.brake = False
+        return Law.FOLLOW
+    w.brake = w.brake and not _static(w, t, s)
+    return Law.BRAKE if w.brake else Law.HOLD
+
+
+def _end(w: World, t: int, present: bool, cool: bool) -> None:
+    w.phase = Phase.OFF
+    w.blocked = present
+    if cool:
+        w.cool_from = t
+
+
+def _stop(w: World, safety: Safety) -> None:
+    w.mode = Mode.STOP
+    w.safety = Safety(max(w.safety, safety))
+    w.brake = True
+    if w.loaded:
+        w.program = ProgramState.STOPPED
+
+
+def _tick(w: World, t: int, i: Step, s: Settings, kinds: list[Kind]) -> None:
+    # what is true now
+    was_present = w.present_at == t - 1
+    if i.held:
+        w.refreshed = t
+    if i.released:
+        w.let_go = t
+    present = w.let_go < w.refreshed and t - w.refreshed <= _n(s.hold.silence)
+    if was_present and not present and not i.released:
+        kinds.append(Kind.HOLD_SILENT)
+    if present:
+        w.present_at = t
+    if t - w.present_at >= 100:
+        w.blocked = False
+    if not i.joints or not abs(i.qd) < s.static.speed:
+        w.fast_at = t
+    static = _static(w, t, s)
+    pressed = present and not was_present
+    let_go = was_present and not present
+
+    _safety(w, t, i, static, present, kinds)
+    _modes(w, t, i, present, kinds)
+    _programs(w, t, i, static, present, kinds)
+    _free(w, t, i, s, present, pressed, let_go, static, kinds)
+
+
+def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+    if Command.EMERGENCY_STOP in i.commands and w.safety is not Safety.EMERGENCY_STOP:
+        kinds.append(Kind.EMERGENCY_STOP)
+        if w.phase is not Phase.OFF:
+            _end(w, t, present, cool=True)
+        _stop(w, Safety.EMERGENCY_STOP)
+    if Command.RESET in i.commands:
+        rows = [
+            (Command.EMERGENCY_STOP in i.commands, Kind.COMMAND_REFUSED),
+            (w.mode is not Mode.STOP, Kind.COMMAND_REFUSED),
+            (present, Kind.RESET_REFUSED_SIGNAL),
+            (not i.joints, Kind.RESET_REFUSED_SENSORS),
+            (not static, Kind.RESET_REFUSED_MOVING),
+            (True, Kind.RESET),
+        ]
+        kind = next(kind for condition, kind in rows if condition)
+        kinds.append(kind)
+        if kind is Kind.RESET:
+            w.mode, w.safety, w.brake = Mode.TEACH, Safety.NORMAL, False
+
+
+def _modes(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
+    for command in i.commands:
+        if command is Command.LEAVE_FREE_DRIVE and w.phase is not Phase.OFF:
+            kinds.append(Kind.DEACTIVATED)
+            _end(w, t, present, cool=False)
+            if w.mode is Mode.FREE_DRIVE:
+                w.mode, w.brake = w.back, True
+        if command in (Command.NORMAL, Command.TEACH, Command.REMOTE):
+            to = Mode(command.value.upper())
+            if w.mode in (Mode.RUN, Mode.FREE_DRIVE, Mode.STOP):
+                kinds.append(Kind.COMMAND_REFUSED)
+            elif w.mode is not to:
+                kinds.append(Kind.MODE_CHANGED)
+                w.mode = to
+
+
+def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+    if i.load is not None:
+        if w.mode in (Mode.RUN, Mode.FREE_DRIVE) or i.load is WRONG:
+            kinds.append(Kind.PROGRAM_REFUSED)
+        else:
+            kinds.append(Kind.PROGRAM_LOADED)
+            w.loaded, w.program = True, ProgramState.STOPPED
+    running_before = w.program is ProgramState.RUNNING
+    fresh = False
+    for command in i.commands:
+        runs, pauses = w.program is ProgramState.RUNNING, w.program is ProgramState.PAUSED
+        can = {
+            Command.START_PROGRAM: w.mode in (Mode.NORMAL, Mode.TEACH) and w.loaded and static and i.joints,
+            Command.PAUSE_PROGRAM: w.mode is Mode.RUN and runs,
+            Command.RESUME_PROGRAM: w.mode is Mode.RUN and pauses and static and i.joints,
+            Command.STOP_PROGRAM: w.mode is Mode.RUN,
+        }
+        if command not in can:
+            continue
+        if not can[command]:
+            kinds.append(Kind.COMMAND_REFUSED)
+        elif command is Command.START_PROGRAM:
+            kinds.append(Kind.PROGRAM_STARTED)
+            w.origin, w.mode, w.program, w.at, fresh = w.mode, Mode.RUN, ProgramState.RUNNING, 1, True
+        elif command is Command.PAUSE_PROGRAM:
+            kinds.append(Kind.PROGRAM_PAUSED)
+            w.program, w.brake = ProgramState.PAUSED, True
+        elif command is Command.RESUME_PROGRAM:
+            kinds.append(Kind.PROGRAM_RESUMED)
+            w.program, fresh = ProgramState.RUNNING, True
+        else:
+            kinds.append(Kind.PROGRAM_STOPPED)
+            w.mode, w.program, w.brake = w.origin, ProgramState.STOPPED, True
+    if not running_before or fresh or w.program is not ProgramState.RUNNING:
+        return
+    if not i.joints:
+        kinds.append(Kind.RUN_SENSORS_LOST)
+        if w.phase is not Phase.OFF:
+            _end(w, t, present, cool=True)
+        _stop(w, Safety.PROTECTIVE_STOP)
+    elif i.done:
+        w.at += 1
+        if w.at > 2:
+            kinds.append(Kind.PROGRAM_FINISHED)
+            w.mode, w.program = w.origin, ProgramState.STOPPED
+
+
+def _free(
+    w: World, t: int, i: Step, s: Settings, present: bool, pressed: bool, let_go: bool, static: bool, kinds: list[Kind]
+) -> None:
+    allowed = s.free_drive.allowed_from
+    may = {Mode.TEACH: allowed.teach, Mode.NORMAL: allowed.normal, Mode.RUN: allowed.run}.get(w.mode, False)
+    cooling = t - w.cool_from < _n(s.free_drive.cool_down)
+    if w.phase is Phase.OFF and present:
+        if cooling or w.blocked:
+            if pressed:
+                kinds.append(Kind.NOT_YET)
+            return
+        if may:
+            kinds.append(Kind.ACTIVATION_STARTED)
+            w.phase, w.since = Phase.ACTIVATION, t
+    if w.phase in (Phase.OFF, Phase.ACTIVATION):
+        if not present:
+            if w.phase is Phase.ACTIVATION:
+                kinds.append(Kind.ACTIVATION_CANCELLED)
+                w.phase = Phase.OFF
+            return
+        if not may:
+            kinds.append(Kind.REFUSED_MODE)
+            _end(w, t, present, cool=True)
+        elif t - w.since == _n(s.activation.period):
+            _enter(w, t, i, static, kinds)
+        return
+    _stay(w, t, i, s, pressed, let_go, static, kinds)
+
+
+def _enter(w: World, t: int, i: Step, static: bool, kinds: list[Kind]) -> None:
+    if not i.joints or not static:
+        kinds.append(Kind.REFUSED_MOVING if i.joints else Kind.REFUSED_SENSORS)
+        _end(w, t, True, cool=True)
+        return
+    kinds.append(Kind.ENTERED)
+    w.back = w.mode
+    if w.program is ProgramState.RUNNING:
+        kinds.append(Kind.PROGRAM_PAUSED)
+        w.program = ProgramState.PAUSED
+    w.mode, w.phase, w.since, w.entering_press, w.wrench = Mode.FREE_DRIVE, Phase.HELD, t, True, i.wrench
+
+
+def _leave(w: World, t: int, kind: Kind, present: bool, kinds: list[Kind]) -> None:
+    kinds.append(kind)
+    _end(w, t, present, cool=True)
+    w.mode, w.brake = w.back, True
+
+
+def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, static: bool, kinds: list[Kind]) -> None:
+    present = w.present_at == t
+    if not i.joints:
+        kinds.append(Kind.SENSORS_LOST)
+        _end(w, t, present, cool=True)
+        _stop(w, Safety.NORMAL)
+        return
+    if w.wrench and not i.wrench:
+        kinds.append(Kind.WRENCH_LOST)
+        w.wrench = False
+
+    def begin(phase: Phase) -> None:
+        w.phase, w.since, w.force0, w.tau0 = phase, t, i.force, i.tau
+
+    age = t - w.since
+    guided = (
+        (w.wrench and abs(i.force - w.force0) > s.maintain.force)
+        or abs(i.tau - w.tau0) > s.maintain.joint_torque
+        or abs(i.qd) > s.maintain.joint_speed
+    )
+    if w.phase is Phase.HELD:
+        if let_go and s.button.hold_to_run:
+            _leave(w, t, Kind.LEFT_RELEASE, present, kinds)
+        elif let_go and not w.entering_press and age < _n(s.button.short_press):
+            _leave(w, t, Kind.LEFT_PRESS, present, kinds)
+        elif let_go:
+            begin(Phase.PERIOD)
+    elif pressed:
+        w.phase, w.since, w.entering_press = Phase.HELD, t, False
+    elif w.phase is Phase.GUIDED:
+        if age >= _n(s.static.time) and static:
+            kinds.append(Kind.RESTARTED)
+            begin(Phase.RESTART)
+    elif guided:
+        kinds.append(Kind.MANIPULATION)
+        w.phase, w.since = Phase.GUIDED, t
+    elif w.phase is Phase.PERIOD and age == _n(s.free_drive.period):
+        _leave(w, t, Kind.LEFT_PERIOD, present, kinds)
+    elif w.phase is Phase.RESTART and age == _n(s.free_drive.restart_period):
+        _leave(w, t, Kind.LEFT_RESTART, present, kinds)
+
+
+def agree(stream: list[Step], settings: Settings) -> list[Seen]:
+    """Run both, compare every tick, return what was seen."""
+    seen = drive(Supervisor(settings, 6), stream)
+    asked = follow(stream, settings)
+    for tick, (has, should) in enumerate(zip(seen, asked, strict=True)):
+        assert has == should, f"tick {tick}: {has}, should be {should}, after {stream[max(0, tick - 3) : tick + 1]}"
+    return seen
+
+
+def ticks_of(count: int, **values: object) -> list[Step]:
+    """`count` ticks of the same step."""
+    return [replace(Step(), **values)] * count  # type: ignore[arg-type]

@@ -1,0 +1,126 @@
+"""The settings schema: its table, its ranges, its hash."""
+
+import math
+
+import msgspec
+import pytest
+
+from pendant.settings import Row, SettingError, Settings, apply, describe, digest, find, ticks, value_of
+
+# name: (default, low, high, unit, requirement, locked), copied from the spec by hand
+EXPECTED = {
+    "activation.period": (1.0, 0.0, 15.0, "s", "FD-7", True),
+    "free_drive.allowed_from.normal": (False, None, None, "", "FD-1", True),
+    "free_drive.allowed_from.teach": (True, None, None, "", "FD-1", True),
+    "free_drive.allowed_from.run": (False, None, None, "", "FD-1", True),
+    "free_drive.period": (3.0, 0.5, 30.0, "s", "FD-14", False),
+    "free_drive.restart_period": (3.0, 0.5, 30.0, "s", "FD-15", False),
+    "free_drive.cool_down": (2.0, 0.0, 30.0, "s", "FD-12c", True),
+    "free_drive.gain": (1.0, 0.0, 3.0, "", "FD-3", True),
+    "free_drive.force_cap": (50.0, 5.0, 100.0, "N", "FD-3", True),
+    "hold.silence": (0.5, 0.1, 1.0, "s", "FD-23", True),
+    "button.short_press": (0.4, 0.1, 2.0, "s", "FD-8a", True),
+    "button.hold_to_run": (False, None, None, "", "FD-8a", True),
+    "maintain.force": (8.0, 1.0, 100.0, "N", "FD-13", True),
+    "maintain.torque": (1.5, 0.1, 20.0, "N·m", "FD-13", True),
+    "maintain.joint_torque": (8.0, 0.5, 100.0, "N·m", "FD-13", True),
+    "maintain.joint_speed": (0.05, 0.005, 1.0, "rad/s", "FD-13", True),
+    "maintain.flange_speed": (0.02, 0.002, 1.0, "m/s", "FD-13", True),
+    "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
+    "static.time": (0.1, 0.02, 2.0, "s", "static", True),
+}
+NUMBERS = [row for row in describe() if row.low is not None]
+SWITCHES = [row for row in describe() if row.low is None]
+
+
+def test_every_setting_is_as_the_spec_says() -> None:
+    shown = {row.name: (row.default, row.low, row.high, row.unit, row.id, row.locked) for row in describe()}
+    assert shown == EXPECTED
+
+
+def test_every_setting_has_a_short_text() -> None:
+    for row in describe():
+        assert 5 < len(row.text) <= 60, row.name
+
+
+def test_defaults_are_the_shipped_settings() -> None:
+    assert {row.name: value_of(Settings(), row.name) for row in describe()} == {row.name: row.default for row in describe()}
+
+
+@pytest.mark.parametrize("row", NUMBERS, ids=lambda row: row.name)
+def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: Row) -> None:
+    assert row.low is not None
+    assert row.high is not None
+    for value in (row.low, row.high, (row.low + row.high) / 2, math.nextafter(row.low, math.inf)):
+        assert value_of(apply(Settings(), {row.name: value}), row.name) == value
+    below, above = math.nextafter(row.low, -math.inf), math.nextafter(row.high, math.inf)
+    for value in (below, above, math.nan, math.inf, -math.inf, 10**400, "1", True, None, [1.0]):
+        with pytest.raises(SettingError) as caught:
+            apply(Settings(), {row.name: value})
+        assert caught.value.name == row.name
+        assert caught.value.allowed == f"a number from {row.low:g} to {row.high:g} {row.unit}".rstrip()
+
+
+@pytest.mark.parametrize("row", SWITCHES, ids=lambda row: row.name)
+def test_a_switch_is_true_or_false(row: Row) -> None:
+    for value in (True, False):
+        assert value_of(apply(Settings(), {row.name: value}), row.name) is value
+    for value in (0, 1, 0.0, "true", None):
+        with pytest.raises(SettingError, match=f"^{row.name}: .* allowed: true or false$"):
+            apply(Settings(), {row.name: value})
+
+
+def test_a_whole_number_becomes_a_float() -> None:
+    value = value_of(apply(Settings(), {"free_drive.period": 5}), "free_drive.period")
+    assert isinstance(value, float)
+    assert value == 5.0
+
+
+def test_several_changes_are_made_together_or_not_at_all() -> None:
+    changed = apply(Settings(), {"free_drive.allowed_from.run": True, "free_drive.gain": 2.0})
+    assert changed.free_drive.allowed_from.run
+    assert changed.free_drive.gain == 2.0
+    assert changed.free_drive.period == 3.0
+    start = Settings()
+    with pytest.raises(SettingError):
+        apply(start, {"free_drive.gain": 2.0, "hold.silence": 7.0})
+    assert start == Settings()
+
+
+@pytest.mark.parametrize("name", ["", "free_drive", "free_drive.speed", "activation.period.x", "__class__", "Activation.period"])
+def test_a_setting_that_does_not_exist_is_named_with_those_that_do(name: str) -> None:
+    for use in (lambda: apply(Settings(), {name: 1.0}), lambda: find(name), lambda: value_of(Settings(), name)):
+        with pytest.raises(SettingError) as caught:
+            use()
+        assert caught.value.name == name
+        assert "activation.period, " in caught.value.allowed
+
+
+def test_the_error_is_one_line_with_name_value_and_what_is_allowed() -> None:
+    with pytest.raises(SettingError) as caught:
+        apply(Settings(), {"hold.silence": 2.0})
+    assert str(caught.value) == "hold.silence: 2.0 is not allowed; allowed: a number from 0.1 to 1 s"
+    assert caught.value.value == 2.0
+
+
+def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
+    for bad in ({"walls": {}}, {"hold": {"silence": 3.0}}, {"hold": {"silense": 0.2}}):
+        with pytest.raises(msgspec.ValidationError):
+            msgspec.convert(bad, Settings)
+
+
+def test_the_digest_tells_settings_apart() -> None:
+    digests = {digest(Settings())}
+    for row in describe():
+        value = (not row.default) if row.low is None else row.high
+        digests.add(digest(apply(Settings(), {row.name: value})))
+    assert len(digests) == len(describe()) + 1
+    assert digest(apply(Settings(), {"free_drive.period": 3})) == digest(Settings())
+    assert all(len(text) == 8 and int(text, 16) >= 0 for text in digests)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "count"), [(0.0, 0), (0.002, 1), (0.0029, 1), (0.0031, 2), (0.1, 50), (0.29, 145), (1.0, 500), (30.0, 15000)]
+)
+def test_periods_in_ticks(seconds: float, count: int) -> None:
+    assert ticks(seconds) == count

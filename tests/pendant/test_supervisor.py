@@ -1,0 +1,291 @@
+"""The supervisor: numbers in its events, settings at run time, programs, one decision a tick."""
+
+import pickle
+from dataclasses import FrozenInstanceError
+
+import pytest
+
+from pendant.events import Event, Kind
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.modes import Law, Mode, Safety
+from pendant.program import JointMove, Program, ProgramState, Wait
+from pendant.settings import Settings, apply, describe
+from pendant.supervisor import Supervisor
+from tests.pendant.estimates import estimate
+from tests.pendant.oracle import PROGRAM, WRONG
+from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+
+
+def command(*commands: Command) -> Inputs:
+    return Inputs(commands=commands)
+
+
+def running(program: Program = PROGRAM, **changes: float | bool) -> Bench:
+    bench = Bench(**changes)
+    bench.run(60)
+    bench.step(Inputs(program=program))
+    bench.step(command(Command.START_PROGRAM))
+    assert (bench.last.mode, bench.last.law, bench.last.program) == (Mode.RUN, Law.FOLLOW, ProgramState.RUNNING)
+    return bench
+
+
+def test_it_starts_in_teach_holding() -> None:
+    decision = Supervisor(Settings(), 6).step(estimate(), NOTHING)
+    assert (decision.mode, decision.safety, decision.law) == (Mode.TEACH, Safety.NORMAL, Law.HOLD)
+    assert (decision.move, decision.gain, decision.baseline) == (None, 0.0, (0.0,) * 6)
+    assert (decision.periods, decision.events, decision.program, decision.step) == ((), (), ProgramState.NONE, 0)
+
+
+def test_an_idle_tick_gives_the_same_decision_again() -> None:
+    bench = Bench()
+    first = bench.run(60)
+    assert bench.step() is first
+    assert bench.step(command(Command.NORMAL)).events
+    quiet = bench.step()
+    assert quiet is not first
+    assert quiet.events == ()
+    assert bench.step() is quiet
+
+
+def test_decisions_do_not_change() -> None:
+    decision = Bench().step()
+    with pytest.raises(FrozenInstanceError):
+        decision.mode = Mode.RUN  # type: ignore[misc]
+    event = Event(Kind.RESET, 0)
+    with pytest.raises(AttributeError):
+        event.tick = 3  # type: ignore[misc]
+
+
+def test_emergency_stop_and_reset() -> None:
+    bench = Bench().entered()
+    bench.step(command(Command.EMERGENCY_STOP), estimate(qd=0.4))
+    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.EMERGENCY_STOP, Law.BRAKE)
+    assert bench.last.events == (Event(Kind.EMERGENCY_STOP, bench.tick, {"mode": Mode.FREE_DRIVE}),)
+    assert bench.step(command(Command.EMERGENCY_STOP)).events == ()
+    assert bench.step(command(Command.RESET)).events == (Event(Kind.RESET_REFUSED_SIGNAL, bench.tick, {}),)
+    bench.step(LET_GO)
+    bench.step(command(Command.RESET))
+    values = {"joint": "base", "value": 0.4, "limit": 0.01, "time": 0.1}
+    assert bench.last.events == (Event(Kind.RESET_REFUSED_MOVING, bench.tick, values),)
+    bench.run(60)
+    bench.step(command(Command.RESET), estimate(joints_valid=False))
+    assert bench.last.events == (Event(Kind.RESET_REFUSED_SENSORS, bench.tick, {"sensor": "joint encoders and motor currents"}),)
+    bench.run(60)
+    assert bench.last.law is Law.BRAKE
+    bench.step(command(Command.RESET))
+    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.TEACH, Safety.NORMAL, Law.HOLD)
+    assert bench.last.events == (Event(Kind.RESET, bench.tick, {}),)
+
+
+def test_free_drive_from_a_paused_program_returns_to_it_paused() -> None:
+    """FD-1."""
+    bench = running(free_drive__allowed_from__run=True)
+    bench.run(3)
+    bench.step(command(Command.PAUSE_PROGRAM))
+    bench.run(501, HOLD)
+    assert bench.last.mode is Mode.FREE_DRIVE
+    assert bench.last.program is ProgramState.PAUSED
+    bench.step(LET_GO)
+    bench.run(1500)
+    assert (bench.last.mode, bench.last.program, bench.last.law, bench.last.step) == (Mode.RUN, ProgramState.PAUSED, Law.HOLD, 1)
+    bench.run(2000)
+    assert bench.last.program is ProgramState.PAUSED
+    bench.step(command(Command.RESUME_PROGRAM))
+    assert (bench.last.law, bench.last.program) == (Law.FOLLOW, ProgramState.RUNNING)
+    assert bench.last.move is not None
+    assert bench.last.move.id == 2
+    assert bench.last.events == (Event(Kind.PROGRAM_RESUMED, bench.tick, {"name": "two moves", "step": 1}),)
+
+
+def test_free_drive_from_a_running_program_pauses_it() -> None:
+    bench = running(Program(name="rest", steps=(Wait(duration=60.0),)), free_drive__allowed_from__run=True)
+    bench.run(501, HOLD)
+    kinds = [event.kind for event in bench.last.events]
+    assert kinds == [Kind.ENTERED, Kind.PROGRAM_PAUSED]
+    assert (bench.last.mode, bench.last.program, bench.last.move) == (Mode.FREE_DRIVE, ProgramState.PAUSED, None)
+
+
+def test_a_program_runs_to_its_end_and_returns_to_where_it_was_started() -> None:
+    bench = Bench()
+    bench.run(60)
+    bench.step(command(Command.NORMAL))
+    bench.step(Inputs(program=PROGRAM))
+    assert bench.last.events == (Event(Kind.PROGRAM_LOADED, bench.tick, {"name": "two moves", "steps": 2}),)
+    assert bench.supervisor.program is PROGRAM
+    bench.step(command(Command.START_PROGRAM))
+    assert bench.last.events == (Event(Kind.PROGRAM_STARTED, bench.tick, {"name": "two moves"}),)
+    for number in (1, 2):
+        assert isinstance(bench.last.move, JointMove)
+        assert (bench.last.move.id, bench.last.step) == (number, number)
+        bench.run(5, NOTHING, estimate(move_done=number - 1))
+        bench.step(NOTHING, estimate(move_done=number))
+    assert (bench.last.mode, bench.last.law, bench.last.move, bench.last.step) == (Mode.NORMAL, Law.HOLD, None, 0)
+    assert bench.last.events == (Event(Kind.PROGRAM_FINISHED, bench.tick, {"name": "two moves"}),)
+
+
+def test_a_wait_begins_with_the_tick_after_its_start() -> None:
+    bench = running(Program(steps=(Wait(duration=0.02),)))
+    start = bench.tick
+    while bench.last.mode is Mode.RUN:
+        bench.step()
+    assert bench.tick - start == 10
+
+
+def test_a_motion_that_is_paused_or_stopped_is_braked_until_static() -> None:
+    for stop, mode in ((Command.PAUSE_PROGRAM, Mode.RUN), (Command.STOP_PROGRAM, Mode.TEACH)):
+        bench = running()
+        moving = estimate(qd=0.7)
+        bench.run(5, NOTHING, moving)
+        bench.step(command(stop), moving)
+        assert (bench.last.mode, bench.last.law, bench.last.move) == (mode, Law.BRAKE, None)
+        assert bench.last.events[0].values == {"name": "two moves", "step": 1}
+        bench.step(command(Command.RESUME_PROGRAM if mode is Mode.RUN else Command.START_PROGRAM), moving)
+        assert bench.last.events[0].values["reason"] == "the arm still moves"
+        assert bench.run(49).law is Law.BRAKE
+        assert bench.step().law is Law.HOLD
+
+
+def test_sensors_lost_in_run_are_a_protective_stop_that_ends_the_program() -> None:
+    bench = running()
+    bench.step(NOTHING, estimate(joints_valid=False))
+    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.PROTECTIVE_STOP, Law.BRAKE)
+    assert (bench.last.program, bench.last.move) == (ProgramState.STOPPED, None)
+    bench.run(60)
+    bench.step(command(Command.RESET))
+    assert (bench.last.mode, bench.last.safety) == (Mode.TEACH, Safety.NORMAL)
+
+
+def test_an_emergency_stop_in_a_protective_stop_is_the_greater_one() -> None:
+    bench = running()
+    bench.step(NOTHING, estimate(joints_valid=False))
+    assert bench.step(command(Command.EMERGENCY_STOP)).safety is Safety.EMERGENCY_STOP
+
+
+@pytest.mark.parametrize(
+    ("build", "refused", "reason"),
+    [
+        (Bench, Command.START_PROGRAM, "no program is loaded"),
+        (Bench, Command.PAUSE_PROGRAM, "no program is running"),
+        (Bench, Command.RESUME_PROGRAM, "no program is running"),
+        (Bench, Command.STOP_PROGRAM, "no program is running"),
+        (Bench, Command.RESET, "nothing to reset"),
+        (running, Command.START_PROGRAM, "stop the program first"),
+        (running, Command.RESUME_PROGRAM, "it is running already"),
+        (running, Command.NORMAL, "stop the program first"),
+        (lambda: Bench().entered(), Command.TEACH, "leave free-drive first"),
+        (lambda: Bench().entered(), Command.START_PROGRAM, "leave free-drive first"),
+    ],
+)
+def test_a_command_that_is_not_possible_says_why(build: object, refused: Command, reason: str) -> None:
+    assert callable(build)
+    bench = build()
+    mode = bench.step(HOLD if bench.tick > 500 else NOTHING).mode
+    bench.step(command(refused))
+    assert bench.last.mode is mode
+    assert bench.last.events == (Event(Kind.COMMAND_REFUSED, bench.tick, {"command": refused, "mode": mode, "reason": reason}),)
+
+
+def test_more_commands_that_are_not_possible() -> None:
+    bench = running()
+    bench.step(command(Command.PAUSE_PROGRAM))
+    bench.step(command(Command.PAUSE_PROGRAM))
+    assert bench.last.events[0].values["reason"] == "it is paused already"
+    bench.step(command(Command.RESUME_PROGRAM), estimate(joints_valid=False))
+    assert bench.last.events[0].values["reason"] == "check joint encoders and motor currents"
+    bench.step(command(Command.STOP_PROGRAM))
+    bench.step(command(Command.REMOTE))
+    bench.step(command(Command.START_PROGRAM))
+    assert bench.last.events[0].values["reason"] == "switch to NORMAL or TEACH first"
+    bench.step(command(Command.EMERGENCY_STOP))
+    bench.step(command(Command.START_PROGRAM, Command.NORMAL))
+    assert [event.values["reason"] for event in bench.last.events] == ["reset first", "reset first"]
+    bench.run(60)
+    bench.step(command(Command.RESET, Command.EMERGENCY_STOP))
+    assert bench.last.events[0].values["reason"] == "the emergency stop was pressed at the same time"
+    assert bench.last.mode is Mode.STOP
+
+
+def test_switching_modes() -> None:
+    bench = Bench()
+    for name, before in (("NORMAL", "TEACH"), ("REMOTE", "NORMAL"), ("TEACH", "REMOTE")):
+        bench.step(command(Command(name.lower())))
+        assert bench.last.mode.value == name
+        assert bench.last.events == (Event(Kind.MODE_CHANGED, bench.tick, {"from": before, "to": name}),)
+        assert bench.step(command(Command(name.lower()))).events == ()
+
+
+def test_programs_that_cannot_be_loaded() -> None:
+    bench = Bench()
+    bench.step(Inputs(program=WRONG))
+    values = {"name": "five joints", "reason": "step 1 has 5 joint angles, the arm has 6 joints"}
+    assert bench.last.events == (Event(Kind.PROGRAM_REFUSED, bench.tick, values),)
+    assert bench.supervisor.program is None
+    bench = running()
+    bench.step(Inputs(program=PROGRAM))
+    assert bench.last.events[0].values == {"name": "two moves", "reason": "stop the program first"}
+
+
+@pytest.mark.parametrize("row", describe(), ids=lambda row: row.name)
+def test_limits_are_locked_in_free_drive_and_run(row: object) -> None:
+    name, value, locked = row.name, (not row.default if row.low is None else row.high), row.locked  # type: ignore[attr-defined]
+    change = Inputs(settings={name: value})
+    for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
+        before = bench.supervisor.settings
+        bench.step(change)
+        assert bench.last.mode is mode
+        if locked:
+            values = {"name": name, "value": value, "reason": f"no change of a limit in {mode}"}
+            assert bench.last.events == (Event(Kind.SETTING_REFUSED, bench.tick, values),)
+            assert bench.supervisor.settings == before
+        else:
+            assert bench.last.events[0].kind is Kind.SETTING_CHANGED
+            assert bench.supervisor.settings == apply(before, {name: value})
+    bench = Bench()
+    bench.step(change)
+    default = row.default  # type: ignore[attr-defined]
+    assert bench.last.events == (Event(Kind.SETTING_CHANGED, bench.tick, {"name": name, "old": default, "new": value}),)
+    assert bench.supervisor.settings == apply(Settings(), {name: value})
+    assert bench.step(change).events == ()
+
+
+def test_changed_settings_act_from_the_next_tick() -> None:
+    bench = Bench()
+    bench.step(Inputs(settings={"hold.silence": 0.1, "static.time": 0.5, "static.speed": 0.05}))
+    bench.run(249, NOTHING, estimate(qd=0.04))
+    bench.step(HOLD, estimate(qd=0.04))
+    bench.run(50, NOTHING, estimate(qd=0.04))
+    assert bench.last.phase.value == "ACTIVATION"
+    bench.step(NOTHING, estimate(qd=0.04))
+    assert bench.last.events[0].values == {"value": pytest.approx(0.102), "limit": pytest.approx(0.1)}
+    bench.step(Inputs(program=PROGRAM), estimate(qd=0.04))
+    assert bench.step(command(Command.START_PROGRAM), estimate(qd=0.04)).mode is Mode.RUN
+
+
+def test_bad_settings_are_refused_one_by_one() -> None:
+    bench = Bench()
+    bench.step(Inputs(settings={"free_drive.period": 99.0, "walls.on": True, "free_drive.gain": 2}))
+    assert [event.kind for event in bench.last.events] == [Kind.SETTING_REFUSED, Kind.SETTING_REFUSED, Kind.SETTING_CHANGED]
+    assert bench.last.events[0].values["reason"] == "a number from 0.5 to 30 s"
+    assert str(bench.last.events[1].values["reason"]).startswith("one of activation.period, ")
+    assert bench.supervisor.settings == apply(Settings(), {"free_drive.gain": 2.0})
+
+
+def test_a_running_period_keeps_its_length_and_the_next_one_is_the_new() -> None:
+    bench = Bench().in_period()
+    bench.step(Inputs(settings={"free_drive.period": 10.0}))
+    assert bench.run(1498).mode is Mode.FREE_DRIVE
+    assert bench.step().mode is Mode.TEACH
+
+
+def test_equal_states_decide_equally() -> None:
+    one, other = Bench(), Bench()
+    for bench in (one, other):
+        bench.run(60)
+        bench.run(300, HOLD, estimate(force=2.0))
+    assert one.supervisor.state == other.supervisor.state
+    copy = pickle.loads(pickle.dumps(one.supervisor.state))
+    one.step(HOLD)
+    assert one.supervisor.state != other.supervisor.state
+    assert other.supervisor.state == copy
+    other.step(HOLD)
+    assert one.supervisor.state == other.supervisor.state

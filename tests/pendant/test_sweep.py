@@ -1,0 +1,174 @@
+"""Every situation x every input, against the oracle; then random streams of inputs."""
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from pendant.inputs import Command
+from pendant.modes import Law, Mode, Phase, Safety
+from pendant.program import ProgramState
+from pendant.settings import Settings, apply
+from tests.pendant.oracle import PROGRAM, WRONG, Step, agree, ticks_of
+
+SHORT = apply(
+    Settings(),
+    {
+        "activation.period": 0.02,
+        "free_drive.period": 0.5,
+        "free_drive.restart_period": 0.6,
+        "free_drive.cool_down": 0.3,
+        "hold.silence": 0.1,
+        "button.short_press": 0.1,
+        "static.time": 0.02,
+    },
+)
+"""Periods in ticks: activation 10, free-drive 250, restart 300, cool-down 150, silence 50, short press 50, static 10."""
+
+FROM_ANYWHERE = apply(SHORT, {"free_drive.allowed_from.run": True, "free_drive.allowed_from.normal": True})
+HOLD_TO_RUN = apply(SHORT, {"button.hold_to_run": True, "free_drive.cool_down": 0.0})
+AT_ONCE = apply(SHORT, {"activation.period": 0.0})
+
+REST = ticks_of(15)
+ON = REST + ticks_of(11, held=True)
+IN_PERIOD = ON + ticks_of(1, released=True) + ticks_of(5)
+IN_GUIDED = IN_PERIOD + ticks_of(3, qd=0.2)
+IN_RUN = [*REST, Step(load=PROGRAM), Step(commands=(Command.START_PROGRAM,)), Step()]
+
+SITUATIONS = {
+    "TEACH": (REST, Mode.TEACH, Phase.OFF),
+    "NORMAL": ([*REST, Step(commands=(Command.NORMAL,))], Mode.NORMAL, Phase.OFF),
+    "REMOTE": ([*REST, Step(commands=(Command.REMOTE,))], Mode.REMOTE, Phase.OFF),
+    "RUN": (IN_RUN, Mode.RUN, Phase.OFF),
+    "RUN moving": (IN_RUN + ticks_of(3, qd=0.5), Mode.RUN, Phase.OFF),
+    "RUN paused": ([*IN_RUN, Step(commands=(Command.PAUSE_PROGRAM,))], Mode.RUN, Phase.OFF),
+    "TEACH braking": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.STOP_PROGRAM,), qd=0.3)], Mode.TEACH, Phase.OFF),
+    "emergency stop": ([*REST, Step(commands=(Command.EMERGENCY_STOP,))], Mode.STOP, Phase.OFF),
+    "protective stop": ([*IN_RUN, Step(joints=False)], Mode.STOP, Phase.OFF),
+    "STOP": ([*ON, Step(joints=False, held=True)], Mode.STOP, Phase.OFF),
+    "activation": (REST + ticks_of(4, held=True), Mode.TEACH, Phase.ACTIVATION),
+    "held": (ON, Mode.FREE_DRIVE, Phase.HELD),
+    "pressed again": (IN_PERIOD + ticks_of(3, held=True), Mode.FREE_DRIVE, Phase.HELD),
+    "period": (IN_PERIOD, Mode.FREE_DRIVE, Phase.PERIOD),
+    "guided": (IN_GUIDED, Mode.FREE_DRIVE, Phase.GUIDED),
+    "restart": (IN_GUIDED + ticks_of(15), Mode.FREE_DRIVE, Phase.RESTART),
+    "cool-down": ([*IN_PERIOD, *ticks_of(3, held=True), Step(released=True)], Mode.TEACH, Phase.OFF),
+    "switched off": ([*ON, Step(held=True, commands=(Command.LEAVE_FREE_DRIVE,))], Mode.TEACH, Phase.OFF),
+}
+
+INPUTS = {
+    "nothing": Step(),
+    "held": Step(held=True),
+    "released": Step(released=True),
+    "held and released": Step(held=True, released=True),
+    "joints not valid": Step(joints=False),
+    "joints not valid, held": Step(joints=False, held=True),
+    "wrench not valid": Step(wrench=False),
+    "wrench not valid, held": Step(wrench=False, held=True),
+    "slow": Step(qd=0.005),
+    "moving": Step(qd=-0.2),
+    "moving, held": Step(qd=0.2, held=True),
+    "pushed": Step(force=20.0),
+    "pushed, held": Step(force=20.0, held=True),
+    "link pushed": Step(tau=-9.0),
+    "move done": Step(done=True),
+    "load": Step(load=PROGRAM),
+    "load wrong": Step(load=WRONG),
+    "start without sensors": Step(commands=(Command.START_PROGRAM,), joints=False),
+    "resume without sensors": Step(commands=(Command.RESUME_PROGRAM,), joints=False),
+    "reset without sensors": Step(commands=(Command.RESET,), joints=False),
+    "reset while held": Step(commands=(Command.RESET,), held=True),
+    "reset while moving": Step(commands=(Command.RESET,), qd=0.02),
+    "stop and reset": Step(commands=(Command.EMERGENCY_STOP, Command.RESET)),
+    "all commands": Step(commands=tuple(Command)),
+    "all commands backwards": Step(commands=tuple(reversed(Command))),
+    **{str(command): Step(commands=(command,)) for command in Command},
+    **{f"{command}, held": Step(commands=(command,), held=True) for command in Command},
+}
+
+FOR_OPTIONS = {
+    name: step
+    for name, step in INPUTS.items()
+    if name in ("nothing", "held", "released", "moving, held", "joints not valid, held", "move done") or name in set(Command)
+}
+
+AFTER = {
+    "rest": ticks_of(310),
+    "hold on": ticks_of(170, held=True) + ticks_of(60),
+    "press again later": ticks_of(160) + ticks_of(15, held=True) + ticks_of(2),
+}
+
+
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_the_situation_is_what_its_name_says(name: str) -> None:
+    stream, mode, phase = SITUATIONS[name]
+    last = agree(stream, SHORT)[-1]
+    assert last[0] is mode
+    assert last[2] is phase
+
+
+def test_situations_cover_every_mode_phase_safety_and_law() -> None:
+    seen = [agree(stream, SHORT)[-1] for stream, _, _ in SITUATIONS.values()]
+    assert {item[0] for item in seen} == set(Mode)
+    assert {item[2] for item in seen} == set(Phase)
+    assert {item[1] for item in seen} == set(Safety) - {Safety.REDUCED}
+    assert {item[3] for item in seen} == set(Law)
+    assert {item[4] for item in seen} == set(ProgramState)
+
+
+@pytest.mark.parametrize("after", AFTER)
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_every_input_in_every_situation_does_what_the_spec_says(name: str, after: str) -> None:
+    stream = SITUATIONS[name][0]
+    for step in INPUTS.values():
+        agree([*stream, step, *AFTER[after]], SHORT)
+
+
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_options_do_what_the_spec_says(name: str) -> None:
+    stream = SITUATIONS[name][0]
+    for step in FOR_OPTIONS.values():
+        for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE):
+            agree([*stream, step, *AFTER["hold on"]], option)
+
+
+STEPS = st.builds(
+    Step,
+    held=st.booleans(),
+    released=st.sampled_from([False, False, False, True]),
+    commands=st.lists(st.sampled_from(Command), max_size=2).map(tuple),
+    joints=st.sampled_from([True] * 9 + [False]),
+    wrench=st.sampled_from([True] * 5 + [False]),
+    qd=st.sampled_from([0.0, 0.0, 0.0, 0.0, 0.009, 0.01, 0.05, 0.051, -0.2]),
+    force=st.sampled_from([0.0, 0.0, 0.0, 8.0, 8.1, -20.0]),
+    tau=st.sampled_from([0.0, 0.0, 0.0, 8.0, 8.1]),
+    done=st.booleans(),
+    load=st.sampled_from([None, None, PROGRAM, WRONG]),
+)
+USUAL = st.sampled_from(
+    [
+        ticks_of(30),
+        ticks_of(11, held=True),
+        ticks_of(60, held=True),
+        [Step(released=True)],
+        ticks_of(60),
+        ticks_of(152),
+        ticks_of(20, qd=0.2),
+        ticks_of(250),
+        ticks_of(301),
+        [Step(commands=(Command.RESET,))],
+        [Step(commands=(Command.TEACH,))],
+        [Step(load=PROGRAM)],
+        [Step(commands=(Command.START_PROGRAM,))],
+        [Step(commands=(Command.RESUME_PROGRAM,))],
+        [Step(done=True)],
+    ]
+)
+ODD = st.tuples(STEPS, st.integers(1, 60)).map(lambda pair: [pair[0]] * pair[1])
+STREAMS = st.lists(USUAL | ODD, min_size=1, max_size=40).map(lambda parts: [step for part in parts for step in part])
+
+
+@hypothesis_settings(max_examples=150, deadline=None)
+@given(stream=STREAMS, option=st.sampled_from([SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE]))
+def test_random_streams_do_what_the_spec_says(stream: list[Step], option: Settings) -> None:
+    agree(REST + stream, option)

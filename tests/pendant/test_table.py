@@ -1,0 +1,115 @@
+"""The event table is complete, and its texts fit."""
+
+import string
+
+import pytest
+
+from pendant.events import Event, Kind, Values
+from pendant.table import LEAVING, TABLE, Clears, Effect, Row, Severity, render
+
+EXAMPLE: Values = {
+    "allowed": "TEACH, NORMAL",
+    "command": "resume_program",
+    "from": "FREE_DRIVE",
+    "gain": 1.0,
+    "joint": "shoulder",
+    "limit": 10.0,
+    "mode": "FREE_DRIVE",
+    "name": "free_drive.allowed_from.normal",
+    "new": True,
+    "old": False,
+    "parameter": "joint external torque",
+    "period": 3.0,
+    "reason": "switch to NORMAL or TEACH first",
+    "remaining": 1.5,
+    "sensor": "joint encoders and motor currents",
+    "step": 3,
+    "steps": 12,
+    "time": 0.1,
+    "to": "TEACH",
+    "unit": "rad/s",
+    "value": 12.345,
+}
+
+EFFECTS = {
+    Kind.ENTERED: Effect.ENTER,
+    Kind.REFUSED_MODE: Effect.NO_ENTRY,
+    Kind.REFUSED_SENSORS: Effect.NO_ENTRY,
+    Kind.REFUSED_MOVING: Effect.NO_ENTRY,
+    Kind.LEFT_PERIOD: Effect.LEAVE,
+    Kind.LEFT_RESTART: Effect.LEAVE,
+    Kind.LEFT_PRESS: Effect.LEAVE,
+    Kind.LEFT_RELEASE: Effect.LEAVE,
+    Kind.DEACTIVATED: Effect.LEAVE,
+    Kind.SENSORS_LOST: Effect.LEAVE_TO_STOP,
+    Kind.RUN_SENSORS_LOST: Effect.PROTECTIVE_STOP,
+    Kind.EMERGENCY_STOP: Effect.EMERGENCY_STOP,
+}
+"""All other kinds change nothing."""
+
+
+def test_every_kind_has_a_row_and_every_row_a_kind() -> None:
+    assert set(TABLE) == set(Kind)
+
+
+def test_effects_are_as_the_spec_says() -> None:
+    assert {kind: row.effect for kind, row in TABLE.items()} == {kind: EFFECTS.get(kind, Effect.INFO) for kind in Kind}
+    assert set(EFFECTS.values()) | {Effect.INFO} == set(Effect)
+    assert {effect for effect in Effect if effect.name.startswith("LEAVE") or effect.name.endswith("STOP")} == LEAVING
+
+
+def test_refusals_and_leavings_start_the_cool_down_except_the_deactivation_signal() -> None:
+    """FD-12c."""
+    starting = {kind for kind, row in TABLE.items() if row.cool_down}
+    assert starting == {kind for kind, effect in EFFECTS.items() if effect is not Effect.ENTER} - {Kind.DEACTIVATED}
+
+
+def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> None:
+    stops = {Effect.LEAVE_TO_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP}
+    for row in TABLE.values():
+        assert (row.clears is Clears.RESET) == (row.effect in stops) == (row.severity is Severity.STOP)
+        assert row.override == "nobody"
+
+
+def test_severities_are_ordered() -> None:
+    assert list(Severity) == [Severity.INFO, Severity.NOTICE, Severity.WARNING, Severity.STOP]
+    assert sorted(Severity) == list(Severity)
+
+
+def fields(row: Row) -> set[str]:
+    return {name for text in (row.headline, row.guidance) for _, name, _, _ in string.Formatter().parse(text) if name}
+
+
+@pytest.mark.parametrize("kind", Kind)
+def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
+    row = TABLE[kind]
+    assert fields(row) <= set(row.keys)
+    assert set(row.keys) - fields(row) <= {"from", "gain"}
+    assert len(set(row.keys)) == len(row.keys)
+
+
+@pytest.mark.parametrize("kind", Kind)
+def test_texts_are_short_and_whole(kind: Kind) -> None:
+    row = TABLE[kind]
+    headline, guidance = render(Event(kind, 0, {key: EXAMPLE[key] for key in row.keys}))
+    assert 3 < len(headline) <= 60, headline
+    assert len(guidance) <= 100, guidance
+    assert "{" not in headline + guidance
+    assert not headline.endswith(".")
+    assert guidance == "" or guidance.endswith(".")
+
+
+@pytest.mark.parametrize("kind", [kind for kind, row in TABLE.items() if row.effect is not Effect.INFO])
+def test_whatever_acts_on_the_mode_has_guidance(kind: Kind) -> None:
+    """FD-22."""
+    assert TABLE[kind].guidance
+
+
+def test_limits_are_shown_with_numbers_and_units() -> None:
+    values: Values = {"parameter": "user force", "value": 12.34, "limit": 8.0, "unit": "N"}
+    assert render(Event(Kind.MANIPULATION, 0, values)) == ("The arm is guided", "user force: 12.34 N, limit 8.00 N.")
+    values = {"joint": "elbow", "value": 0.0123, "limit": 0.01, "time": 0.1}
+    assert render(Event(Kind.REFUSED_MOVING, 0, values)) == (
+        "Free-drive refused: the arm moves",
+        "elbow at 0.012 rad/s, limit 0.010 rad/s for 0.1 s. Hands off, then try again.",
+    )
