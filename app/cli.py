@@ -12,7 +12,8 @@ from rich.table import Table
 
 from app.checked import ABSENT, BadInput, load
 from app.library import load_arm, robots
-from app.session import Session, Setup, find, prepare
+from app.prepare import prepare
+from app.session import Session, Setup, find
 from pendant.settings import SettingError
 from pendant.settings import find as find_setting
 from sim.arm import Arm

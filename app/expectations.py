@@ -141,7 +141,7 @@ class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
 
     def planned(self) -> str | None:
         """See `Expectation.planned`."""
-        return "CD-8"
+        return "CD-16"
 
 
 AnyExpectation = State | Happens | Never | Value | Displacement | Period | ContactDelay

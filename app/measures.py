@@ -165,4 +165,4 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
             return ValueWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Displacement():
             return DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
-    raise AssertionError(f"{type(expectation).__name__} is planned, and app.session.prepare refuses it")
+    raise AssertionError(f"{type(expectation).__name__} is planned, and app.prepare.prepare refuses it")

@@ -9,7 +9,8 @@ from typing import Protocol
 
 from app.events_file import EventsFile
 from app.measures import watch
-from app.session import Prepared, Session
+from app.prepare import Prepared
+from app.session import Session
 from app.timeline import Timeline
 from app.watch import Verdict
 from pendant.decision import Decision

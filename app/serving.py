@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from app.checked import BadInput
+from app.prepare import Prepared
 from app.runner import simulate
-from app.session import Prepared
 from app.web.server import Served
 from app.web.server import serve as serve_web
 from sim.loop import Loop

@@ -1,38 +1,17 @@
-"""Session files: what to simulate, what happens when, and what is expected of it. Schema, reading, and checks across fields."""
+"""Session files: what to simulate, what happens when, and what is expected of it. The schema; app.prepare checks and uses it."""
 
-import math
-import re
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
 
-import assets
-from app.actions import AnyAction, Effort, Laboratory, Program
-from app.actions import Settings as SettingsAction
-from app.checked import ABSENT, BadInput, load
-from app.expectations import AnyExpectation, Displacement, Value
-from app.library import load_arm, load_tool
-from pendant.program import Program as Steps
-from pendant.program import misfit
-from pendant.settings import SettingError, Settings, apply
-from sim.arm import Arm
-from sim.changes import Friction, MoveObject, Temperature
-from sim.scenario import AnyObject, Load, Scenario, Tool, Vector
-
-MOUNTINGS: dict[str, list[float]] = {
-    "floor": [0.0, 0.0, 0.0],
-    "wall": [0.0, math.pi / 2, 0.0],
-    "ceiling": [math.pi, 0.0, 0.0],
-}
-"""Named mountings: roll, pitch, yaw of B in W [rad]. On a wall, z of B is horizontal, along x of W."""
-
-FEATURES: dict[str, str] = {}
-"""Requirement id -> the dotted name of the switch that turns it on and off. Features without a switch are not in it."""
-
-LAST_OF = {"FD": 25, "VW": 10, "HF": 2, "CD": 18, "AF": 9}
-"""The highest number of each group of requirements."""
+from app.actions import AnyAction
+from app.checked import ABSENT, BadInput
+from app.expectations import AnyExpectation
+from app.library import ASSETS
+from pendant.program import Program
+from sim.scenario import AnyObject, Load, Tool, Vector
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -56,7 +35,7 @@ class Session(Setup, frozen=True, kw_only=True):
 
     title: str
     duration: Annotated[float, Meta(gt=0, le=3600)]  # [s]
-    program: Steps | None = None  # loaded at the start
+    program: Program | None = None  # loaded at the start
     timeline: list[AnyAction] = []
     expectations: list[AnyExpectation] = []
 
@@ -68,18 +47,9 @@ class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     objects: list[AnyObject]
 
 
-class Prepared(NamedTuple):
-    """A setup, checked and turned into what `sim.simulation.Simulation` takes."""
-
-    arm: Arm
-    scenario: Scenario
-    settings: Settings
-    program: Steps | None
-
-
 def folder(kind: str) -> Path:
     """The folder of bundled files of a kind: "sessions" or "worlds"."""
-    return Path(assets.__path__[0]) / kind
+    return ASSETS / kind
 
 
 def bundled(kind: str) -> list[str]:
@@ -98,117 +68,3 @@ def find(name: str) -> Path:
     if name in bundled("sessions"):
         return folder("sessions") / f"{name}.yaml"
     raise BadInput(name, "", ABSENT, f"no such file; bundled sessions: {', '.join(bundled('sessions'))}")
-
-
-def prepare(setup: Setup, where: str) -> Prepared:
-    """Turn a setup into arm, scenario, settings and program; for a session, check its time line and expectations too.
-
-    Args:
-        setup: from a file.
-        where: the file's name, for messages.
-
-    Raises:
-        BadInput: what the fields say does not fit together, or is not available yet.
-    """
-    arm = load_arm(setup.robot)
-    if setup.posture is not None:
-        _check_posture(setup.posture, arm, where)
-    _check_features(setup.features, where)
-    program = setup.program if isinstance(setup, Session) else None
-    if program is not None and (why := misfit(program, arm.n)) is not None:
-        raise BadInput(where, "program", ABSENT, why)
-    prepared = Prepared(arm, _scenario(setup, where), _applied(Settings(), setup.settings, where, "settings"), program)
-    if isinstance(setup, Session):
-        _check_session(setup, prepared, where)
-    return prepared
-
-
-def _scenario(setup: Setup, where: str) -> Scenario:
-    world = setup.world
-    if isinstance(world, str):
-        if world not in bundled("worlds"):
-            raise BadInput(where, "world", world, f"a list of objects, or one of {', '.join(bundled('worlds'))}")
-        world = load(folder("worlds") / f"{world}.yaml", World).objects
-    names = [thing.name for thing in world]
-    for i, name in enumerate(names):
-        if name in names[:i]:
-            raise BadInput(where, f"world[{i}].name", name, "each object needs a name of its own")
-    return Scenario(
-        mounting=MOUNTINGS[setup.mounting] if isinstance(setup.mounting, str) else setup.mounting,
-        posture=setup.posture,
-        tool=load_tool(setup.tool) if isinstance(setup.tool, str) else setup.tool,
-        payload_true=setup.payload_true,
-        payload_configured=setup.payload_configured,
-        world=world,
-        seed=setup.seed,
-        mismatch=setup.mismatch,
-    )
-
-
-def _check_posture(posture: list[float], arm: Arm, where: str) -> None:
-    if len(posture) != arm.n:
-        raise BadInput(where, "posture", posture, f"{arm.n} joint angles, {arm.chain.joints[0]} to {arm.chain.joints[-1]}")
-    for i, (angle, limit) in enumerate(zip(posture, arm.limits.position, strict=True)):
-        if abs(angle) > limit:
-            raise BadInput(where, f"posture[{i}]", angle, f"-{limit:g} .. {limit:g} rad ({arm.chain.joints[i]} of {arm.name})")
-
-
-def _check_features(features: dict[str, Literal["on", "off"]], where: str) -> None:
-    for ident in features:
-        match = re.fullmatch(r"([A-Z]{2})-(\d{1,2})[a-z]?", ident)
-        if match is None or not 0 <= int(match[2]) <= LAST_OF.get(match[1], -1):
-            raise BadInput(where, "features", ident, "the id of a requirement, such as FD-9")
-        if ident not in FEATURES:
-            raise _planned(where, f"features.{ident}", ident)
-
-
-def _applied(settings: Settings, changes: dict[str, float | bool | str], where: str, field: str) -> Settings:
-    try:
-        return apply(settings, dict(changes))
-    except SettingError as error:
-        value = ABSENT if error.value is None else error.value
-        raise BadInput(where, f"{field}.{error.name}", value, error.allowed) from None
-
-
-def _check_session(session: Session, prepared: Prepared, where: str) -> None:
-    arm = prepared.arm
-    parts = ["foot", *arm.chain.joints, "flange", "tool"]
-    for i, action in enumerate(session.timeline):
-        field = f"timeline[{i}]"
-        if (ident := action.planned()) is not None:
-            raise _planned(where, field, ident)
-        if action.at is not None and action.at >= session.duration:
-            raise BadInput(where, f"{field}.at", action.at, f"below the duration, {session.duration:g} s")
-        if isinstance(action, Effort):
-            _one_of(action.part, parts, where, f"{field}.part")
-        elif isinstance(action, SettingsAction):
-            _applied(prepared.settings, action.set, where, f"{field}.set")
-        elif isinstance(action, Program) and session.program is None:
-            raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
-        elif isinstance(action, Laboratory):
-            change = action.change
-            if isinstance(change, MoveObject):
-                _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.change.name")
-            elif isinstance(change, Friction | Temperature) and change.joint is not None:
-                _one_of(change.joint, arm.chain.joints, where, f"{field}.change.joint")
-    for i, expectation in enumerate(session.expectations):
-        field = f"expectations[{i}]"
-        if (ident := expectation.planned()) is not None:
-            raise _planned(where, field, ident)
-        for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
-            moment = getattr(expectation, name, None)
-            if expectation.after is None and moment is not None and moment > session.duration:
-                raise BadInput(where, f"{field}.{key}", moment, f"at most the duration, {session.duration:g} s")
-        if isinstance(expectation, Value) and expectation.joint is not None:
-            _one_of(expectation.joint, arm.chain.joints, where, f"{field}.joint")
-        elif isinstance(expectation, Displacement):
-            _one_of(expectation.part, parts, where, f"{field}.part")
-
-
-def _one_of(value: str, allowed: list[str], where: str, field: str) -> None:
-    if value not in allowed:
-        raise BadInput(where, field, value, f"one of {', '.join(allowed)}" if allowed else "there is none in this session")
-
-
-def _planned(where: str, field: str, ident: str) -> BadInput:
-    return BadInput(where, field, ABSENT, f"{ident}: not available yet (planned)")

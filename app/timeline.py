@@ -67,7 +67,7 @@ class Timeline:
     """Plays a list of actions. Call `wishes` before each tick and `see` after it, with ticks counted from 1, as in events.
 
     Args:
-        actions: checked by app.session.prepare.
+        actions: checked by app.prepare.prepare.
         joints: the arm's joint names, base to flange.
         program: loaded in the first tick.
     """
@@ -134,7 +134,7 @@ class Timeline:
             case Laboratory():
                 now.changes.append(action.change)
             case _:
-                raise AssertionError(f"{type(action).__name__} is planned, and app.session.prepare refuses it")
+                raise AssertionError(f"{type(action).__name__} is planned, and app.prepare.prepare refuses it")
 
     def _let_go(self, button: Button, now: _Tick) -> None:
         self._held.discard(button)

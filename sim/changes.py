@@ -4,6 +4,7 @@ from typing import Literal
 
 import msgspec
 
+from sim.arm import NotNegative
 from sim.scenario import Load, Vector
 
 
@@ -28,7 +29,7 @@ class SensorFault(Change, tag="sensor", frozen=True, forbid_unknown_fields=True,
     channel: int | None = None
     offset: float = 0.0  # step, at once [sensor's unit]
     drift: float = 0.0  # [sensor's unit/s]
-    noise_factor: float = 1.0
+    noise_factor: NotNegative = 1.0
     outage: bool = False
 
 
@@ -36,7 +37,7 @@ class Friction(Change, tag="friction", frozen=True, forbid_unknown_fields=True, 
     """True friction of a joint (None: all) times `factor` (wear, grease)."""
 
     joint: str | None = None
-    factor: float
+    factor: NotNegative
 
 
 class Temperature(Change, tag="temperature", frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -1,0 +1,71 @@
+"""Decisions and snapshots to feed to time lines and watches, without a simulation."""
+
+from typing import Any
+
+import numpy as np
+
+from pendant.decision import Decision, Remaining
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.modes import Law, Mode, Phase, Safety
+from sim.desk import Wishes
+from sim.snapshot import Snapshot
+
+JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+
+
+def decision(
+    mode: Mode = Mode.TEACH,
+    phase: Phase = Phase.OFF,
+    safety: Safety = Safety.NORMAL,
+    events: tuple[Event, ...] = (),
+    periods: tuple[Remaining, ...] = (),
+) -> Decision:
+    return Decision(
+        mode=mode,
+        safety=safety,
+        phase=phase,
+        law=Law.HOLD,
+        move=None,
+        gain=0.0,
+        force_cap=50.0,
+        baseline=(0.0,) * 6,
+        periods=periods,
+        events=events,
+    )
+
+
+def happened(kind: Kind, tick: int, **values: float | str) -> Decision:
+    return decision(events=(Event(kind, tick, dict(values)),))
+
+
+def estimate(**changed: Any) -> Estimate:
+    values: dict[str, Any] = {}
+    for name, hint in Estimate.__annotations__.items():
+        values[name] = 0 if hint in (int, float) else True if hint is bool else np.zeros(6) if "ndarray" in str(hint) else hint()
+    return Estimate(**{**values, **changed})
+
+
+def snapshot(
+    tick: int, flange: tuple[float, ...] = (0.0, 0.0, 0.0), quaternion: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0), **measured: Any
+) -> Snapshot:
+    links = np.zeros((8, 7))
+    links[:, 3] = 1.0
+    links[-1] = [*flange, *quaternion]
+    links[3, :3] = [7.0, 8.0, 9.0]  # the elbow's link
+    return Snapshot(tick, decision(), estimate(**measured), links, np.zeros((0, 7)), None, 2.5, 0.0, ())
+
+
+class FakeSimulation:
+    """Reads back what it is told: enters free-drive while the button is held, moves the flange with the pushed force."""
+
+    def __init__(self) -> None:
+        self.wishes: list[Wishes] = []
+
+    def tick(self, wishes: Wishes) -> Decision:
+        self.wishes.append(wishes)
+        mode = Mode.FREE_DRIVE if wishes.inputs.held else Mode.TEACH
+        return decision(mode)
+
+    def snapshot(self) -> Snapshot:
+        return snapshot(len(self.wishes), (0.001 * len(self.wishes), 0.0, 0.0))

@@ -1,0 +1,74 @@
+"""The project as a newcomer meets it: README, the build's entry points, the wheel's contents."""
+
+import os
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+@pytest.mark.parametrize("command", ["make run", "make test"])
+def test_the_readme_names_the_two_commands_and_they_exist(command: str) -> None:
+    assert command in (ROOT / "README.md").read_text()
+    assert re.search(rf"^{command.split()[1]}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
+
+
+@pytest.mark.parametrize("document", ["US 12384019 B2", "US 12384030 B2", "71737980"])
+def test_the_readme_names_its_sources(document: str) -> None:
+    assert document in (ROOT / "README.md").read_text().partition("## Sources")[2]
+
+
+def test_the_readme_example_session_is_valid_and_passes(tmp_path: Path) -> None:
+    from app.checked import load
+    from app.prepare import prepare
+    from app.runner import run, simulate
+    from app.session import Session
+
+    match = re.search(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert match is not None
+    path = tmp_path / "readme.yaml"
+    path.write_text(match[1])
+    session = load(path, Session)
+    prepared = prepare(session, path.name)
+    outcome = run(session, prepared, simulate(prepared), tmp_path)
+    assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []
+
+
+def test_the_readme_example_test_passes(tmp_path: Path) -> None:
+    match = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert match is not None
+    names: dict[str, object] = {}
+    exec(match[1], names)
+    test = names["test_the_arm_holds"]
+    assert callable(test)
+    test(tmp_path)
+
+
+def test_ci_runs_make_test() -> None:
+    script = ROOT / ".ci" / "run"
+    assert os.access(script, os.X_OK)
+    assert "make test" in script.read_text().splitlines()
+    assert "set -eu" in script.read_text().splitlines()
+
+
+def test_the_wheel_takes_all_rooms_and_installs_the_command() -> None:
+    wheel = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert set(wheel["packages"]) == {"app", "sim", "pendant", "assets"}
+    assert PROJECT["project"]["scripts"] == {"pendant": "app.cli:main"}
+
+
+def test_the_licence_is_mit() -> None:
+    assert (ROOT / "LICENSE").read_text().startswith("MIT License\n\nCopyright (c) 2026 The pendant authors")
+    assert PROJECT["project"]["license"] == "MIT"
+
+
+def test_no_file_names_the_machine_it_was_made_on() -> None:
+    suffixes = {".py", ".md", ".toml", ".yaml", ""}
+    folders = ["app", "sim", "pendant", "assets", "benchmarks", "docs"]
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file() and path.suffix in suffixes]
+    assert len(files) > 40
+    assert [path for path in files if re.search(r"/(home|root|Users)/|/work/", path.read_text(errors="replace"))] == []
