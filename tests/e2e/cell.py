@@ -1,0 +1,72 @@
+"""The served cell as a test sees it: waiting for states, projecting points to pixels, measuring motion of the true arm."""
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from playwright.sync_api import Page
+
+from app.web.scene import frames_of
+from app.web.server import Served
+from pendant.events import Kind
+from pendant.modes import TICK_RATE
+from sim.frames import matrix_from_quaternion
+from sim.loop import Loop
+
+Array = NDArray[np.float64]
+
+
+class Cell:
+    """A running loop and its web app."""
+
+    def __init__(self, loop: Loop, served: Served) -> None:
+        self.loop = loop
+        self.served = served
+        self._frames = frames_of(loop.simulation.arm)
+
+    def wait(self, true: Callable[[], bool], what: str, seconds: float = 20.0) -> None:
+        """Wait for a state."""
+        end = time.monotonic() + seconds
+        while not true():
+            assert time.monotonic() < end, f"waited {seconds} s in vain: {what}"
+            time.sleep(0.01)
+
+    def pass_time(self, seconds: float) -> None:
+        """Wait for simulated time to pass."""
+        end = self.loop.latest().tick + round(seconds * TICK_RATE)
+        self.wait(lambda: self.loop.latest().tick >= end, f"{seconds} s of simulated time", 20.0 + 5 * seconds)
+
+    def happened(self, kind: Kind) -> bool:
+        """Whether an event of that kind has happened."""
+        return any(event.kind is kind for event in self.loop.events(0))
+
+    def position(self, part: str, point: tuple[float, ...] = (0.0, 0.0, 0.0)) -> Array:
+        """Where a point of a part truly is now, in W [m]."""
+        pose = self.loop.latest().truth_links[self._frames[part]]
+        return pose[:3] + matrix_from_quaternion(pose[3:]) @ np.array(point)
+
+    def grip(self) -> tuple[str, tuple[float, float, float]]:
+        """Part and point of the one hand that holds the arm; waits for it."""
+        grips = self.served.hand._grips
+        self.wait(lambda: len(grips) == 1, "one hand holds the arm")
+        grip = next(iter(grips.values()))
+        return grip.part, grip.point
+
+    def pixel(self, page: Page, client: int, point: Array) -> tuple[float, float]:
+        """Where a point of W is in the window."""
+        camera = self.served.server.get_clients()[client].camera
+        seen = matrix_from_quaternion(camera.wxyz).T @ (point - camera.position)
+        box = page.locator("canvas").first.bounding_box()
+        assert box is not None
+        focal = box["height"] / 2 / math.tan(camera.fov / 2)
+        return box["x"] + box["width"] / 2 + focal * seen[0] / seen[2], box["y"] + box["height"] / 2 + focal * seen[1] / seen[2]
+
+    def drag(self, page: Page, client: int, point: Array, by: tuple[float, float]) -> None:
+        """Press on a point of W and move the pointer by so many pixels, without letting go."""
+        x, y = self.pixel(page, client, point)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + by[0] / 4, y + by[1] / 4)
+        page.mouse.move(x + by[0], y + by[1], steps=6)

@@ -1,0 +1,88 @@
+"""A real loop, served to a real Chromium with a real pointer."""
+
+import shutil
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from app.library import load_arm
+from app.web.server import Served, serve
+from pendant.settings import Settings, apply
+from sim.loop import Loop
+from sim.scenario import Scenario
+from sim.simulation import Simulation
+from tests.e2e.cell import Cell
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+FLAGS = (
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-quic",
+)
+WINDOW = {"width": 1280, "height": 800}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "e2e: drives a real browser")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium of this machine, drawing in software."""
+    path = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    if path is None:
+        pytest.fail("no Chromium found: install it, on Debian or Ubuntu with `apt-get install chromium`", pytrace=False)
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def loop() -> Iterator[Loop]:
+    """The shipped UR5e in its default posture."""
+    arm = load_arm("ur5e")
+    # Software rendering takes seconds for what a hand does at once: from the button to the arm within the shipped 3 s is luck.
+    settings = apply(Settings(), {"free_drive.period": 30.0})
+    running = Loop(lambda: Simulation(arm, Scenario(), settings))
+    running.start()
+    yield running
+    running.stop()
+
+
+@pytest.fixture
+def served(loop: Loop) -> Iterator[Served]:
+    """The web app of `loop`."""
+    app = serve(loop, loop.simulation.arm, loop.simulation.scenario)
+    yield app
+    app.close()
+
+
+@pytest.fixture
+def cell(loop: Loop, served: Served) -> Cell:
+    """Loop and web app, and what tests measure on them."""
+    return Cell(loop, served)
+
+
+@pytest.fixture
+def visit(browser: Browser, cell: Cell) -> Iterator[Callable[[], Page]]:
+    """Opens the page in a window of its own, and waits until it is there."""
+    pages: list[Page] = []
+
+    def open_page() -> Page:
+        page = browser.new_context(viewport=WINDOW).new_page()
+        pages.append(page)
+        page.goto(cell.served.url)
+        page.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)
+        page.add_style_tag(content=".mantine-Notification-root { display: none }")
+        cell.wait(lambda: len(cell.served.control._strips) == len(pages), "the page is connected", 60.0)
+        return page
+
+    yield open_page
+    for page in pages:
+        if not page.is_closed():
+            page.context.close()
