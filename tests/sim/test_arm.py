@@ -40,6 +40,52 @@ URDF_COM = {
     ],
 }
 
+# In the axes of the DH link frames, as the vendor gives them: ixx iyy izz ixy ixz iyz.
+VENDOR_TENSORS = {
+    "ur3e": [
+        (0.0027657, 0.0021501, 0.0025626, 9.6e-06, -1.49e-05, 0.0001873),
+        (0.0042623, 0.0460284, 0.0448947, -4.09e-05, -0.001496, -1.29e-05),
+        (0.0010511, 0.0113396, 0.0110895, 0, -3.31e-05, 2.2e-06),
+        (0.0008174, 0.0006844, 0.0005497, -5e-07, 2.1e-06, 6.17e-05),
+        (0.0006059, 0.0005837, 0.0003831, -6e-07, -6e-07, -2.71e-05),
+        (0.000108, 0.0001086, 0.0001371, -1e-07, -1e-07, -2e-07),
+    ],
+    "ur5e": [
+        (0.0070021, 0.00648091, 0.00657286, 7.3e-07, -1.053e-05, 0.00049994),
+        (0.01505885, 0.33388086, 0.33247207, -5.4e-05, 5.63e-06, -1.81e-06),
+        (0.00399632, 0.07879254, 0.0784851, -1.365e-05, 0.00137272, -6.6e-06),
+        (0.00165491, 0.00135962, 0.00126279, -2.82e-06, -4.38e-06, 0.00010157),
+        (0.00135617, 0.00127827, 0.00096614, -2.74e-06, 4.44e-06, -5.048e-05),
+        (0.00018694, 0.00018908, 0.00025756, 6e-08, -1.7e-07, -9.2e-07),
+    ],
+    "ur10e": [
+        (0.03408, 0.03529, 0.02156, 2e-05, -0.00425, 8e-05),
+        (0.02814, 0.77068, 0.76943, 5e-05, -0.01561, 2e-05),
+        (0.01014, 0.30928, 0.30646, 8e-05, 0.00916, 0),
+        (0.00296, 0.00222, 0.00258, -1e-05, 0, -0.00024),
+        (0.00296, 0.00222, 0.00258, -1e-05, 0, -0.00024),
+        (0.0004, 0.00041, 0.00034, 0, 0, 0),
+    ],
+    "ur16e": [
+        (0.03351, 0.03374, 0.021, 2e-05, -1e-05, 0.00374),
+        (0.02796, 0.47558, 0.47635, -0.0001, -0.0072, 3e-05),
+        (0.01091, 0.1206, 0.11714, 6e-05, 0.01012, 1e-05),
+        (0.00609, 0.00245, 0.00579, -1e-05, 0, 0.00083),
+        (0.00389, 0.00219, 0.00363, -1e-05, 0, -0.00045),
+        (0.00117, 0.00118, 0.00084, 0, 0, 0),
+    ],
+}
+VENDOR_MASSES = {
+    "ur3e": [1.98, 3.4445, 1.437, 0.871, 0.805, 0.261],
+    "ur5e": [3.761, 8.058, 2.846, 1.37, 1.3, 0.365],
+    "ur10e": [7.369, 13.051, 3.989, 2.1, 1.98, 0.615],
+    "ur16e": [7.369, 10.45, 4.321, 2.18, 2.033, 0.907],
+}
+VENDOR_COM = {  # in the DH link frames
+    "ur3e": [[0, -0.02, 0], [0.13, 0, 0.1157], [0.05, 0, 0.0238], [0, 0, 0.01], [0, 0, 0.01], [0, 0, -0.02]],
+    "ur10e": [[0.021, 0, 0.027], [0.38, 0, 0.158], [0.24, 0, 0.068], [0, 0.007, 0.018], [0, 0.007, 0.018], [0, 0, -0.026]],
+}
+
 
 def urdf_step(xyz: tuple[float, ...], rpy: tuple[float, ...], q: float) -> np.ndarray:
     """A URDF joint: fixed-axis roll, pitch, yaw, then the joint's turn about z."""
@@ -95,6 +141,16 @@ def test_lengths_and_total_mass(name: str, total: float, a2: float, a3: float, d
     np.testing.assert_allclose(arm.chain.alpha, np.array([1, 0, 0, 1, -1, 0]) * math.pi / 2)
 
 
+@pytest.mark.parametrize("name", VENDOR_MASSES)
+def test_masses(name: str) -> None:
+    assert ARMS[name].masses.mass == VENDOR_MASSES[name]
+
+
+@pytest.mark.parametrize("name", VENDOR_COM)
+def test_centres_of_mass(name: str) -> None:
+    assert ARMS[name].masses.com == VENDOR_COM[name]
+
+
 @pytest.mark.parametrize("name", URDF_COM)
 def test_centres_of_mass_agree_with_the_urdf(name: str) -> None:
     arm = ARMS[name]
@@ -102,24 +158,15 @@ def test_centres_of_mass_agree_with_the_urdf(name: str) -> None:
         np.testing.assert_allclose(com_in_joint_frame(arm, k) - [0, 0, arm.chain.d[k]], expected, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("name", "k", "vendor"),
-    [  # in the axes of the DH link frame: ixx iyy izz ixy ixz iyz
-        ("ur5e", 0, (0.00700210, 0.00648091, 0.00657286, 0.00000073, -0.00001053, 0.00049994)),
-        ("ur5e", 1, (0.01505885, 0.33388086, 0.33247207, -0.000054, 0.00000563, -0.00000181)),
-        ("ur5e", 4, (0.00135617, 0.00127827, 0.00096614, -0.00000274, 0.00000444, -0.00005048)),
-        ("ur10e", 0, (0.03408, 0.03529, 0.02156, 2e-5, -0.00425, 8e-5)),
-        ("ur16e", 3, (0.00609, 0.00245, 0.00579, -1e-5, 0, 0.00083)),
-        ("ur3e", 2, (0.0010511, 0.0113396, 0.0110895, 0, -0.0000331, 0.0000022)),
-    ],
-)
-def test_tensors_are_the_vendors_turned_into_joint_axes(name: str, k: int, vendor: tuple[float, ...]) -> None:
-    xx, yy, zz, xy, xz, yz = vendor
+@pytest.mark.parametrize("k", range(6))
+@pytest.mark.parametrize("name", VENDOR_TENSORS)
+def test_tensors_are_the_vendors_turned_into_joint_axes(name: str, k: int) -> None:
+    xx, yy, zz, xy, xz, yz = VENDOR_TENSORS[name][k]
     in_dh = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     axes = link_transform(ARMS[name], k)[:3, :3]  # columns: the DH axes in joint axes
-    omega = np.array([0.3, -1.1, 0.7])  # kinetic energy does not depend on the axes
-    energy = omega @ inertia_matrix(ARMS[name].inertias.tensor[k]) @ omega
-    assert energy == pytest.approx((axes.T @ omega) @ in_dh @ (axes.T @ omega), rel=1e-9)
+    for omega in np.random.default_rng(k).normal(size=(6, 3)):  # kinetic energy does not depend on the axes
+        energy = omega @ inertia_matrix(ARMS[name].inertias.tensor[k]) @ omega
+        assert energy == pytest.approx((axes.T @ omega) @ in_dh @ (axes.T @ omega), rel=1e-7)
 
 
 def test_upper_arms_turn_hardest_about_axes_across_them() -> None:
