@@ -42,6 +42,7 @@ class Kind(StrEnum):
     PROGRAM_RESUMED = "program_resumed"
     PROGRAM_STOPPED = "program_stopped"
     PROGRAM_FINISHED = "program_finished"
+    PROGRAM_FAILED = "program_failed"
     SETTING_CHANGED = "setting_changed"
     SETTING_REFUSED = "setting_refused"
 

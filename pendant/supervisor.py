@@ -138,6 +138,10 @@ class Supervisor:
             return
         if not joints_ok(estimate):
             self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": SENSOR}), events)
+        elif estimate.move_refused:
+            values: Values = {"name": self._name, "step": sequencer.index + 1, "reason": estimate.move_refused}
+            events.append(Event(Kind.PROGRAM_FAILED, estimate.tick, values))
+            self._end_program()
         elif sequencer.step(estimate.move_done):
             self._mode = self._origin
             events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": self._name}))
@@ -187,10 +191,13 @@ class Supervisor:
             sequencer.resume()
             events.append(Event(Kind.PROGRAM_RESUMED, estimate.tick, values))
         else:
-            sequencer.stop()
-            self._mode = self._origin
-            self._braking = True
+            self._end_program()
             events.append(Event(Kind.PROGRAM_STOPPED, estimate.tick, values))
+
+    def _end_program(self) -> None:
+        self._sequencer.stop()
+        self._mode = self._origin
+        self._braking = True
 
     def _pause(self, tick: int, events: list[Event]) -> None:
         self._sequencer.pause()

@@ -172,6 +172,7 @@ TABLE: dict[Kind, Row] = {
     Kind.PROGRAM_RESUMED: _info("Program {name} resumed", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_STOPPED: _info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: _info("Program {name} finished", "", ("name",)),
+    Kind.PROGRAM_FAILED: _denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
     # Settings
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),

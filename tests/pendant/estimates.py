@@ -19,6 +19,7 @@ def estimate(
     torque: float | list[float] = 0.0,
     speed: float | list[float] = 0.0,
     move_done: int = 0,
+    move_refused: str = "",
 ) -> Estimate:
     """An estimate. A plain number for `qd` or `tau_ext` is joint 0's, for `force`, `torque` and `speed` the x component."""
 
@@ -47,4 +48,5 @@ def estimate(
         v_tcp=0.0,
         v_elbow=0.0,
         move_done=move_done,
+        move_refused=move_refused,
     )

@@ -35,6 +35,7 @@ class Step:
     force: float = 0.0
     tau: float = 0.0
     done: bool = False  # the FOLLOW law has finished the present move
+    cannot: bool = False  # the FOLLOW law cannot do the move
     load: Program | None = None
     settings: dict[str, float | bool | str] = field(default_factory=dict)
 
@@ -48,7 +49,14 @@ def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:
     value = estimate()
     for tick, step in enumerate(stream):
         if last is None or step is not last:
-            value = estimate(joints_valid=step.joints, wrench_valid=step.wrench, qd=step.qd, force=step.force, tau_ext=step.tau)
+            value = estimate(
+                joints_valid=step.joints,
+                wrench_valid=step.wrench,
+                qd=step.qd,
+                force=step.force,
+                tau_ext=step.tau,
+                move_refused="too far" if step.cannot else "",
+            )
             button = frozenset({Button.FREE_DRIVE})
             inputs = Inputs(
                 button if step.held else frozenset(),
@@ -213,13 +221,17 @@ def _modes(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
                 w.mode = to
 
 
-def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+def _load(w: World, i: Step, kinds: list[Kind]) -> None:
     if i.load is not None:
         if w.mode in (Mode.RUN, Mode.FREE_DRIVE) or i.load is WRONG:
             kinds.append(Kind.PROGRAM_REFUSED)
         else:
             kinds.append(Kind.PROGRAM_LOADED)
             w.loaded, w.program = True, ProgramState.STOPPED
+
+
+def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+    _load(w, i, kinds)
     running_before = w.program is ProgramState.RUNNING
     fresh = False
     for command in i.commands:
@@ -253,6 +265,9 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
         if w.phase is not Phase.OFF:
             _end(w, t, present, cool=True)
         _stop(w, Safety.PROTECTIVE_STOP)
+    elif i.cannot:
+        kinds.append(Kind.PROGRAM_FAILED)
+        w.mode, w.program, w.brake = w.origin, ProgramState.STOPPED, True
     elif i.done:
         w.at += 1
         if w.at > 2:

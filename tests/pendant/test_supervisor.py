@@ -145,6 +145,15 @@ def test_a_motion_that_is_paused_or_stopped_is_braked_until_static() -> None:
         assert bench.step().law is Law.HOLD
 
 
+def test_a_move_that_is_not_possible_ends_the_program_and_says_why() -> None:
+    bench = running()
+    bench.step(NOTHING, estimate(move_done=1))
+    bench.step(NOTHING, estimate(qd=0.2, move_refused="beyond the reach"))
+    assert (bench.last.mode, bench.last.law, bench.last.program) == (Mode.TEACH, Law.BRAKE, ProgramState.STOPPED)
+    values = {"name": "two moves", "step": 2, "reason": "beyond the reach"}
+    assert bench.last.events == (Event(Kind.PROGRAM_FAILED, bench.tick, values),)
+
+
 def test_sensors_lost_in_run_are_a_protective_stop_that_ends_the_program() -> None:
     bench = running()
     bench.step(NOTHING, estimate(joints_valid=False))

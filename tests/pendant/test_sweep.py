@@ -72,6 +72,8 @@ INPUTS = {
     "pushed, held": Step(force=20.0, held=True),
     "link pushed": Step(tau=-9.0),
     "move done": Step(done=True),
+    "move not possible": Step(cannot=True),
+    "move done and not possible": Step(done=True, cannot=True, qd=0.1),
     "load": Step(load=PROGRAM),
     "load wrong": Step(load=WRONG),
     "start without sensors": Step(commands=(Command.START_PROGRAM,), joints=False),
@@ -143,6 +145,7 @@ STEPS = st.builds(
     force=st.sampled_from([0.0, 0.0, 0.0, 8.0, 8.1, -20.0]),
     tau=st.sampled_from([0.0, 0.0, 0.0, 8.0, 8.1]),
     done=st.booleans(),
+    cannot=st.sampled_from([False] * 9 + [True]),
     load=st.sampled_from([None, None, PROGRAM, WRONG]),
 )
 USUAL = st.sampled_from(
