@@ -99,7 +99,7 @@ def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False
     _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
-    pair_geoms(spec, scenario.world)
+    pair_geoms(spec, arm.chain.joints[0], scenario.world)
     return spec
 
 

@@ -15,7 +15,7 @@ a transient; d = 0.9 is right statically and far too soft in an impact (facts/co
 DAMPING_RATIO = 0.03  # of a contact against 1 kg: real surfaces ring little, and a perfect spring would ring for ever
 SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]
 SNAP_REST = 0.2  # share of its force that a snap-fit still resists with while it gives way
-SNAP_MASS = 0.02  # of the part that gives way [kg]
+SNAP_MASS = 0.2  # of the part that gives way [kg]
 HEAVY = 1e6  # mass of a moving object, that no arm pushes aside [kg]
 
 
@@ -35,9 +35,11 @@ def add_object(spec: mujoco.MjSpec, item: AnyObject) -> None:
         slide.limited = mujoco.mjtLimited.mjLIMITED_TRUE
         slide.range = [0.0, item.travel]
         slide.frictionloss = item.force
-        slide.solimp_friction = [0.9999, 0.9999, 1e-3, 0.5, 2]  # as default a stuck joint creeps (facts 3.3)
-        slide.solref_limit = [-1e8, -1e4]
-        slide.solimp_limit = [0.9999, 0.9999, 1e-3, 0.5, 2]
+        # As default a stuck joint creeps by mm/s (facts 3.3); so it creeps by some µm/s.
+        slide.solimp_friction = [0.9999, 0.9999, 1e-3, 0.5, 2]
+        slide.solref_friction = [2.0 * spec.option.timestep, 1.0]
+        slide.solref_limit = [0.001, 1.0]  # as stiff as the step allows: at the end of its travel it is a wall
+        slide.solimp_limit = [0.99, 0.99, 1e-3, 0.5, 2]
         body.gravcomp = 1.0
     if isinstance(item, Moving):
         geom.mass = HEAVY
@@ -46,9 +48,10 @@ def add_object(spec: mujoco.MjSpec, item: AnyObject) -> None:
             body.add_joint(name=f"move/{item.name}/{name}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)
 
 
-def pair_geoms(spec: mujoco.MjSpec, world: Sequence[AnyObject]) -> None:
+def pair_geoms(spec: mujoco.MjSpec, first_link: str, world: Sequence[AnyObject]) -> None:
     """Pair every shape of the arm that can move with every object; nothing else ever collides."""
-    shapes = [geom for geom in spec.geoms if geom.name.startswith("shape/") and geom.parent.name != "foot"]
+    fixed = ("foot", first_link)  # the first link only turns about its own axis: it comes near nothing that the foot does not
+    shapes = [geom for geom in spec.geoms if geom.name.startswith("shape/") and geom.parent.name not in fixed]
     for item in world:
         for shape in shapes:
             pair = spec.add_pair(name=f"{shape.name} {item.name}", geomname1=shape.name, geomname2=f"object/{item.name}")
