@@ -22,7 +22,8 @@ class BadInput(Exception):
         what = [self.field] if self.field else []
         what += [] if self.value is ABSENT else [shown(self.value)]
         parts = [self.where, " = ".join(what), self.allowed]
-        return " ".join(": ".join(part for part in parts if part).split())
+        line = " ".join(": ".join(part for part in parts if part).split())
+        return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
 
 
 class _Absent:
@@ -44,5 +45,4 @@ def shown(value: object) -> str:
         text = " ".join(str(value).split())
         if isinstance(value, str) and (not text or text in ("null", "true", "false") or text[0] in "+-.0123456789"):
             text = f"'{text}'"
-    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
     return text if len(text) <= 80 else f"{text[:77]}..."

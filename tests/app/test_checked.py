@@ -116,6 +116,7 @@ def test_the_whole_must_be_a_mapping(text: str, value: str) -> None:
 
 def test_control_characters_are_refused_and_never_shown() -> None:
     assert complaint("floors: \x1b[31m").isprintable()
+    assert complaint('"\\e[31m": 1').startswith(r"house.yaml: \x1b[31m: unknown field")
     assert complaint('floors: "\\e[31m"') == r"house.yaml: floors = \x1b[31m: expected a whole number"
 
 
