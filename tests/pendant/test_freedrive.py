@@ -182,6 +182,12 @@ def test_the_press_that_entered_may_be_short_without_leaving() -> None:
     bench.run(60)
     bench.step(HOLD)
     assert bench.step(LET_GO).phase is Phase.PERIOD
+    # the same when free-drive was left by a short press before
+    bench.step(HOLD)
+    assert bench.step(LET_GO).phase is Phase.OFF
+    bench.run(1000)
+    assert bench.step(HOLD).phase is Phase.HELD
+    assert bench.step(LET_GO).phase is Phase.PERIOD
 
 
 def test_held_for_long_suspends_everything() -> None:
