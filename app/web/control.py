@@ -5,11 +5,10 @@ from dataclasses import dataclass
 
 import viser
 
-from app.web import svg
+from app.web import style, svg
 from app.web.guard import Guard
 from app.web.panel import Html
 from app.web.svg import Colour
-
 
 TAKE = "Take"
 RELEASE = "Release"
@@ -25,9 +24,10 @@ class Strip:
 
 
 class Control:
-    """The strips of all clients."""
+    """The strips of all clients. Lives on viser's event loop."""
 
-    def __init__(self, guard: Guard, let_go: Callable[[int], None]) -> None:
+    def __init__(self, server: viser.ViserServer, guard: Guard, let_go: Callable[[int], None]) -> None:
+        self._server = server
         self._guard = guard
         self._let_go = let_go
         self._strips: dict[int, Strip] = {}
@@ -40,7 +40,7 @@ class Control:
 
         # The guard has already made whoever presses it the operator, if control was free.
         @button.on_click
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             if strip.label == RELEASE:
                 self._let_go(client.client_id)
                 self._guard.operator.leave(client.client_id)
@@ -59,14 +59,17 @@ class Control:
         """Bring every strip up to date."""
         holder = self._guard.operator.holder
         free = self._guard.operator.free(self._guard.now())
-        for number, strip in list(self._strips.items()):
+        here = self._server.get_clients()
+        for number, strip in self._strips.items():
+            if number not in here:
+                continue
             if holder == number:
                 text, colour, label, able = "You have control", Colour.GREEN, RELEASE, True
             elif holder is None:
                 text, colour, label, able = "Nobody has control", Colour.GREY, TAKE, True
             else:
                 text, colour, label, able = f"Client {holder + 1} has control", Colour.AMBER, TAKE, free
-            strip.text.show(svg.who(text, colour, strip.button._impl.uuid))
+            strip.text.show(svg.who(text, colour) + style.beside(strip.button._impl.uuid))
             if strip.label != label:
                 strip.label = strip.button.label = label
             if strip.button.disabled == able:

@@ -2,8 +2,8 @@
 
 viser 1.1.1 takes from every client any attribute of any control, presses of disabled buttons, values beyond the range, requests
 to open a public tunnel, uploads, and connections of any web page, and tells the other clients before a callback sees it. Here
-every connection is a `Gate`, whose `recv` hands on only what `Guard.admit` allows; the door checks Host and Origin before there is
-a connection at all. Whatever is refused is dropped and counted.
+every connection is a `Gate`, whose `recv` hands on only what `Guard.admit` allows; the door checks Host and Origin before there
+is a connection at all. Whatever is refused is dropped and counted.
 """
 
 import asyncio
@@ -152,7 +152,7 @@ class Guard:
         upgrade = request.headers.get_all("Upgrade")
         host = _sole(request.headers, "Host")
         origins = request.headers.get_all("Origin")
-        if host is None or host.rpartition(":")[0] not in LOOPBACK and host not in LOOPBACK:
+        if host is None or (host.rpartition(":")[0] not in LOOPBACK and host not in LOOPBACK):
             return self._turn_away(HTTPStatus.FORBIDDEN, "foreign host")
         if origins and origins not in ([f"http://{host}"], [f"https://{host}"]):
             return self._turn_away(HTTPStatus.FORBIDDEN, "foreign origin")

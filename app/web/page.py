@@ -15,11 +15,10 @@ def dress(response: Response, host: str) -> Response:
     The policy lets the page connect to its own server only: viser's client would follow ?websocket=ws://elsewhere and show
     whatever that server says, as if it were ours.
     """
-    body = response.body or b""
+    body = bytes(response.body or b"")
     if response.headers.get("Content-Type", "").startswith("text/html"):
         body = _named(body, response.headers.get("Content-Encoding") == "gzip")
-    headers = Headers(response.headers)
-    del headers["Content-Length"]
+    headers = Headers([(name, value) for name, value in response.headers.raw_items() if name != "Content-Length"])
     headers["Content-Length"] = str(len(body))
     headers["Content-Security-Policy"] = (
         "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; "

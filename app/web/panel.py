@@ -1,10 +1,10 @@
-"""The pendant: mode light, free-drive button, countdowns, messages, emergency stop. Reads snapshots and events, writes the desk."""
+"""The pendant: mode light, free-drive button, countdowns, messages, emergency stop. Reads snapshots, writes the desk."""
 
 from typing import Protocol
 
 import viser
 
-from app.web import svg
+from app.web import style, svg
 from app.web.guard import Guard
 from app.web.hand import FORCE, Hand
 from app.web.svg import Colour
@@ -54,13 +54,30 @@ class Running(Protocol):
     paused: bool
 
     @property
-    def actual_rate(self) -> float: ...
+    def actual_rate(self) -> float:
+        """Simulated over real time, as it was lately."""
+        ...
+
     @property
-    def seed(self) -> int: ...
-    def latest(self) -> Snapshot: ...
-    def events(self, since: int) -> list[Event]: ...
-    def step_once(self) -> None: ...
-    def reset(self) -> None: ...
+    def seed(self) -> int:
+        """Seed of the scenario."""
+        ...
+
+    def latest(self) -> Snapshot:
+        """The newest snapshot; RuntimeError when the simulation has ended."""
+        ...
+
+    def events(self, since: int) -> list[Event]:
+        """Events from index `since` on."""
+        ...
+
+    def step_once(self) -> None:
+        """While paused: one tick."""
+        ...
+
+    def reset(self) -> None:
+        """Back to the scenario's start."""
+        ...
 
 
 class Html:
@@ -116,7 +133,7 @@ class Panel:
         with self._stop_panel.add_tab("Safety"):
             self.stop = gui.add_button("EMERGENCY STOP", color=(201, 42, 42), icon=viser.Icon.ALERT_OCTAGON)
             self.reset = gui.add_button("Reset", color="gray", disabled=True)
-        self._style.content = svg.style(
+        self._style.content = style.sheet(
             self.stop._impl.uuid,
             self.free_drive._impl.uuid,
             self.restart._impl.uuid,
@@ -212,7 +229,7 @@ class Panel:
 
         def sends(button: viser.GuiButtonHandle, command: Command) -> None:
             @button.on_click
-            async def _(event: viser.GuiEvent) -> None:
+            async def _(_: viser.GuiEvent) -> None:
                 desk.command(command)
 
         sends(self.stop, Command.EMERGENCY_STOP)
@@ -220,15 +237,15 @@ class Panel:
         sends(self.leave, Command.LEAVE_FREE_DRIVE)
 
         @self.mode.on_click
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             desk.command(Command.TEACH if self.mode.value == "TEACH" else Command.NORMAL)
 
         @self.force.on_update
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             self._hand.cap = float(self.force.value)
 
         @self.clock.on_click
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             if self.clock.value == "Step":
                 self._loop.paused = True
                 self._loop.step_once()
@@ -236,11 +253,11 @@ class Panel:
                 self._loop.paused = self.clock.value == "Pause"
 
         @self.speed.on_update
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             self._loop.speed = float(self.speed.value)
 
         @self.restart.on_click
-        async def _(event: viser.GuiEvent) -> None:
+        async def _(_: viser.GuiEvent) -> None:
             self._loop.reset()
 
 

@@ -7,9 +7,11 @@ import numpy as np
 import trimesh
 import viser
 from numpy.typing import NDArray
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
 from sim.arm import Arm
-from sim.scenario import Plane, Scenario
+from sim.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.snapshot import Snapshot
 
 Array = NDArray[np.float64]
@@ -28,7 +30,8 @@ TOUCHES = 4
 
 FORCE_COLOUR = (25, 113, 194)
 TORQUE_COLOUR = (156, 54, 181)
-WORLD_COLOURS = {"box": (173, 181, 189), "pad": (150, 190, 160), "snap-fit": (190, 170, 140), "two-frictions": (170, 170, 200)}
+GREY = (173, 181, 189)
+WORLD_COLOURS = {Pad: (150, 190, 160), SnapFit: (190, 170, 140), TwoFrictions: (170, 170, 200)}
 
 
 def frames_of(arm: Arm) -> dict[str, int]:
@@ -40,7 +43,9 @@ def frames_of(arm: Arm) -> dict[str, int]:
 class Scene:
     """What viser shows. `meshes` has a GLB file for each part that has a shape."""
 
-    def __init__(self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot) -> None:
+    def __init__(
+        self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot
+    ) -> None:
         self._server = server
         self._frames = frames_of(arm)
         self._last: dict[str, Array] = {}
@@ -138,25 +143,34 @@ class Scene:
             return
         shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
         shape.apply_translation([0.0, 0.0, tool.length / 2])
-        shape.visual = trimesh.visual.ColorVisuals(shape, face_colors=[73, 80, 87, 255])
+        shape.visual = TextureVisuals(
+            material=PBRMaterial(baseColorFactor=[38, 42, 48, 255], metallicFactor=0.0, roughnessFactor=0.5)
+        )
         handle = self._server.scene.add_mesh_trimesh("/arm/tool", shape, cast_shadow=False, receive_shadow=False)
         self.draggable["tool"] = handle
         self._nodes[f"link {self._frames['tool']} tool"] = handle
 
     def _add_world(self, scenario: Scenario) -> None:
         for row, thing in enumerate(scenario.world):
-            plane = isinstance(thing, Plane)
-            size = (3.0, 3.0, 0.002) if plane else tuple(thing.size)
-            colour = WORLD_COLOURS.get(type(thing).__struct_config__.tag, (173, 181, 189))
+            size = np.array([3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size)
+            colour = WORLD_COLOURS.get(type(thing), GREY)
             self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
-                f"/world/{row}", dimensions=size, color=colour, opacity=0.35 if plane else None, cast_shadow=False, receive_shadow=False
+                f"/world/{row}",
+                dimensions=size,
+                color=colour,
+                opacity=0.35 if isinstance(thing, Plane) else None,
+                cast_shadow=False,
+                receive_shadow=False,
             )
 
     def _stage(self) -> None:
         """Light, floor and background."""
         scene = self._server.scene
         scene.set_up_direction("+z")
-        scene.configure_default_lights(cast_shadow=False)
+        # Light from lamps alone: an environment map makes a frame 25 times as long where there is no graphics card.
+        scene.configure_environment_map(None)
+        scene.configure_default_lights(False)
+        scene.add_light_hemisphere("/light/sky", sky_color=(255, 255, 255), ground_color=(176, 182, 190), intensity=2.6)
         scene.add_grid(
             "/floor",
             width=6.0,
@@ -177,12 +191,19 @@ class Scene:
         scene.set_background_image(np.repeat(shades[:, None, :], 2, axis=1), format="png")
 
     def _frame(self, points: Array, reach: float) -> None:
-        """Look at the arm from its front, a little from above, so that its whole reach is in view."""
+        """Look at the arm and light it from its front, a little from above, so that its whole reach is in view."""
         centre = (points.min(axis=0) + points.max(axis=0)) / 2
         side = points[-1] - points[0]
         side[2] = 0.0
         side = side / max(float(np.linalg.norm(side)), 1e-6)
         across = np.array([-side[1], side[0], 0.0])
+        lamps = self._server.scene
+        lamps.add_light_directional(
+            "/light/key", intensity=2.2, position=centre + 2.0 * across - 0.6 * side + np.array([0.0, 0.0, 2.5])
+        )
+        lamps.add_light_directional(
+            "/light/fill", intensity=0.7, position=centre + 2.5 * side - 0.5 * across + np.array([0.0, 0.0, 0.6])
+        )
         camera = self._server.initial_camera
         camera.look_at = tuple(centre)
         camera.position = tuple(centre + reach * (0.9 * side + 1.9 * across + np.array([0.0, 0.0, 0.75])))

@@ -32,14 +32,17 @@ class Served:
 
     def __init__(self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], host: str, port: int) -> None:
         self._loop = loop
+        self._host = f"[{host}]" if ":" in host else host
         self.guard = Guard(Operator())
         with self.guard.installed(), _quiet():
             self.server = viser.ViserServer(host=host, port=port, verbose=False)
-        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194))
+        self.server.gui.configure_theme(
+            show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194)
+        )
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
         self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
         self.panel = Panel(self.server, self.guard, loop, self.hand, f"pendant · {arm.title}")
-        self.control = Control(self.guard, self._let_go)
+        self.control = Control(self.server, self.guard, self._let_go)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
         self.server.on_client_connect(self._welcome)
@@ -52,7 +55,7 @@ class Served:
     @property
     def url(self) -> str:
         """Where the page is."""
-        return f"http://127.0.0.1:{self.server.get_port()}"
+        return f"http://{self._host}:{self.server.get_port()}"
 
     def close(self) -> None:
         """Stop serving; connections are closed, and what they held is released."""
@@ -75,7 +78,7 @@ class Served:
                 shown = snapshot.tick
             if frame % FRAMES_A_PANEL == 0:
                 self.panel.show(snapshot)
-                self.control.show()
+                self.server.get_event_loop().call_soon_threadsafe(self.control.show)
             frame += 1
 
     async def _welcome(self, client: viser.ClientHandle) -> None:
@@ -106,7 +109,9 @@ class Served:
         node.on_drag("left", modifier="cmd/ctrl")(dragged)
 
 
-def serve(loop: Running, arm: Arm, scenario: Scenario, host: str = "127.0.0.1", port: int = 0, open_browser: bool = False) -> Served:
+def serve(
+    loop: Running, arm: Arm, scenario: Scenario, host: str = "127.0.0.1", port: int = 0, open_browser: bool = False
+) -> Served:
     """Serve the web app of a running loop.
 
     Args:

@@ -16,9 +16,6 @@ class Colour(StrEnum):
     GREY = "#868e96"  # watching, waiting
 
 
-QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(134,142,150,.28)"
-"""How a button looks that needs no eye."""
-
 RADIUS = 26.0
 _AROUND = 2 * math.pi * RADIUS
 
@@ -27,7 +24,7 @@ def light(mode: str, word: str, safety: str, colour: Colour) -> str:
     """The mode light: mode in large letters, what it means in a word, safety mode beside it."""
     return (
         f'<div class="pd-light" style="--c:{colour.value}"><i></i><div><b>{escape(mode)}</b><span>{escape(word)}</span></div>'
-        f'<em>Safety<strong>{escape(safety)}</strong></em></div>'
+        f"<em>Safety<strong>{escape(safety)}</strong></em></div>"
     )
 
 
@@ -58,13 +55,9 @@ def note(headline: str, text: str, colour: Colour) -> str:
     )
 
 
-def who(text: str, colour: Colour, button: str) -> str:
-    """Who has control, in a line; the button with the id `button` stands at its end."""
-    return (
-        f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
-        f'<style>div:has(>[id="{button}"]){{margin:-36px 12px 6px auto!important;padding:0!important;width:76px;position:relative}}'
-        f'[id="{button}"]{{height:28px!important;font-size:12px;padding:0;border-radius:6px;{QUIET}}}</style>'
-    )
+def who(text: str, colour: Colour) -> str:
+    """Who has control, in a line."""
+    return f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
 
 
 def facts(pairs: Iterable[tuple[str, str]]) -> str:
@@ -76,50 +69,11 @@ def facts(pairs: Iterable[tuple[str, str]]) -> str:
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
     """The event log: time, text, colour of its mark."""
     lines = "".join(
-        f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>' for time, text, colour in rows
+        f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>'
+        for time, text, colour in rows
     )
-    return f'<div class="pd-events pd-log"><table>{lines}</table></div>' if lines else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
-
-
-def style(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str:
-    """The style sheet of the pendant; the arguments are the ids of its controls, `quiet` those of the buttons that need no eye.
-
-    The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
-    gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
-    """
-    main, low, left = f':has([id="{free_drive}"])', f':has([id="{stop}"])', f':has([id="{restart}"])'
-    plain = ",".join(f'[id="{button}"]' for button in quiet)
-    return f"""<style>
-{main}>{low}:not({main}){{flex:0 0 170px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
-:has(.pd-events)>{left}:not(:has(.pd-events)){{flex:0 0 262px!important}} {left}>:has(.pd-events):not({left}){{flex:1 1 0!important}}
-[style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
-.pd-light{{display:flex;align-items:center;gap:12px;margin:2px 12px 10px;padding:12px 14px;border-radius:8px;
-  background:color-mix(in srgb,var(--c) 9%,transparent);border:1px solid color-mix(in srgb,var(--c) 35%,transparent)}}
-.pd-light i{{width:18px;height:18px;border-radius:50%;background:var(--c);box-shadow:0 0 0 4px color-mix(in srgb,var(--c) 22%,transparent)}}
-.pd-light div{{flex:1;line-height:1.15}}
-.pd-light b{{display:block;font-size:17px;letter-spacing:.02em}}
-.pd-light span{{font-size:12.5px;color:var(--c);font-weight:600}}
-.pd-light em{{font-style:normal;font-size:10.5px;text-align:right;opacity:.75;text-transform:uppercase;letter-spacing:.06em}}
-.pd-light strong{{display:block;font-size:12px;letter-spacing:0}}
-.pd-rings{{display:flex;gap:10px;justify-content:center;align-items:center;min-height:92px;margin:2px 12px 6px}}
-.pd-rings figure{{margin:0;text-align:center}} .pd-rings svg{{display:block;margin:0 auto}}
-.pd-rings figcaption{{font-size:11.5px;margin-top:3px;opacity:.8}}
-.pd-rings p{{margin:0;font-size:12px;opacity:.5}}
-.pd-who{{display:flex;align-items:center;gap:8px;height:30px;margin:0 12px 6px;font-size:12.5px}}
-.pd-who i{{width:8px;height:8px;border-radius:50%;background:var(--c)}} .pd-who b{{font-weight:600}}
-.pd-note{{margin:2px 12px 10px;padding:8px 12px;border-left:3px solid var(--c);border-radius:0 6px 6px 0;
-  background:color-mix(in srgb,var(--c) 7%,transparent);font-size:12.5px;line-height:1.4}}
-.pd-note b{{display:block}} .pd-note span{{opacity:.8}}
-.pd-facts{{display:grid;grid-template-columns:1fr auto;gap:3px 12px;margin:4px 14px 10px;font-size:12.5px}}
-.pd-facts dt{{opacity:.65}} .pd-facts dd{{margin:0;font-variant-numeric:tabular-nums;font-weight:500}}
-.pd-log{{padding:4px 4px 8px;font-size:12.5px}}
-.pd-log table{{border-collapse:collapse;width:100%}}
-.pd-log td{{padding:5px 6px;vertical-align:top;border-bottom:1px solid rgba(128,128,128,.14);line-height:1.35}}
-.pd-log td:nth-child(1){{width:8px;padding-right:0}}
-.pd-log td:nth-child(2){{font-variant-numeric:tabular-nums;opacity:.6;white-space:nowrap;width:1%}}
-.pd-log i{{display:block;width:7px;height:7px;border-radius:50%;background:var(--c);margin-top:5px}}
-.pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
-[id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
-[id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
-{plain}{{{QUIET};height:34px!important;border-radius:8px}} {plain.replace("]", "]:disabled")}{{opacity:.45}}
-</style>"""
+    return (
+        f'<div class="pd-events pd-log"><table>{lines}</table></div>'
+        if lines
+        else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
+    )

@@ -28,7 +28,27 @@ def estimate(q: NDArray[np.float64]) -> Estimate:
     """An estimate at rest."""
     zero = np.zeros(6)
     return Estimate(
-        0, True, True, True, q, zero, zero, q, zero, zero, zero, zero, zero, zero, np.zeros(3), np.zeros(3), np.eye(3), zero, 0.0, 0.0, 0
+        0,
+        True,
+        True,
+        True,
+        q,
+        zero,
+        zero,
+        q,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        np.zeros(3),
+        np.zeros(3),
+        np.eye(3),
+        zero,
+        0.0,
+        0.0,
+        0,
     )
 
 

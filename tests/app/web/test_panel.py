@@ -75,11 +75,11 @@ def test_what_does_not_change_is_not_sent(loop: FakeLoop, still: Served) -> None
 
 
 def test_a_refusal_shows_its_reason_and_guidance_until_something_else_does(loop: FakeLoop, still: Served) -> None:
-    loop.note(Kind.REFUSED_MOVING, joint="elbow", value=0.25, limit=0.01, time=0.1)
+    loop.note(Kind.REFUSED_MODE, mode="RUN", allowed="TEACH")
     loop.note(Kind.RESET)
     still.panel.show(loop.latest())
-    assert "Free-drive refused: the arm moves" in still.panel.note.shown
-    assert "Joint elbow at 0.250 rad/s, limit 0.010 rad/s" in still.panel.note.shown
+    assert "Free-drive refused: mode is RUN" in still.panel.note.shown
+    assert "Allowed in: TEACH." in still.panel.note.shown
     loop.note(Kind.LEFT_PERIOD, limit=3.0)
     still.panel.show(loop.latest())
     assert "nobody moved the arm" in still.panel.note.shown
@@ -129,7 +129,9 @@ def test_the_button_holds_and_its_click_lets_go(served: Served, join: Join, loop
         ("mode", "TEACH", Mode.NORMAL, Command.TEACH),
     ],
 )
-def test_a_press_is_a_command(served: Served, join: Join, loop: FakeLoop, name: str, value: object, mode: Mode, command: Command) -> None:
+def test_a_press_is_a_command(
+    served: Served, join: Join, loop: FakeLoop, name: str, value: object, mode: Mode, command: Command
+) -> None:
     client = join()
     loop.mode = mode
     control = getattr(served.panel, name)
@@ -159,7 +161,9 @@ def test_control_is_taken_shown_and_given_back(served: Served, join: Join, loop:
     until(lambda: len(strips) == 2, "both have a strip")
     assert "Nobody has control" in strips[0].text.shown
     first.set(strips[0].button._impl.uuid, value=True)
-    until(lambda: "You have control" in strips[0].text.shown and "Client 1 has control" in strips[1].text.shown, "client 1 has it")
+    until(
+        lambda: "You have control" in strips[0].text.shown and "Client 1 has control" in strips[1].text.shown, "client 1 has it"
+    )
     until(lambda: strips[1].button.disabled, "nobody can take it")
     first.drag("start")
     until(lambda: bool(loop.desk.take().touches), "a touch")

@@ -17,7 +17,7 @@ EVIL = '<img src=x onerror="alert(1)">&\'</style>'
         svg.light(EVIL, EVIL, EVIL, Colour.GREEN),
         svg.ring(EVIL, 1.0, 0.5, Colour.BLUE),
         svg.note(EVIL, EVIL, Colour.RED),
-        svg.who(EVIL, Colour.GREY, "id"),
+        svg.who(EVIL, Colour.GREY),
         svg.facts([(EVIL, EVIL)]),
         svg.table([(EVIL, EVIL, Colour.AMBER)]),
     ],
