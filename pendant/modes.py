@@ -47,3 +47,14 @@ class Law(StrEnum):
     BRAKE = "BRAKE"  # come to rest as fast as the limits allow, then keep the posture
     FOLLOW = "FOLLOW"  # track the requested move
     FREE = "FREE"  # free-drive law (FD-2, FD-3)
+
+
+def way_out(mode: Mode) -> str:
+    """What to do first, where `mode` forbids a command."""
+    if mode is Mode.STOP:
+        return "reset first"
+    if mode is Mode.FREE_DRIVE:
+        return "leave free-drive first"
+    if mode is Mode.RUN:
+        return "stop the program first"
+    return "switch to NORMAL or TEACH first"

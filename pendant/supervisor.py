@@ -6,9 +6,10 @@ from pendant.events import Event, Kind, Values
 from pendant.freedrive import SENSOR, FreeDrive, Surroundings, moving
 from pendant.inputs import Button, Command, Inputs
 from pendant.keepalive import KeepAlive
-from pendant.modes import TICK, Law, Mode, Phase, Safety
+from pendant.lock import change
+from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
 from pendant.program import Program, ProgramState, Sequencer, misfit
-from pendant.settings import SettingError, Settings, apply, find, ticks, value_of
+from pendant.settings import Settings, ticks
 from pendant.table import TABLE, Effect
 from pendant.watch import Stillness, WrenchMean, joints_ok
 
@@ -73,7 +74,9 @@ class Supervisor:
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
         if inputs.settings:
-            self._change_settings(estimate, inputs.settings, events)
+            self.settings, changed = change(self.settings, inputs.settings, self._mode, estimate.tick)
+            events += changed
+            self._refresh()
         return self._publish(events)
 
     def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
@@ -117,7 +120,7 @@ class Supervisor:
             elif command in SWITCHABLE:
                 to = SWITCHABLE[command]
                 if self._mode not in RESTING:
-                    self._refuse(command, estimate, _how_out(self._mode), events)
+                    self._refuse(command, estimate, way_out(self._mode), events)
                 elif to is not self._mode:
                     events.append(Event(Kind.MODE_CHANGED, estimate.tick, {"from": self._mode, "to": to}))
                     self._mode = to
@@ -149,7 +152,7 @@ class Supervisor:
     def _load(self, program: Program, estimate: Estimate, events: list[Event]) -> None:
         reason = misfit(program, self._n)
         if self._mode in (Mode.RUN, Mode.FREE_DRIVE):
-            reason = _how_out(self._mode)
+            reason = way_out(self._mode)
         if reason is not None:
             events.append(Event(Kind.PROGRAM_REFUSED, estimate.tick, {"name": program.name, "reason": reason}))
             return
@@ -161,7 +164,7 @@ class Supervisor:
         state = self._sequencer.state
         if command is Command.START_PROGRAM:
             if self._mode not in (Mode.NORMAL, Mode.TEACH):
-                return _how_out(self._mode)
+                return way_out(self._mode)
             if state is ProgramState.NONE:
                 return "no program is loaded"
         elif self._mode is not Mode.RUN:
@@ -238,22 +241,6 @@ class Supervisor:
         values: Values = {"command": command, "mode": self._mode, "reason": reason}
         events.append(Event(Kind.COMMAND_REFUSED, estimate.tick, values))
 
-    def _change_settings(self, estimate: Estimate, changes: dict[str, float | bool | str], events: list[Event]) -> None:
-        for name, value in changes.items():
-            try:
-                if find(name).locked and self._mode in (Mode.RUN, Mode.FREE_DRIVE):
-                    raise SettingError(name, value, f"no change of a limit in {self._mode}")
-                old = value_of(self.settings, name)
-                self.settings = apply(self.settings, {name: value})
-            except SettingError as error:
-                values: Values = {"name": name, "value": value, "reason": error.allowed}
-                events.append(Event(Kind.SETTING_REFUSED, estimate.tick, values))
-                continue
-            new = value_of(self.settings, name)
-            if new != old:
-                events.append(Event(Kind.SETTING_CHANGED, estimate.tick, {"name": name, "old": old, "new": new}))
-        self._refresh()
-
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
         self._silence = ticks(self.settings.hold.silence)
@@ -304,14 +291,3 @@ class Supervisor:
         self._key = key
         self._decision = None if events or periods else decision
         return decision
-
-
-def _how_out(mode: Mode) -> str:
-    """What to do first, where `mode` forbids a command."""
-    if mode is Mode.STOP:
-        return "reset first"
-    if mode is Mode.FREE_DRIVE:
-        return "leave free-drive first"
-    if mode is Mode.RUN:
-        return "stop the program first"
-    return "switch to NORMAL or TEACH first"

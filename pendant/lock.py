@@ -1,0 +1,23 @@
+"""Settings at run time: limits are locked while the arm moves by hand or by program."""
+
+from pendant.events import Event, Kind
+from pendant.modes import Mode
+from pendant.settings import SettingError, Settings, Value, apply, find, value_of
+
+
+def change(settings: Settings, changes: dict[str, Value], mode: Mode, tick: int) -> tuple[Settings, list[Event]]:
+    """The settings after the changes that are allowed in `mode`, each on its own, and what became of every change."""
+    events: list[Event] = []
+    for name, value in changes.items():
+        try:
+            if find(name).locked and mode in (Mode.RUN, Mode.FREE_DRIVE):
+                raise SettingError(name, value, f"no change of a limit in {mode}")
+            old = value_of(settings, name)
+            settings = apply(settings, {name: value})
+        except SettingError as error:
+            events.append(Event(Kind.SETTING_REFUSED, tick, {"name": name, "value": value, "reason": error.allowed}))
+            continue
+        new = value_of(settings, name)
+        if new != old:
+            events.append(Event(Kind.SETTING_CHANGED, tick, {"name": name, "old": old, "new": new}))
+    return settings, events
