@@ -2,7 +2,7 @@
 #
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
-#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes
+#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
 #   make clean       remove what the above made
 
 PYTHON ?= python3
@@ -10,6 +10,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 WORKERS ?= 2
+SEED ?= 1000
+BENCHES := $(filter-out __init__ common,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
 .PHONY: run test bench bench-full clean lint types contracts unit e2e wheel browser
@@ -23,7 +25,8 @@ $(BIN)/python:
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer" >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Python 3.11 or newer is needed, this is $$($(PYTHON) --version); try make PYTHON=python3.12" >&2; exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ] && \
+		apt-get update -qq && apt-get install -y -qq --no-install-recommends python3-venv; } || \
 		{ echo "This Python cannot make a virtual environment; on Debian or Ubuntu: apt-get install python3-venv" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 
@@ -72,11 +75,11 @@ wheel: $(VENV)/dev.stamp
 	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
 	@rm -rf build/wheel
 
-bench: $(VENV)/dev.stamp
-	@for file in benchmarks/bench_*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
-
-bench-full: $(VENV)/dev.stamp
-	@for file in benchmarks/bench_*.py; do echo "== $$file (full)"; $(BIN)/python $$file --full || exit 1; done
+# All of them run, even when one misses a bar; the exit code tells.
+bench bench-full: $(VENV)/dev.stamp
+	@failed=; for name in $(BENCHES); do \
+		$(BIN)/python -m benchmarks.$$name --seed $(SEED) $(if $(filter bench-full,$@),--full) || failed="$$failed $$name"; \
+	done; [ -z "$$failed" ] || { echo "missed a bar:$$failed" >&2; exit 1; }
 
 clean:
 	rm -rf $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage
