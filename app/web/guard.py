@@ -42,6 +42,9 @@ MAX_RATE = 200
 MAX_TEXT = 200
 """Longest text that a control takes."""
 
+LARGEST = 1e6
+"""Largest number in any message: the far plane of a camera and the pixels of a window are within it."""
+
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
 PULSE = 0.2
@@ -60,7 +63,7 @@ class Guard:
         self._server: viser.ViserServer | None = None
         self._handles: frozenset[str] = frozenset()
         self._anyone: set[str] = set()
-        self._gates: set[Gate] = set()
+        self._gates: set[Gate] = set()  # connections, from the door until they are lost
         self._stalled: Callable[[int], None] = lambda client: None
         self.silence = 0.5
 
@@ -113,8 +116,8 @@ class Guard:
         return None
 
     def _reason_against(self, client: int, message: Admitted) -> str | None:
-        if not _finite(message):
-            return "not finite"
+        if not _bounded(message):
+            return "number out of bounds"
         if isinstance(message, Camera):
             return None
         if self._server is None or client not in self._server._connected_clients:
@@ -161,7 +164,10 @@ class Guard:
         if upgrade and len(self._gates) >= MAX_CLIENTS:
             return self._turn_away(HTTPStatus.SERVICE_UNAVAILABLE, f"at most {MAX_CLIENTS} clients")
         response = pages(connection, request)
-        return None if response is None else dress(response, host)
+        if response is not None:
+            return dress(response, host)
+        self._gates.add(connection)
+        return None
 
     def _turn_away(self, status: HTTPStatus, reason: str) -> Response:
         self.refused[reason] += 1
@@ -196,7 +202,6 @@ class Gate(ServerConnection):
     async def recv(self, decode: bool | None = None) -> Any:
         """The next admitted message."""
         if self._pulse is None:
-            self._guard._gates.add(self)
             self._pulse = asyncio.create_task(self._watch())
         client = self._guard.client_of(self)
         while True:
@@ -237,16 +242,15 @@ class Gate(ServerConnection):
             return
 
 
-def _finite(value: Any) -> bool:
-    """Whether every number in a decoded message is finite."""
-    if isinstance(value, float):
-        return math.isfinite(value)
+def _bounded(value: Any) -> bool:
+    """Whether every number in a decoded message is finite, and small enough to be squared without harm."""
+    if isinstance(value, int | float):
+        return math.isfinite(value) and abs(value) <= LARGEST
     if isinstance(value, dict):
-        return all(_finite(v) for v in value.values())
-    if isinstance(value, list | tuple):
-        return all(_finite(v) for v in value)
-    fields = getattr(value, "__struct_fields__", ())
-    return all(_finite(getattr(value, name)) for name in fields)
+        return all(_bounded(v) for v in value.values())
+    if isinstance(value, tuple):
+        return all(_bounded(v) for v in value)
+    return all(_bounded(getattr(value, name)) for name in getattr(value, "__struct_fields__", ()))
 
 
 def _reason_against_use(control: Any, message: Update | Hold) -> str | None:

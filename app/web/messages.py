@@ -1,6 +1,6 @@
 """The messages a browser may send, as strict types: anything that does not decode into one of them is refused."""
 
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -30,7 +30,7 @@ class Update(Message, tag="GuiUpdateMessage"):
     """A control was used."""
 
     uuid: str
-    updates: dict[str, Any]
+    updates: dict[str, bool | int | float | str]
 
 
 class Hold(Message, tag="GuiButtonHoldMessage"):
@@ -65,7 +65,7 @@ def decode(raw: bytes) -> Admitted | None:
     """The message in `raw`, or None if it is none of the admitted types or has a field too many, too few or of another type."""
     try:
         return _decoder.decode(raw)
-    except (msgspec.DecodeError, UnicodeDecodeError):
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
         return None
 
 

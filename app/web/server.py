@@ -3,6 +3,7 @@
 import io
 import socket
 import threading
+import time
 import webbrowser
 from collections.abc import Mapping
 from contextlib import redirect_stdout
@@ -67,7 +68,9 @@ class Served:
     def _paint(self) -> None:
         frame = 0
         shown = -1
-        while not self._closing.wait(FRAME):
+        due = time.monotonic()
+        while not self._closing.wait(due - time.monotonic()):
+            due = max(due + FRAME, time.monotonic())
             try:
                 snapshot = self._loop.latest()
             except RuntimeError as failure:

@@ -107,6 +107,18 @@ def test_a_page_that_falls_silent_counts_as_released(visit: Visit, cell: Cell) -
     assert 0.5 <= float(silent.values["value"]) <= 0.51
 
 
+def test_the_stop_of_a_second_finger_is_not_lost_while_the_button_is_held(visit: Visit, cell: Cell) -> None:
+    page = visit()
+    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 20, box["y"] + 20)
+    page.mouse.down()
+    cell.wait(lambda: cell.loop.latest().decision.phase is Phase.HELD, "free-drive, button held")
+    page.get_by_role("button", name="EMERGENCY STOP").dispatch_event("click")
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped", 5.0)
+    page.mouse.up()
+
+
 def test_the_second_client_watches_and_can_stop(visit: Visit, cell: Cell) -> None:
     first, second = visit(), visit()
     first.get_by_role("button", name="Take").click()

@@ -1,6 +1,7 @@
 """Whatever a client sends: only what it may do happens, and nobody else hears of the rest."""
 
 import asyncio
+import contextlib
 import math
 import socket
 from collections.abc import Callable
@@ -22,6 +23,10 @@ from sim.touch import Pull
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import CAMERA, VERSION, RawClient, until
 
+UPGRADE = (
+    "GET / HTTP/1.1\r\nHost: {host}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+    "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Protocol: viser-v1.1.1\r\n\r\n"
+)
 Join = Callable[[], RawClient]
 HANDLED = {
     "CommandTriggerMessage",
@@ -91,24 +96,25 @@ def bad_updates() -> list[tuple[str, dict[str, Any], str]]:
     return [
         ("force", {"value": 151.0}, "value not allowed"),
         ("force", {"value": 4.9}, "value not allowed"),
-        ("force", {"value": math.nan}, "not finite"),
-        ("force", {"value": math.inf}, "not finite"),
+        ("force", {"value": math.nan}, "number out of bounds"),
+        ("force", {"value": 2**63}, "number out of bounds"),
+        ("force", {"value": math.inf}, "number out of bounds"),
         ("force", {"value": "80"}, "value not allowed"),
         ("force", {"value": True}, "value not allowed"),
-        ("force", {"value": None}, "value not allowed"),
-        ("force", {"value": [80.0]}, "value not allowed"),
-        ("force", {"value": [math.nan]}, "not finite"),
+        ("force", {"value": None}, "not understood"),
+        ("force", {"value": [80.0]}, "not understood"),
+        ("force", {"value": [math.nan]}, "not understood"),
         ("force", {"value": 80.0, "max": 1e6}, "attribute other than value"),
         ("force", {"max": 1e6}, "attribute other than value"),
-        ("force", {"update_cb": []}, "attribute other than value"),
+        ("force", {"update_cb": []}, "not understood"),
         ("force", {}, "attribute other than value"),
         ("mode", {"value": "RUN"}, "value not allowed"),
         ("mode", {"value": 1}, "value not allowed"),
-        ("mode", {"options": ["RUN"]}, "attribute other than value"),
+        ("mode", {"options": ["RUN"]}, "not understood"),
         ("stop", {"value": False}, "value not allowed"),
         ("stop", {"disabled": True}, "attribute other than value"),
         ("stop", {"visible": False}, "attribute other than value"),
-        ("stop", {"update_cb": []}, "attribute other than value"),
+        ("stop", {"update_cb": []}, "not understood"),
         ("stop", {"removed": True}, "attribute other than value"),
         ("leave", {"value": True}, "disabled control"),
         ("reset", {"value": True}, "disabled control"),
@@ -273,7 +279,8 @@ def test_a_network_that_stalls_lets_go(served: Served, join: Join, loop: FakeLoo
         ({"name": "/floor"}, "not draggable"),
         ({"name": "/world/0"}, "not draggable"),
         ({"owner": "1"}, "not draggable"),
-        ({"end_position": [math.nan, 0.0, 0.0]}, "not finite"),
+        ({"end_position": [math.nan, 0.0, 0.0]}, "number out of bounds"),
+        ({"end_position": [0.0, 1e300, 0.0]}, "number out of bounds"),
         ({"end_position": [0.0, 0.0]}, "not understood"),
         ({"instance_index": 1}, "not understood"),
         ({"phase": "jump"}, "not understood"),
@@ -299,7 +306,7 @@ def test_nothing_counts_before_the_camera(served: Served, loop: FakeLoop) -> Non
 def test_a_camera_that_is_not_finite_is_refused(served: Served, join: Join) -> None:
     client = join()
     client.send(**(CAMERA | {"fov": math.inf}))
-    refused(served, "not finite")
+    refused(served, "number out of bounds")
 
 
 @pytest.mark.parametrize("origin", ["https://evil.example", "null", "http://localhost:1", "http://127.0.0.1.evil.example"])
@@ -361,6 +368,17 @@ def test_one_client_too_many_is_refused(served: Served, join: Join) -> None:
     first[0].close()
     until(lambda: len(served.guard._gates) == MAX_CLIENTS - 1, "a place is free")
     RawClient(served.url).close()
+
+
+def test_connections_are_counted_at_the_door(served: Served) -> None:
+    address, port = served.url.removeprefix("http://").split(":")
+    with contextlib.ExitStack() as stack:
+        clients = [stack.enter_context(socket.create_connection((address, int(port)))) for _ in range(3 * MAX_CLIENTS)]
+        for client in clients:
+            client.sendall(UPGRADE.format(host=f"{address}:{port}").encode())
+        answers = [client.recv(12).decode() for client in clients]
+    assert answers.count("HTTP/1.1 101") == MAX_CLIENTS
+    assert answers.count("HTTP/1.1 503") == 2 * MAX_CLIENTS
 
 
 def test_a_flood_is_read_slowly(served: Served, join: Join, monkeypatch: pytest.MonkeyPatch) -> None:

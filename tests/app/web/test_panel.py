@@ -67,7 +67,7 @@ def test_every_mode_and_safety_mode_has_words(loop: FakeLoop, still: Served) -> 
 
 
 def test_what_does_not_change_is_not_sent(loop: FakeLoop, still: Served) -> None:
-    assert still.panel.show(loop.latest())
+    still.panel.show(loop.latest())
     assert not still.panel.show(loop.latest())
     loop.note(Kind.RESET)
     assert still.panel.show(loop.latest())
