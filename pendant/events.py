@@ -45,6 +45,7 @@ class Kind(StrEnum):
     PROGRAM_FAILED = "program_failed"
     SETTING_CHANGED = "setting_changed"
     SETTING_REFUSED = "setting_refused"
+    OVERRUN = "overrun"
 
 
 class Event(msgspec.Struct, frozen=True):

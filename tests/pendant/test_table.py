@@ -13,6 +13,7 @@ EXAMPLE: Values = {
     "from": "FREE_DRIVE",
     "gain": 1.0,
     "joint": "shoulder",
+    "late": 123.4,
     "limit": 10.0,
     "mode": "FREE_DRIVE",
     "name": "free_drive.allowed_from.normal",
