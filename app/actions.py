@@ -38,6 +38,10 @@ Control = Literal[
     "detection",
     "enabling_device",
 ]
+# Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
+Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]
+Torque = Annotated[list[Annotated[float, Meta(ge=-500, le=500)]], Meta(min_length=3, max_length=3)]  # [N·m]
+
 HOLDABLE = tuple(button.value for button in Button)
 
 
@@ -120,7 +124,7 @@ class Wrench(Effort, frozen=True, kw_only=True):
 class Pushing(Wrench, tag="push", frozen=True, kw_only=True):
     """A force on a point, by default all at once."""
 
-    force: Vector  # in W [N]
+    force: Force  # in W [N]
     profile: AnyProfile = Constant()
 
     def push(self, t: float) -> Push:
@@ -131,7 +135,7 @@ class Pushing(Wrench, tag="push", frozen=True, kw_only=True):
 class Twisting(Wrench, tag="twist", frozen=True, kw_only=True):
     """A torque on a part, by default all at once."""
 
-    torque: Vector  # in W [N·m]
+    torque: Torque  # in W [N·m]
     profile: AnyProfile = Constant()
 
     def push(self, t: float) -> Push:
@@ -142,7 +146,7 @@ class Twisting(Wrench, tag="twist", frozen=True, kw_only=True):
 class Bump(Wrench, tag="bump", frozen=True, kw_only=True):
     """A short knock: half a sine."""
 
-    force: Vector  # at its peak, in W [N]
+    force: Force  # at its peak, in W [N]
 
     def push(self, t: float) -> Push:
         """See `Wrench.push`."""
@@ -152,7 +156,7 @@ class Bump(Wrench, tag="bump", frozen=True, kw_only=True):
 class Lean(Wrench, tag="lean", frozen=True, kw_only=True):
     """Somebody leans on a point: the force comes and goes slowly."""
 
-    force: Vector  # in W [N]
+    force: Force  # in W [N]
     profile: AnyProfile = Ramp(rise=0.5, fall=0.5)
 
     def push(self, t: float) -> Push:
@@ -164,7 +168,7 @@ class Hold(Effort, tag="hold", frozen=True, kw_only=True):
     """A hand grabs a point and keeps it where it is, or carries it: a spring and damper, its force capped."""
 
     carry: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # by the end, evenly, in W [m]
-    cap: Positive = 50.0  # [N]
+    cap: Annotated[float, Meta(gt=0, le=2000)] = 50.0  # [N]
 
 
 class Program(Action, tag="program", frozen=True, kw_only=True):

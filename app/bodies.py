@@ -3,15 +3,28 @@
 import numpy as np
 
 from app.checked import BadInput
+from sim.arm import Arm
 from sim.scenario import AnyObject, Load
 
+OVERLOAD = 10.0
+"""Heaviest load, as a multiple of the arm's rated payload: enough to try any mistake, and within what the physics can bear."""
 
-def check_load(load: Load, where: str, field: str) -> None:
-    """Refuse a load whose inertia no rigid body has.
+FARTHEST = 1.0
+"""Largest distance of a load's centre from the flange along each axis [m]."""
+
+
+def check_load(load: Load, arm: Arm, where: str, field: str) -> None:
+    """Refuse a load that no arm could carry, or whose inertia no rigid body has.
 
     Raises:
-        BadInput: not six numbers, or principal moments that are not positive or of which one exceeds the sum of the others.
+        BadInput: mass or centre out of range; or the inertia is not six numbers, or has principal moments that are not
+            positive or of which one exceeds the sum of the others.
     """
+    if load.mass > OVERLOAD * arm.payload:
+        raise BadInput(where, f"{field}.mass", load.mass, f"0 .. {OVERLOAD * arm.payload:g} kg for the {arm.name}")
+    for i, way in enumerate(load.com):
+        if abs(way) > FARTHEST:
+            raise BadInput(where, f"{field}.com[{i}]", way, f"-{FARTHEST:g} .. {FARTHEST:g} m")
     if load.inertia is None:
         return
     if len(load.inertia) != 6:

@@ -58,21 +58,21 @@ def prepare(setup: Setup, where: str) -> Prepared:
     program = setup.program if isinstance(setup, Session) else None
     if program is not None and (why := misfit(program, arm.n)) is not None:
         raise BadInput(where, "program", ABSENT, why)
-    prepared = Prepared(arm, _scenario(setup, where), _applied(Settings(), setup.settings, where, "settings"), program)
+    prepared = Prepared(arm, _scenario(setup, arm, where), _applied(Settings(), setup.settings, where, "settings"), program)
     if isinstance(setup, Session):
         _check_session(setup, prepared, where)
     return prepared
 
 
-def _scenario(setup: Setup, where: str) -> Scenario:
+def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
     world = setup.world
     if isinstance(world, str):
         if world not in bundled("worlds"):
             raise BadInput(where, "world", world, f"a list of objects, or one of {', '.join(bundled('worlds'))}")
         world = load(folder("worlds") / f"{world}.yaml", World).objects
     check_world(world, where)
-    check_load(setup.payload_true, where, "payload_true")
-    check_load(setup.payload_configured, where, "payload_configured")
+    check_load(setup.payload_true, arm, where, "payload_true")
+    check_load(setup.payload_configured, arm, where, "payload_configured")
     return Scenario(
         mounting=MOUNTINGS[setup.mounting] if isinstance(setup.mounting, str) else setup.mounting,
         posture=setup.posture,
@@ -132,7 +132,7 @@ def _check_action(action: Action, field: str, session: Session, prepared: Prepar
     elif isinstance(action, Laboratory):
         change = action.change
         if isinstance(change, AttachPayload):
-            check_load(change.load, where, f"{field}.change.load")
+            check_load(change.load, prepared.arm, where, f"{field}.change.load")
         elif isinstance(change, SensorFault):
             _check_channel(change, prepared.arm, where, f"{field}.change.channel")
         elif isinstance(change, MoveObject):
