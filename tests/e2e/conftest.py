@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.library import load_arm
 from app.web.server import Served, serve
@@ -23,7 +23,7 @@ FLAGS = (
     "--disable-background-networking",
     "--disable-quic",
 )
-WINDOW = {"width": 1280, "height": 800}
+WINDOW = ViewportSize(width=1280, height=800)
 
 
 def pytest_configure(config: pytest.Config) -> None:

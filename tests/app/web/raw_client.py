@@ -6,9 +6,10 @@ from typing import Any
 
 import msgspec
 import zstandard
+from websockets import Origin, Subprotocol
 from websockets.sync.client import ClientConnection, connect
 
-VERSION = "viser-v1.1.1"
+VERSION = Subprotocol("viser-v1.1.1")
 CAMERA: dict[str, Any] = {
     "type": "ViewerCameraMessage",
     "wxyz": [1.0, 0.0, 0.0, 0.0],
@@ -35,9 +36,9 @@ class RawClient:
     """One connection."""
 
     def __init__(self, url: str, origin: str | None = None, camera: bool = True) -> None:
-        self.socket: ClientConnection = connect(
-            url.replace("http", "ws", 1), subprotocols=[VERSION], origin=origin, max_size=None, compression=None, proxy=None
-        )
+        named = None if origin is None else Origin(origin)
+        address = url.replace("http", "ws", 1)
+        self.socket: ClientConnection = connect(address, subprotocols=[VERSION], origin=named, max_size=None, proxy=None)
         if camera:
             self.send(**CAMERA)
 
