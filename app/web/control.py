@@ -55,6 +55,10 @@ class Control:
         self._guard.operator.leave(client)
         self.show()
 
+    def close(self) -> None:
+        """Tell nobody any more: the server is about to end."""
+        self._strips.clear()
+
     def show(self) -> None:
         """Bring every strip up to date."""
         holder = self._guard.operator.holder

@@ -62,6 +62,7 @@ class Served:
         """Stop serving; connections are closed, and what they held is released."""
         self._closing.set()
         self._painter.join()
+        self.server.get_event_loop().call_soon_threadsafe(self.control.close)
         with _quiet():
             self.server.stop()
 
