@@ -38,7 +38,7 @@ def sheet(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str
   background:color-mix(in srgb,var(--c) 7%,transparent);font-size:12.5px;line-height:1.4}}
 .pd-note b{{display:block}} .pd-note span{{opacity:.8}}
 .pd-facts{{display:grid;grid-template-columns:1fr auto;gap:3px 12px;margin:4px 14px 10px;font-size:12.5px}}
-.pd-facts dt{{opacity:.65}} .pd-facts dd{{margin:0;font-variant-numeric:tabular-nums;font-weight:500}}
+.pd-facts dt{{opacity:.65}} .pd-facts dd{{margin:0;text-align:right;font-variant-numeric:tabular-nums;font-weight:500}}
 .pd-log{{padding:4px 4px 8px;font-size:12.5px}}
 .pd-log table{{border-collapse:collapse;width:100%}}
 .pd-log td{{padding:5px 6px;vertical-align:top;border-bottom:1px solid rgba(128,128,128,.14);line-height:1.35}}
