@@ -7,6 +7,7 @@ import msgspec
 import numpy as np
 
 from sim.arm import Arm, Sourced
+from sim.chain import chain
 
 Problem = tuple[str, object, str]
 """A field, its value, and what is allowed."""
@@ -15,7 +16,8 @@ Problem = tuple[str, object, str]
 def problems(arm: Arm) -> list[Problem]:
     """What the types cannot say: lengths, ranges between fields, tensors of real bodies. Empty for a usable arm."""
     found = _lengths(arm)
-    return found or [*_assumed(arm), *_postures(arm), *_tensors(arm), *_curves(arm), *_shapes(arm)]
+    found = found or [*_assumed(arm), *_postures(arm), *_tensors(arm), *_curves(arm), *_shapes(arm)]
+    return found or _last_link(arm)
 
 
 def _lengths(arm: Arm) -> list[Problem]:
@@ -121,6 +123,18 @@ def _curves(arm: Arm) -> list[Problem]:
     if f.output_share > 1:
         found.append(("frictions.output_share", f.output_share, "expected 0 to 1"))
     return found
+
+
+def _last_link(arm: Arm) -> list[Problem]:
+    """What is left of the last link without the sensor's tool-side face is a possible body."""
+    plate = arm.sensors.force_torque
+    if plate is None:
+        return []
+    rest = chain(arm).links[-1]
+    low, middle, high = np.linalg.eigvalsh(rest.inertia)
+    if rest.mass > 0 and low > 0 and high <= low + middle:
+        return []
+    return [("sensors.force_torque.plate_mass", plate.plate_mass, "expected less, the last link has not so much to give")]
 
 
 def _shapes(arm: Arm) -> list[Problem]:

@@ -24,6 +24,10 @@ class Body:
     com: Array
     inertia: Array
 
+    def __sub__(self, part: "Body") -> "Body":
+        """What is left of this body without `part`; both must be given in the same frame."""
+        return self + Body(-part.mass, part.com, -part.inertia)
+
     def __add__(self, other: "Body") -> "Body":
         """Both bodies as one; they must be given in the same frame."""
         mass = self.mass + other.mass
@@ -39,7 +43,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Links base to flange. Joint frame i: z is the joint's axis; its pose is given in joint frame i-1 (the base for 0) at q = 0."""
+    """Links base to flange. The pose of joint frame i (z is the joint's axis) is given in joint frame i-1 (B for 0) at q = 0."""
 
     p: Array  # (n, 3) [m]
     R: Array  # (n, 3, 3)
@@ -49,7 +53,7 @@ class Chain:
 
 
 def chain(arm: Arm) -> Chain:
-    """The chain that `arm`'s file describes."""
+    """The chain that `arm`'s file describes; of the last link the part before the flange sensor's tool-side face."""
     n = arm.n
     p, R, links = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1)), []
     behind = np.eye(4)
@@ -57,7 +61,10 @@ def chain(arm: Arm) -> Chain:
         p[i], R[i] = behind[:3, 3], behind[:3, :3]
         behind = link_transform(arm, i)
         links.append(Body(arm.masses.mass[i], com_in_joint_frame(arm, i), inertia_matrix(arm.inertias.tensor[i])))
-    return Chain(p, R, tuple(links), behind[:3, 3], behind[:3, :3])
+    p_flange, R_flange = behind[:3, 3], behind[:3, :3]
+    plate = plate_body(arm)
+    links[-1] -= Body(plate.mass, p_flange + R_flange @ plate.com, R_flange @ plate.inertia @ R_flange.T)
+    return Chain(p, R, tuple(links), p_flange, R_flange)
 
 
 def load_body(load: Load) -> Body:

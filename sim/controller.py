@@ -22,6 +22,8 @@ DAMPING_RATIO = 0.9
 SUPPORT = 0.5  # share of the transmission's load torque that is fed forward to the motor: it stiffens the hold
 SUPPORT_BANDWIDTH = 40.0  # of that path [Hz]
 INTEGRAL_TIME = 0.15  # of the output-side integral [s]
+SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
+SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 
 
@@ -55,13 +57,15 @@ class Controller:
         self._dead = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
         limits = arm.limits
         self._speed, self._acceleration = np.array(limits.speed), np.array(limits.acceleration)
-        self._torque, self._position = np.array(limits.torque), np.array(limits.position)
+        self._position = np.array(limits.position)
         self._integral, self._support = np.zeros(arm.n), np.zeros(arm.n)
         self._command = np.zeros(arm.n)
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
         self._reference: Reference | None = None
+        self._taking_over = True  # in this tick the law or its reference begins anew
+        self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self.move_done = 0
         self.refusal = ""
 
@@ -98,39 +102,52 @@ class Controller:
         reference = self._next_reference(estimate, decision)
         model = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
         torque = np.empty_like(model)
+        if self._taking_over:
+            np.subtract(estimate.tau_J, model, out=self._support)
         state = (estimate.q, estimate.theta, estimate.theta_d, estimate.tau_J)
         _tracking_law(reference, state, model, self._gains, self._support, torque)
-        if self._law is Law.FREE or self._law is None:
+        if self._taking_over:
             # Bumpless: the integral starts where the torque was, so that taking over moves nothing by itself.
-            self._integral[:] = (self._command if self._law is Law.FREE else model) - torque
+            self._integral[:] = (model if self._law is None else self._command) - torque
         _integrate(reference.q, estimate.q, self._I, self._dead, self._integral, torque)
         return torque
 
     def _next_reference(self, estimate: Estimate, decision: Decision) -> Reference:
         law = decision.law
+        self._taking_over = self._reference is None or self._law is Law.FREE
         if self._reference is None or self._law is Law.FREE:
-            self._motion = Stop(estimate.q, estimate.qd, self._acceleration)
+            self._motion, self._settling = Stop(estimate.q, estimate.qd, self._acceleration), SETTLE_TICKS
         elif law is not Law.FOLLOW and self._law is Law.FOLLOW:
-            self._motion = Stop(self._reference.q, self._reference.qd, self._acceleration)
+            self._motion, self._settling = Stop(self._reference.q, self._reference.qd, self._acceleration), SETTLE_TICKS
+        elif self._settling and self._motion is not None and self._motion.done:
+            self._motion = self._settle(estimate, self._reference)
         if law is Law.FOLLOW and decision.move is not self._move:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
         self._reference = self._motion.step()
-        if law is Law.FOLLOW and self._motion.done and self._move is not None:
+        if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
             self.move_done = self._move.id
         return self._reference
 
+    def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
+        """After a stop has run out, let its end lean towards where the arm swings about, for a while.
+
+        The arm then keeps the posture it came to, instead of creeping back to where the plan ended.
+        """
+        self._settling -= 1
+        return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), np.zeros_like(estimate.q), self._acceleration)
+
     def _begin(self, move: Move | None) -> None:
         assert self._reference is not None
+        self._settling = 0
         q = self._reference.q
         try:
             if isinstance(move, JointMove):
                 self._motion = JointTrajectory(q, move, self._speed, self._acceleration)
             elif isinstance(move, LinearMove):
-                self._motion = LinearTrajectory(
-                    q, move, self._dynamics, self._tcp, self._speed, self._acceleration, self._position
-                )
+                limits = (self._speed, self._acceleration, self._position)
+                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, limits)
             else:
                 self._motion = Stop(q, np.zeros_like(q), self._acceleration)
         except MoveRefused as refusal:

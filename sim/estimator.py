@@ -47,7 +47,8 @@ class Estimator:
         # The hysteresis element counts as a spring here: the controller does not know on which branch it is.
         stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
         torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
-        self._constants = (torque_constant, stiffness, np.array(spring.stiffening) * calibration.stiffness, np.array(spring.damping))
+        stiffening = np.array(spring.stiffening) * calibration.stiffness
+        self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping))
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
         self.tau_m, self.tau_J, self.tau_ext = np.zeros((3, n))
@@ -166,7 +167,7 @@ def _differentiate(gyro, last, turn, smoothing) -> None:
 
 
 @numba.njit(cache=True)
-def _cross(a, b):  # noqa: ANN202 - a tuple of three floats
+def _cross(a, b):
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 

@@ -14,6 +14,7 @@ from sim.frames import matrix_from_quaternion, quaternion_from_matrix
 
 Array = NDArray[np.float64]
 
+SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leave them at rest
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
 SAMPLES = 24  # places along a line where joint speeds are checked beforehand
 LINE_GAIN = 20.0  # pulls the line's reference back onto the line [1/s]
@@ -42,30 +43,30 @@ class MoveRefused(ValueError):
 
 
 class Stop:
-    """Decelerate from a motion as fast as the limits allow, all joints along the path they were on, then stand.
+    """Come to rest along the path the joints were on, then stand.
 
-    Every joint keeps its share of the speed, so the tool stays on its path; the slowest joint's limit decides.
+    Every joint keeps its share of the speed, so the tool stays on its path. The speed falls as half a cosine: a step in the
+    deceleration would leave the flexible joints ringing. The slowest joint's limit decides how long it takes.
     """
 
     def __init__(self, q: Array, qd: Array, deceleration: Array) -> None:
-        self._q, self._qd = q.copy(), qd.copy()
-        self._left = float(np.max(np.abs(qd) / deceleration))  # time to rest [s]
-        self._rate = qd / self._left if self._left > 0.0 else np.zeros_like(qd)
+        self._q, self._from, self._speed = q.copy(), q.copy(), qd.copy()
         self._zero = np.zeros_like(qd)
-        self.done = self._left <= 0.0
+        self._time = 0.0
+        self.done = not qd.any()
+        # Half a cosine of length T brakes hardest half-way, by pi/2 · speed / T.
+        self._length = max(SHORTEST_STOP, float(np.max(np.abs(qd) / deceleration)) * math.pi / 2.0)
 
     def step(self) -> Reference:
         """The reference of the next tick; at rest it stays where it is."""
         if self.done:
             return Reference(self._q, self._zero, self._zero)
-        span = min(TICK, self._left)
-        self._q = self._q + span * self._qd - 0.5 * span * span * self._rate
-        self._qd = self._qd - span * self._rate
-        self._left -= span
-        if self._left <= 0.0:
-            self._qd = self._zero
-            self.done = True
-        return Reference(self._q, self._qd, -self._rate)
+        self._time = min(self._time + TICK, self._length)
+        self.done = self._time >= self._length
+        rate = math.pi / self._length
+        phase = rate * self._time
+        self._q = self._from + self._speed * (0.5 * (self._time + math.sin(phase) / rate))
+        return Reference(self._q, self._speed * (0.5 + 0.5 * math.cos(phase)), self._speed * (-0.5 * rate * math.sin(phase)))
 
 
 class JointTrajectory:
@@ -101,9 +102,8 @@ class LinearTrajectory:
     exceed its speed slows the whole move down, a line through a singularity or out of reach is refused.
     """
 
-    def __init__(
-        self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, speed: Array, acceleration: Array, position: Array
-    ) -> None:
+    def __init__(self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, limits: tuple[Array, Array, Array]) -> None:
+        """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
         self._dynamics, self._tcp = dynamics, tcp
         p, R, _ = dynamics.update(q)
         self._start, self._R = p + R @ tcp, R.copy()
@@ -116,7 +116,7 @@ class LinearTrajectory:
         self._trajectory = ruckig.Trajectory(1)
         if self.done:
             return
-        fraction = min(1.0, self._slowest(q, speed, acceleration, position, move, span))
+        fraction = min(1.0, self._slowest(q, limits, move, span))
         entry = ruckig.InputParameter(1)
         entry.current_position, entry.target_position = [0.0], [1.0]
         entry.max_velocity = [fraction * move.speed / span]
@@ -124,8 +124,9 @@ class LinearTrajectory:
         entry.max_jerk = [fraction**3 * move.acceleration / span / JERK_TIME]
         ruckig.Ruckig(1).calculate(entry, self._trajectory)
 
-    def _slowest(self, q: Array, speed: Array, acceleration: Array, position: Array, move: LinearMove, span: float) -> float:
+    def _slowest(self, q: Array, limits: tuple[Array, Array, Array], move: LinearMove, span: float) -> float:
         """Factor on the path's speed that keeps every joint within its speed and acceleration, and the line in reach."""
+        speed, acceleration, position = limits
         q, worst, previous = q.copy(), 1e-9, np.zeros_like(q)
         for k in range(SAMPLES):
             rate = self._solve(q, (k + 0.5) / SAMPLES, 1.0)
@@ -137,7 +138,8 @@ class LinearTrajectory:
             beyond = np.abs(q) - position
             if beyond.max() > 0.0:
                 joint = int(np.argmax(beyond))
-                raise MoveRefused(f"linear move: joint {joint + 1} would reach {q[joint]:.3f} rad, allowed ±{position[joint]:.3f}")
+                reached = f"joint {joint + 1} would reach {q[joint]:.3f} rad"
+                raise MoveRefused(f"linear move: {reached}, allowed ±{position[joint]:.3f}")
         p, R, _ = self._dynamics.update(q)
         miss = float(np.linalg.norm(p + R @ self._tcp - self._start - self._way))
         if worst > 20.0 or miss > 0.02:

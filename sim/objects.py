@@ -21,7 +21,8 @@ HEAVY = 1e6  # mass of a moving object, that no arm pushes aside [kg]
 
 def add_object(spec: mujoco.MjSpec, item: AnyObject) -> None:
     """Add the body and geom `object/<name>` of `item`."""
-    body = spec.worldbody.add_body(name=f"object/{item.name}", pos=item.position, quat=quaternion_from_matrix(rotation_from_rpy(item.rpy)))
+    turn = quaternion_from_matrix(rotation_from_rpy(item.rpy))
+    body = spec.worldbody.add_body(name=f"object/{item.name}", pos=item.position, quat=turn)
     geom = body.add_geom(name=f"object/{item.name}", contype=0, conaffinity=0)
     if isinstance(item, Plane):
         geom.type = mujoco.mjtGeom.mjGEOM_PLANE

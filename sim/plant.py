@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim.arm import Arm
 from sim.chain import load_body
-from sim.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.frames import quaternion_from_matrix
 from sim.friction import Friction
 from sim.model import SENSORS, Step, build
 from sim.objects import SNAP_REST, SNAP_SLIP, set_contact_stiffness
@@ -69,7 +69,8 @@ class Plant:
         self.q, self.theta, self.qd, self.theta_d = np.zeros((4, arm.n))
         self.tau_J, self.friction_in = np.zeros((2, arm.n))
         self._springs_of = (self._stiffness, self._cubic, self._damping, self._slip_stiffness)
-        self._addresses = np.stack([self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state])
+        at = (self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state)
+        self._addresses = np.stack(at)
         self._bias = model.actuator_biasprm
         self.touched: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...] = ()
         self.load = scenario.payload_true
@@ -287,7 +288,7 @@ class Plant:
 
 
 @numba.njit(cache=True)
-def _gather(  # noqa: PLR0913, PLR0917 - all of a tick in one call
+def _gather(
     qpos, qvel, length, rate, plastic, at, stiffness, cubic, damping, slip_stiffness, q, theta, qd, theta_d, tau_J
 ) -> None:
     for i in range(q.size):

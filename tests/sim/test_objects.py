@@ -228,7 +228,8 @@ def test_a_snap_fit_breaks_at_its_force_and_gives_way_by_its_travel() -> None:
 
 
 def test_a_moving_object_follows_its_sine() -> None:
-    item = Moving(name="cart", position=[1.0, 1.0, 1.0], rpy=[0.0, 0.0, 1.0], size=[0.1] * 3, amplitude=[0.0, 0.2, 0.0], period=2.0)
+    size, sway = [0.1] * 3, [0.0, 0.2, 0.0]
+    item = Moving(name="cart", position=[1.0, 1.0, 1.0], rpy=[0.0, 0.0, 1.0], size=size, amplitude=sway, period=2.0)
     plant = Plant(UR5E, Scenario(world=[item]))
     for k in range(600):
         plant.advance(np.zeros(6))

@@ -203,7 +203,7 @@ def test_a_push_acts_at_its_point() -> None:
     point = np.array(plant.touched[0][1])
     force, torque = plant.data.xfrc_applied[body, :3], plant.data.xfrc_applied[body, 3:]
     assert np.allclose(force, [10.0, -5.0, 3.0])
-    assert np.allclose(torque, np.cross(point - plant.data.xipos[body], force) + [0.5, 0.0, 0.0], atol=0.02)
+    assert np.allclose(torque, np.cross(point - plant.data.xipos[body], force) + np.array([0.5, 0.0, 0.0]), atol=0.02)
     plant.advance(gravity_torque(plant))
     assert not plant.data.xfrc_applied.any(), "a push ends with its tick"
 
@@ -212,9 +212,9 @@ def test_the_hand_pulls_like_a_spring_and_never_beyond_its_cap() -> None:
     plant = Plant(UR5E, Scenario())
     torque = gravity_torque(plant)
     flange = plant.data.xpos[plant.model.body("flange").id].copy()
-    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + [0.0, 0.02, 0.0]), 50.0),))
+    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 0.02, 0.0])), 50.0),))
     assert np.allclose(plant.touched[0][2], [0.0, 800.0 * 0.02, 0.0], atol=0.1)
-    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + [0.0, 9.0, 0.0]), 50.0),))
+    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 9.0, 0.0])), 50.0),))
     assert np.linalg.norm(plant.touched[0][2]) == pytest.approx(50.0)
 
 

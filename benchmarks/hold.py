@@ -1,0 +1,179 @@
+"""Holding: drift in NORMAL and FREE_DRIVE, stops out of free-drive, pushes and releases at each link.
+
+Over arms, mountings and postures, mismatch on; the nominal arm beside it. Truth is read for scoring alone.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.library import load_arm
+from benchmarks.common import Report, main, spread
+from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.modes import Mode
+from pendant.settings import Settings, apply
+from sim.desk import Wishes
+from sim.scenario import Scenario
+from sim.simulation import Simulation
+from sim.touch import Pull, Push
+
+ARMS = ("ur3e", "ur5e", "ur10e", "ur16e")
+MOUNTINGS = {"floor": (0.0, 0.0, 0.0), "wall": (0.0, np.pi / 2, 0.0), "ceiling": (np.pi, 0.0, 0.0), "tilted": (0.6, 0.4, 0.0)}
+IDLE = Wishes(NOTHING, (), ())
+HOLD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
+RELEASE = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
+SMALLEST_SINGULAR = 0.1  # postures nearer to a singularity are drawn again; the share is printed
+
+
+class Case(NamedTuple):
+    """One arm in one posture."""
+
+    arm: str
+    mounting: str
+    number: int
+    seed: int
+    mismatch: str
+
+
+class Result(NamedTuple):
+    """Displacements of the flange [mm]."""
+
+    case: Case
+    normal: float
+    free: float
+    entered: bool
+    stop: float
+    stop_speed: float  # [m/s]
+    stop_hold: float
+    push_back: float
+    push_back_part: str
+    redrawn: int
+
+
+def flange(simulation: Simulation) -> np.ndarray:
+    """True flange position [mm]."""
+    return 1000.0 * simulation.plant.poses()[-1, :3]
+
+
+def travel(simulation: Simulation, seconds: float, start: np.ndarray) -> float:
+    """Largest distance of the flange from `start` while nobody does anything [mm]."""
+    worst = 0.0
+    for _ in range(round(500 * seconds)):
+        simulation.tick(IDLE)
+        worst = max(worst, float(np.linalg.norm(flange(simulation) - start)))
+    return worst
+
+
+def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
+    """A random posture away from singularities, and how many were thrown away before."""
+    arm = load_arm(arm_name)
+    probe = Simulation(arm, Scenario(mismatch="nominal"), Settings())
+    redrawn = 0
+    while True:
+        q = rng.uniform(-2.6, 2.6, arm.n)
+        jacobian = probe.dynamics.update(q)[2]
+        if np.linalg.svd(jacobian, compute_uv=False)[-1] > SMALLEST_SINGULAR * arm.reach / 0.85:
+            return q.tolist(), redrawn
+        redrawn += 1
+
+
+def enter(simulation: Simulation) -> bool:
+    """Hold the button until free-drive is on, then let go."""
+    for _ in range(520):
+        simulation.tick(HOLD)
+    return simulation.tick(RELEASE).mode is Mode.FREE_DRIVE
+
+
+def speed_up(simulation: Simulation) -> float:
+    """Guide the flange by a hand along its easiest direction until it moves at 250 mm/s; returns the speed reached [m/s]."""
+    jacobian = simulation.dynamics.update(simulation.plant.q)[2][:3]
+    mobility = jacobian @ np.linalg.solve(simulation.dynamics.mass(simulation.plant.q), jacobian.T)
+    base = simulation.plant.data.xmat[simulation.plant.model.body("foot").id].reshape(3, 3)
+    direction = base @ np.linalg.eigh(mobility)[1][:, -1]
+    before = flange(simulation)
+    target, pace, speed = before / 1000.0, 0.0, 0.0
+    for _ in range(1500):
+        pace = min(pace + 0.002 * 0.4, 0.27)  # a hand takes most of a second to get there
+        target = target + 0.002 * pace * direction
+        simulation.tick(Wishes(NOTHING, (Pull("flange", (0.0, 0.0, 0.0), tuple(target), 100.0),), ()))
+        now = flange(simulation)
+        speed = float(np.linalg.norm(now - before)) * 0.5
+        before = now
+        if speed >= 0.25:
+            break
+    return speed
+
+
+def measure_case(case: Case) -> Result:
+    """All figures of one case."""
+    arm = load_arm(case.arm)
+    rng = np.random.default_rng([case.seed, case.number])
+    q, redrawn = posture(case.arm, rng)
+    scenario = Scenario(mounting=list(MOUNTINGS[case.mounting]), posture=q, seed=case.seed + case.number, mismatch=case.mismatch)
+    settings = apply(Settings(), {"free_drive.period": 30.0})
+    simulation = Simulation(arm, scenario, settings)
+    start = flange(simulation)
+    normal = travel(simulation, 10.0, start)
+    back, part = push_each_link(simulation)
+    entered = enter(simulation)
+    free = travel(simulation, 10.0, flange(simulation))
+    reached = speed_up(simulation)
+    point = flange(simulation)
+    simulation.tick(Wishes(Inputs(commands=(Command.EMERGENCY_STOP,)), (), ()))
+    stop = travel(simulation, 1.0, point)
+    hold = travel(simulation, 2.0, flange(simulation))
+    return Result(case, normal, free, entered, stop, reached, hold, back, part, redrawn)
+
+
+def push_each_link(simulation: Simulation) -> tuple[float, str]:
+    """50 N for 1 s on every part, across its way to the base; largest distance [mm] 2 s after the release, and the part."""
+    worst, where = 0.0, ""
+    for part in simulation.plant.parts[1:-1]:
+        start = flange(simulation)
+        body = simulation.plant.model.body(part).id
+        outward = simulation.plant.data.xipos[body] - simulation.plant.data.xpos[simulation.plant.model.body("foot").id]
+        across = np.cross(outward, [0.3, 0.4, 0.866])
+        push = Push(part, (0.0, 0.0, 0.0), tuple(50.0 * across / np.linalg.norm(across)))
+        for _ in range(500):
+            simulation.tick(Wishes(NOTHING, (push,), ()))
+        for _ in range(1000):
+            simulation.tick(IDLE)
+        back = float(np.linalg.norm(flange(simulation) - start))
+        if back > worst:
+            worst, where = back, part
+    return worst, where
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    postures = 25 if report.options.full else 2
+    for mismatch in ("on", "nominal"):
+        count = postures if mismatch == "on" else max(1, postures // 8)
+        cases = [
+            Case(arm, mounting, 100 * m + k, report.options.seed, mismatch)
+            for arm in ARMS
+            for m, mounting in enumerate(MOUNTINGS)
+            for k in range(count)
+        ]
+        results = spread(measure_case, cases)
+        for arm in ARMS:
+            mine = [result for result in results if result.case.arm == arm]
+            label = f"{arm}, {len(mine)} cases, mismatch {mismatch}"
+            report.row(f"{label}: drift in NORMAL, 10 s, worst", max(r.normal for r in mine), "mm", at_most=0.2)
+            report.row(f"{label}: free-drive entered", sum(r.entered for r in mine) / len(mine), "", at_least=1.0)
+            report.row(f"{label}: drift in FREE_DRIVE, 10 s, worst", max(r.free for r in mine), "mm", at_most=2.0)
+            fast = [r for r in mine if r.stop_speed >= 0.25]
+            report.row(f"{label}: share guided to 250 mm/s", len(fast) / len(mine), "", at_least=0.9)
+            report.row(f"{label}: stop from 250 mm/s, worst", max((r.stop for r in fast), default=0.0), "mm", at_most=15.0)
+            report.row(f"{label}: hold after the stop, worst", max(r.stop_hold for r in mine), "mm", at_most=0.2)
+            worst = max(mine, key=lambda r: r.push_back)
+            report.row(f"{label}: 50 N push, back to ({worst.push_back_part})", worst.push_back, "mm", at_most=0.3)
+        redrawn = sum(r.redrawn for r in results)
+        report.notes.append(
+            f"mismatch {mismatch}: {redrawn} postures near a singularity drawn again for {len(results)} cases; "
+            f"worst drift in FREE_DRIVE: {max(results, key=lambda r: r.free).case}"
+        )
+
+
+if __name__ == "__main__":
+    main("hold", measure)
