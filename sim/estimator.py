@@ -53,6 +53,7 @@ class Estimator:
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
         self.tau_m, self.tau_J, self.tau_ext = np.zeros((3, n))
         self._started = False
+        self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
         self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
         self.tick = 0
@@ -74,25 +75,28 @@ class Estimator:
         theta, q = self._theta, self._q
         if sample.joints_valid:
             if not self._started:
+                # Also after an outage: the way the arm went in it must not count as speed.
+                theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = sample.theta, sample.q
-                self._started = True
             _follow(sample.theta, sample.q, sample.current, self._gains, self._constants, theta, q, self.tau_m, self.tau_J)
             self.q = sample.q
+        self._started = sample.joints_valid
         qd = q[1]
         self.tau_ext = dynamics.inverse(self.q, qd, q[2]) - self.tau_J
         v_elbow = dynamics.elbow_speed()
         p, R, self.jacobian = dynamics.update(self.q)
         F_user, v_F = np.zeros(6), np.empty(6)
         v_tcp = _tcp_speed(self.jacobian, qd, R, self._tcp, v_F)
+        if sample.acceleration_valid:
+            _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
         if sample.wrench_valid:
             if sample.acceleration_valid:
-                force, gyro = sample.acceleration_tool, sample.gyro_tool
-                _differentiate(gyro, self._gyro, self._turn, self._smoothing)
-                turn = self._turn
+                force = sample.acceleration_tool
             else:
-                force, turn = dynamics.specific_force(self.q, qd, q[2])
-                gyro = R.T @ v_F[3:]
-            _user_wrench(sample.wrench, force, gyro, turn, *self._load, R, F_user)
+                # The model stands in; its values stay for the differentiation to go on from.
+                force, self._turn[:] = dynamics.specific_force(self.q, qd, q[2])
+                self._gyro[:] = R.T @ v_F[3:]
+            _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, R, F_user)
         return Estimate(
             self.tick,
             sample.joints_valid,

@@ -86,6 +86,7 @@ class Sensors:
         self._line: list[Array] = []
         self._ripple, self._ripple_phase = calibration.ripple, calibration.ripple_phase
         self._any_out = bool(self._out.any())
+        self._suspect = 0  # samples yet to arrive that may hold what is not a number
 
     def _set(self, name: str, channels: Channels | None) -> None:
         if channels is not None:
@@ -124,6 +125,7 @@ class Sensors:
         _measure(truth, distortion, channel, plant.step.tick, value)
         if self._any_out:
             value[self._out] = np.nan
+            self._suspect = LATENCY + 1
         line = self._line
         line.append(value)
         if len(line) > LATENCY + 1:
@@ -139,7 +141,8 @@ class Sensors:
         n = self._n
         k = 3 * n + 6
         joints = wrench = acceleration = True
-        if self._any_out:
+        if self._suspect:
+            self._suspect -= 1
             joints = bool(np.isfinite(values[: 3 * n]).all())
             wrench = bool(np.isfinite(values[3 * n : k]).all())
             acceleration = bool(np.isfinite(values[k:]).all())
