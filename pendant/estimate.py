@@ -37,3 +37,30 @@ class Estimate:
     v_elbow: float  # speed of the elbow [m/s]
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
+
+    def copy(self) -> "Estimate":
+        """The same values in arrays of their own, which no later update changes."""
+        return Estimate(
+            self.tick,
+            self.joints_valid,
+            self.wrench_valid,
+            self.acceleration_valid,
+            self.q.copy(),
+            self.qd.copy(),
+            self.qdd.copy(),
+            self.theta.copy(),
+            self.theta_d.copy(),
+            self.tau_m.copy(),
+            self.tau_J.copy(),
+            self.tau_ext.copy(),
+            self.w_sensor.copy(),
+            self.F_user.copy(),
+            self.a_F.copy(),
+            self.p_BF.copy(),
+            self.R_BF.copy(),
+            self.v_F.copy(),
+            self.v_tcp,
+            self.v_elbow,
+            self.move_done,
+            self.move_refused,
+        )

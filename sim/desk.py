@@ -4,6 +4,7 @@ import threading
 from dataclasses import dataclass, field
 
 from pendant.inputs import Button, Command, Inputs
+from pendant.program import Program
 from sim.changes import AnyChange
 from sim.touch import Touch
 
@@ -26,6 +27,7 @@ class Desk:
     _released: set[Button] = field(default_factory=set)
     _commands: list[Command] = field(default_factory=list)
     _settings: dict[str, float | bool | str] = field(default_factory=dict)
+    _program: Program | None = None
     _changes: list[AnyChange] = field(default_factory=list)
     _touches: dict[str, Touch] = field(default_factory=dict)
 
@@ -51,6 +53,11 @@ class Desk:
         with self._lock:
             self._settings.update(settings)
 
+    def load(self, program: Program) -> None:
+        """Hand over a program; a later one before the next tick replaces it."""
+        with self._lock:
+            self._program = program
+
     def change(self, change: AnyChange) -> None:
         """Queue a laboratory change."""
         with self._lock:
@@ -70,7 +77,7 @@ class Desk:
         """Read all wishes and empty the queues; touches stay until they are let go."""
         with self._lock:
             wishes = Wishes(
-                Inputs(frozenset(self._held), frozenset(self._released), tuple(self._commands), self._settings),
+                Inputs(frozenset(self._held), frozenset(self._released), tuple(self._commands), self._settings, self._program),
                 tuple(self._touches.values()),
                 tuple(self._changes),
             )
@@ -78,6 +85,7 @@ class Desk:
             self._released = set()
             self._commands = []
             self._settings = {}
+            self._program = None
             self._changes = []
             return wishes
 
@@ -86,4 +94,5 @@ class Desk:
         with self._lock:
             self._held, self._released = set(), set()
             self._commands, self._settings, self._changes = [], {}, []
+            self._program = None
             self._touches.clear()

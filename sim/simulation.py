@@ -1,7 +1,5 @@
 """One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
 
-import copy
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -52,6 +50,7 @@ class Simulation:
         self.controller = Controller(arm, calibrated, self.dynamics, tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
+        self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
         self._estimate = None
 
@@ -130,7 +129,7 @@ class Simulation:
         return Snapshot(
             plant.tick,
             self._decision,
-            copy.deepcopy(self._estimate),
+            self._estimate.copy(),
             plant.poses(),
             plant.object_poses(),
             plant.payload_pose(),
