@@ -41,7 +41,7 @@ class Loop:
         self.actual_rate = 0.0
         self.lateness: deque[float] = deque(maxlen=60 * TICK_RATE)  # of each tick's start [s], for measurements
         self.dropped = 0.0  # debt dropped so far [s]
-        self._steps = 0
+        self._steps = threading.Semaphore(0)  # single steps asked for and not done yet
         self._reset = False
         self._stop = threading.Event()
         self._events: list[Event] = []
@@ -85,8 +85,9 @@ class Loop:
         return self._events[since:]
 
     def step_once(self) -> None:
-        """While paused: do one tick."""
-        self._steps += 1
+        """While paused: do one tick. Otherwise nothing."""
+        if self.paused:
+            self._steps.release()
 
     def reset(self) -> None:
         """Go back to the scenario's start at the next tick."""
@@ -96,8 +97,18 @@ class Loop:
         decision = self.simulation.tick(self.desk.take())
         if decision.events:
             self._events.extend(decision.events)
-        if self.simulation.plant.tick % SNAPSHOT_TICKS == 1 or self.paused:
+        if self.simulation.plant.tick % SNAPSHOT_TICKS == 1:
             self._snapshot = self.simulation.snapshot()
+
+    def _stand(self) -> None:
+        """Paused: do a step that was asked for, else show where the arm stands, else wait."""
+        self.actual_rate = 0.0
+        if self._steps.acquire(blocking=False):
+            self._do_tick()
+        elif self._snapshot is None or self._snapshot.tick != self.simulation.plant.tick:
+            self._snapshot = self.simulation.snapshot()
+        else:
+            time.sleep(PAUSE_NAP)
 
     def _run(self) -> None:
         try:
@@ -117,12 +128,7 @@ class Loop:
                 self._do_tick()
                 due = time.perf_counter()
             if self.paused:
-                self.actual_rate = 0.0
-                if self._steps > 0:
-                    self._steps -= 1
-                    self._do_tick()
-                else:
-                    time.sleep(PAUSE_NAP)
+                self._stand()
                 due = since = time.perf_counter()
                 ticks = 0
                 continue
