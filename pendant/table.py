@@ -177,7 +177,7 @@ TABLE: dict[Kind, Row] = {
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),
     # The loop that runs all of it
-    Kind.OVERRUN: _info("Simulation late by {late:.0f} ms", "The machine is busy; the lost time is dropped.", ("late",)),
+    Kind.OVERRUN: _denied("Simulation late by {late:.0f} ms", "The machine is busy; the lost time is dropped.", ("late",)),
 }
 
 
