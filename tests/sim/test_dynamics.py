@@ -16,9 +16,7 @@ MOUNTING = [0.4, -1.1, 2.0]
 
 
 def both(arm: Arm, loaded: bool) -> tuple[Plant, Dynamics]:
-    scenario = Scenario(
-        mounting=MOUNTING, tool=PROBE if loaded else None, payload_true=TWO_KG if loaded else Load(mass=0.0)
-    )
+    scenario = Scenario(mounting=MOUNTING, tool=PROBE if loaded else None, payload_true=TWO_KG if loaded else Load(mass=0.0))
     rigid = chain(arm)
     load = plate_body(arm) + tool_body(scenario.tool) + load_body(scenario.payload_true)
     return Plant(arm, scenario), Dynamics(rigid, rigid.links, load, scenario.mounting, arm.chain.elbow)
