@@ -44,11 +44,13 @@ class Estimator:
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
         n, motors, spring = arm.n, arm.motors, arm.transmissions
         self._dynamics, self._tcp = dynamics, tcp
-        # The hysteresis element counts as a spring here: the controller does not know on which branch it is.
-        stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
+        stiffness = np.array(spring.stiffness) * calibration.stiffness
+        slip_stiffness = np.array(spring.hysteresis_stiffness) * calibration.stiffness
         torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
         stiffening = np.array(spring.stiffening) * calibration.stiffness
-        self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping))
+        slip = (slip_stiffness, np.array(spring.hysteresis_yield))
+        self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping), *slip)
+        self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
         self.tau_m, self.tau_J, self.tau_ext = np.zeros((3, n))
@@ -78,7 +80,10 @@ class Estimator:
                 # Also after an outage: the way the arm went in it must not count as speed.
                 theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = sample.theta, sample.q
-            _follow(sample.theta, sample.q, sample.current, self._gains, self._constants, theta, q, self.tau_m, self.tau_J)
+            if self._rest is None:
+                self._rest = sample.theta - sample.q
+            measured = (sample.theta, sample.q, sample.current)
+            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self.tau_J)
             self.q = sample.q
         self._started = sample.joints_valid
         qd = q[1]
@@ -135,15 +140,22 @@ def _track(measured, gains, state, i) -> None:
 
 
 @numba.njit(cache=True)
-def _follow(theta_measured, q_measured, current, gains, constants, theta, q, tau_m, tau_J) -> None:
-    """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3)."""
-    torque_constant, stiffness, stiffening, damping = constants
+def _follow(measured, gains, constants, state, tau_m, tau_J) -> None:
+    """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3).
+
+    The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
+    """
+    theta_measured, q_measured, current = measured
+    torque_constant, stiffness, stiffening, damping, slip_stiffness, slip_yield = constants
+    theta, q, rest = state
     for i in range(tau_m.size):
         _track(theta_measured[i], gains[0], theta, i)
         _track(q_measured[i], gains[1], q, i)
         tau_m[i] = torque_constant[i] * current[i]
         x = theta_measured[i] - q_measured[i]
-        tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i])
+        rest[i] = min(max(rest[i], x - slip_yield[i]), x + slip_yield[i])
+        slip = slip_stiffness[i] * (x - rest[i])
+        tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i]) + slip
 
 
 @numba.njit(cache=True)
