@@ -1,0 +1,310 @@
+"""The estimator against analytic motion, the plant's truth and known pushes."""
+
+import numpy as np
+import pytest
+
+from sim import calibration
+from sim.chain import Body, chain
+from sim.changes import AttachPayload, SensorFault
+from sim.dynamics import Dynamics
+from sim.estimator import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, Estimator, tracking_gains
+from sim.frames import joint_frames, rotation_from_rpy
+from sim.scenario import Load, Scenario
+from sim.sensors import Sample
+from tests.sim.arms import PROBE, TWO_KG, UR5E
+from tests.sim.bench import CENTRE, Bench, push
+
+G = 9.81
+FLOOR, WALL, TILTED = [0.0, 0.0, 0.0], [0.0, np.pi / 2, 0.0], [0.6, 0.4, 0.2]
+BENT = [0.3, -1.2, 1.5, -0.8, -1.2, 0.7]
+
+
+def sample(theta: np.ndarray, q: np.ndarray, *, joints: bool = True) -> Sample:
+    """Noiseless encoders, no current, no flange sensors."""
+    values = np.concatenate([theta, q, np.zeros(24)])
+    parts = np.split(values, [6, 12, 18, 24, 27, 30, 33])
+    return Sample(values, *parts, np.full(6, 40.0), joints, False, False)
+
+
+def estimator() -> Estimator:
+    rigid = chain(UR5E)
+    nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    dynamics = Dynamics(rigid, rigid.links, nothing, FLOOR, UR5E.chain.elbow)
+    return Estimator(UR5E, calibration.nominal(UR5E), dynamics, np.array(PROBE.tcp))
+
+
+def follow(angle, ticks: int = 400):
+    device = estimator()
+    for k in range(ticks):
+        q = angle(0.002 * k)
+        result = device.update(sample(q, q), 0, "")
+    return result
+
+
+def test_a_steady_speed_is_followed_without_lag() -> None:
+    speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
+    result = follow(lambda t: BENT + speed * t)
+    assert np.allclose(result.qd, speed, atol=1e-9)
+    assert np.allclose(result.theta_d, speed, atol=1e-9)
+    assert np.allclose(result.qdd, 0.0, atol=1e-7)
+
+
+def test_a_steady_acceleration_is_followed_in_speed_and_acceleration() -> None:
+    acceleration = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
+    result = follow(lambda t: BENT + 0.5 * acceleration * t * t)
+    assert np.allclose(result.qd, acceleration * 0.002 * 399, atol=1e-7)
+    assert np.allclose(result.qdd, acceleration, atol=1e-5)
+
+
+@pytest.mark.parametrize("bandwidth", [SPEED_BANDWIDTH, TORQUE_BANDWIDTH])
+def test_the_filters_three_poles_are_at_its_bandwidth(bandwidth: float) -> None:
+    alpha, beta, gamma = tracking_gains(bandwidth)
+    predict = np.array([[1.0, 0.002, 0.5 * 0.002**2], [0.0, 1.0, 0.002], [0.0, 0.0, 1.0]])
+    correct = np.eye(3) - np.outer([alpha, beta, gamma], [1.0, 0.0, 0.0])
+    # A triple pole: compare the characteristic polynomial, eigenvalues of a triple root are badly conditioned.
+    r = np.exp(-2.0 * np.pi * bandwidth * 0.002)
+    assert np.allclose(np.poly(correct @ predict), [1.0, -3.0 * r, 3.0 * r**2, -(r**3)], atol=1e-9)
+
+
+def test_speeds_at_rest_are_far_below_what_counts_as_moving() -> None:
+    bench = Bench(Scenario())
+    bench.run(0.5)
+    worst = 0.0
+    for _ in range(500):
+        bench.tick()
+        worst = max(worst, float(np.abs(bench.estimate.qd).max()))
+    assert worst < 0.005, "rad/s; static is 0.01"
+
+
+def test_speeds_of_tool_elbow_and_flange_are_those_of_the_kinematics() -> None:
+    speed = np.array([0.4, -0.5, 0.3, -0.6, 0.7, 0.9])
+    result = follow(lambda t: BENT + speed * (t - 0.002 * 399))
+    step = 1e-6
+
+    def points(q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        frames = joint_frames(UR5E, q)
+        return frames[-1][:3, 3], (frames[-1] @ [*PROBE.tcp, 1.0])[:3], frames[UR5E.chain.elbow][:3, 3]
+
+    ahead, behind = points(BENT + step * speed), points(BENT - step * speed)
+    flange, tcp, elbow = ((a - b) / (2.0 * step) for a, b in zip(ahead, behind, strict=True))
+    assert np.allclose(result.v_F[:3], flange, atol=1e-6)
+    assert result.v_tcp == pytest.approx(np.linalg.norm(tcp), abs=1e-6)
+    assert result.v_elbow == pytest.approx(np.linalg.norm(elbow), abs=1e-6)
+    spin = joint_frames(UR5E, BENT + step * speed)[-1][:3, :3] @ joint_frames(UR5E, BENT - step * speed)[-1][:3, :3].T
+    turn = np.array([spin[2, 1], spin[0, 2], spin[1, 0]]) / (2.0 * step)
+    assert np.allclose(result.v_F[3:], turn, atol=1e-6)
+
+
+def test_invalid_joints_leave_the_last_estimate_and_do_not_count_as_motion_afterwards() -> None:
+    device = estimator()
+    q = np.array(BENT)
+    for _ in range(100):
+        device.update(sample(q, q), 0, "")
+    nothing = np.full(6, np.nan)
+    for _ in range(50):
+        result = device.update(sample(nothing, nothing, joints=False), 0, "")
+        assert not result.joints_valid
+        assert (result.q == q).all()
+        assert np.isfinite(result.tau_ext).all()
+    moved = q + 0.1
+    for _ in range(20):
+        result = device.update(sample(moved, moved), 0, "")
+        assert result.joints_valid
+        assert (result.q == moved).all()
+        assert np.abs(result.qd).max() < 1e-9
+
+
+def test_an_outage_from_the_first_tick_on_is_survived() -> None:
+    bench = Bench()
+    start = bench.flange
+    bench.change(SensorFault(sensor="output_encoder", outage=True))
+    bench.run(0.1)
+    assert not bench.estimate.joints_valid
+    bench.change(SensorFault(sensor="output_encoder"))
+    bench.run(0.5)
+    assert bench.estimate.joints_valid
+    assert np.isfinite(bench.estimate.tau_J).all()
+    assert np.linalg.norm(bench.flange - start) < 1e-3
+
+
+# Torques
+
+
+def means(bench: Bench, seconds: float, *touches) -> dict[str, np.ndarray]:
+    """Means of estimates, and of the true transmission torque, while `touches` last."""
+    rows: dict[str, list[np.ndarray]] = {"F_user": [], "tau_ext": [], "tau_J": [], "true": []}
+    for _ in range(round(500 * seconds)):
+        bench.run(0.002, *touches)
+        now = bench.estimate
+        for name in ("F_user", "tau_ext", "tau_J"):
+            rows[name].append(getattr(now, name))
+        rows["true"].append(bench.plant.tau_J.copy())
+    return {name: np.mean(values, axis=0) for name, values in rows.items()}
+
+
+@pytest.mark.parametrize("mounting", [FLOOR, WALL, TILTED], ids=["floor", "wall", "tilted"])
+@pytest.mark.parametrize("posture", [None, BENT], ids=["home", "bent"])
+def test_transmission_torque_is_the_true_one_on_the_nominal_arm(mounting: list[float], posture: list[float] | None) -> None:
+    """Within 0.15 N·m at rest and under a push, hysteresis included."""
+    bench = Bench(
+        Scenario(mismatch="nominal", mounting=mounting, posture=posture, payload_true=TWO_KG, payload_configured=TWO_KG)
+    )
+    bench.run(0.4)
+    for touches in ((), (push("flange", (30.0, -20.0, 25.0)),), ()):
+        bench.run(0.3, *touches)
+        seen = means(bench, 0.2, *touches)
+        assert np.abs(seen["tau_J"] - seen["true"]).max() < 0.15
+    assert np.abs(seen["true"]).max() > 5.0, "there must be something to measure"
+
+
+def test_stiffness_error_shows_in_the_transmission_torque() -> None:
+    scenario = Scenario(seed=3)
+    bench = Bench(scenario)
+    bench.run(0.5)
+    seen = means(bench, 0.2)
+    loaded = np.abs(seen["true"]) > 5.0
+    wrong = np.abs(seen["tau_J"] / seen["true"] - 1.0)[loaded]
+    # 20 % of stiffness, and a ripple of 0.1 mrad of the encoder.
+    bound = 0.2 + 1e-4 * 1.1 * np.array(UR5E.transmissions.stiffness)[loaded] * 1.2 / np.abs(seen["true"])[loaded]
+    assert (wrong < bound + 0.02).all()
+    assert wrong.max() > 0.01
+
+
+@pytest.mark.parametrize("mounting", [FLOOR, WALL, TILTED], ids=["floor", "wall", "tilted"])
+def test_a_push_on_the_flange_shows_as_it_is(mounting: list[float]) -> None:
+    """F_user: size, direction, sign, axes of B; tau_ext = J^T F up to what the output's own friction holds."""
+    force, torque = np.array([12.0, -7.0, 9.0]), np.array([0.5, 0.3, -0.4])
+    bench = Bench(Scenario(mismatch="nominal", mounting=mounting, posture=BENT, payload_true=TWO_KG, payload_configured=TWO_KG))
+    bench.run(0.5)
+    before = means(bench, 0.3)
+    assert np.abs(before["F_user"][:3]).max() < 0.1
+    assert np.abs(before["F_user"][3:]).max() < 0.01
+    touch = push("flange", tuple(force), tuple(torque))
+    bench.run(0.5, touch)
+    pushed = means(bench, 0.3, touch)
+    R_BW = rotation_from_rpy(mounting).T
+    expected = np.concatenate([R_BW @ force, R_BW @ torque])
+    assert np.abs(pushed["F_user"] - expected)[:3].max() < 0.1
+    assert np.abs(pushed["F_user"] - expected)[3:].max() < 0.01
+    jacobian = numeric_jacobian(bench.plant.q)
+    seen = pushed["tau_ext"] - before["tau_ext"]
+    # The output side's dry friction is a tenth of a joint's and keeps what it keeps.
+    tolerance = 0.15 + 2.0 * UR5E.frictions.output_share * np.array(UR5E.frictions.breakaway)
+    assert (np.abs(seen - jacobian.T @ expected) < tolerance).all()
+    assert np.abs(jacobian.T @ expected).max() > 4.0
+
+
+def numeric_jacobian(q: np.ndarray) -> np.ndarray:
+    """Of the flange (6, n), from the frames alone."""
+    jacobian, R = np.empty((6, 6)), joint_frames(UR5E, q)[-1][:3, :3]
+    for i in range(6):
+        step = np.zeros(6)
+        step[i] = 1e-6
+        ahead, behind = joint_frames(UR5E, q + step)[-1], joint_frames(UR5E, q - step)[-1]
+        jacobian[:3, i] = (ahead[:3, 3] - behind[:3, 3]) / 2e-6
+        spin = (ahead[:3, :3] - behind[:3, :3]) @ R.T / 2e-6
+        jacobian[3:, i] = spin[2, 1], spin[0, 2], spin[1, 0]
+    return jacobian
+
+
+def test_a_push_behind_the_sensor_shows_in_the_joints_alone() -> None:
+    bench = Bench()
+    bench.run(0.5)
+    before = means(bench, 0.3)
+    touch = push("wrist_1", (0.0, 25.0, 0.0))
+    bench.run(0.5, touch)
+    seen = means(bench, 0.3, touch)
+    assert np.abs(seen["F_user"] - before["F_user"])[:3].max() < 0.1
+    change = seen["tau_ext"] - before["tau_ext"]
+    origin = joint_frames(UR5E, bench.plant.q)[3][:3, 3]
+    assert change[0] == pytest.approx(25.0 * origin[0], abs=0.3 + 2 * 0.08 * 5.78), "force times lever about the base axis"
+    assert np.abs(change[3:]).max() < 0.3, "the wrist beyond it feels nothing"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_right_payload_is_no_user_force_in_any_posture(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bench = Bench(
+        Scenario(
+            mismatch="nominal",
+            posture=rng.uniform(-3.0, 3.0, 6).tolist(),
+            mounting=rng.uniform(-3.0, 3.0, 3).tolist(),
+            tool=PROBE,
+            payload_true=TWO_KG,
+            payload_configured=TWO_KG,
+            seed=seed,
+        )
+    )
+    bench.run(0.3)
+    seen = means(bench, 0.4)["F_user"]
+    assert np.linalg.norm(seen[:3]) < 0.15
+    assert np.linalg.norm(seen[3:]) < 0.015
+
+
+@pytest.mark.parametrize("mounting", [FLOOR, WALL, TILTED], ids=["floor", "wall", "tilted"])
+def test_a_payload_that_nobody_configured_looks_like_a_pull_of_its_weight(mounting: list[float]) -> None:
+    bench = Bench(Scenario(mismatch="nominal", mounting=mounting))
+    bench.run(0.2)
+    bench.change(AttachPayload(load=Load(mass=1.5, com=[0.0, 0.0, 0.06])))
+    bench.run(1.0)
+    seen = means(bench, 0.3)["F_user"]
+    down = rotation_from_rpy(mounting).T @ [0.0, 0.0, -1.5 * G]
+    assert np.abs(seen[:3] - down).max() < 0.15
+    lever = joint_frames(UR5E, bench.plant.q)[-1][:3, :3] @ [0.0, 0.0, 0.06]
+    assert np.abs(seen[3:] - np.cross(lever, down)).max() < 0.02
+
+
+def test_a_payload_that_is_configured_but_absent_looks_like_a_lift() -> None:
+    bench = Bench()
+    bench.run(0.2)
+    bench.simulation.configure_payload(Load(mass=1.5, com=[0.0, 0.0, 0.06]))
+    bench.run(1.0)
+    seen = means(bench, 0.3)["F_user"]
+    assert np.abs(seen[:3] - [0.0, 0.0, 1.5 * G]).max() < 0.15
+
+
+@pytest.mark.parametrize("accelerometer", [True, False], ids=["measured", "from the model"])
+def test_inertia_of_a_payload_in_fast_motion_is_no_user_force(accelerometer: bool) -> None:
+    """2 kg at up to 1.8 m/s and full acceleration."""
+    bench = Bench(Scenario(mismatch="nominal", payload_true=TWO_KG, payload_configured=TWO_KG))
+    if not accelerometer:
+        bench.change(SensorFault(sensor="accelerometer", outage=True))
+    bench.run(0.3)
+    target = np.add(UR5E.chain.home, [0.8, -0.3, 0.4, 0.3, 0.5, 1.0])
+    bench.start_joint_move(target, 1.0)
+    worst, fastest, inertial = 0.0, 0.0, 0.0
+    for _ in range(280):
+        bench.tick()
+        now = bench.estimate
+        worst, fastest = max(worst, float(np.linalg.norm(now.F_user[:3]))), max(fastest, now.v_tcp)
+        inertial = max(inertial, float(np.linalg.norm(now.R_BF @ now.w_sensor[:3] - [0.0, 0.0, 2.13 * G])))
+    assert fastest > 1.5
+    assert inertial > 25.0
+    assert worst < (4.0 if accelerometer else 0.5 * inertial), "accelerations of the joints come late, by their filter"
+
+
+def test_a_lost_flange_sensor_means_no_user_force() -> None:
+    bench = Bench(Scenario(payload_true=TWO_KG))
+    bench.run(0.2)
+    assert np.linalg.norm(bench.estimate.F_user) > 5.0
+    bench.change(SensorFault(sensor="force_torque", channel=2, outage=True))
+    bench.run(0.01)
+    assert not bench.estimate.wrench_valid
+    assert (bench.estimate.F_user == 0.0).all()
+    bench.change(SensorFault(sensor="force_torque", channel=2))
+    bench.run(0.01)
+    assert bench.estimate.wrench_valid
+    assert np.linalg.norm(bench.estimate.F_user) > 5.0
+
+
+def test_motor_torque_comes_from_the_current_and_the_motor_constant() -> None:
+    for scenario, error in ((Scenario(mismatch="nominal"), 0.0), (Scenario(seed=2), 0.03)):
+        bench = Bench(scenario)
+        rows, true = [], []
+        for _ in range(300):
+            rows.append(bench.estimate.tau_m if bench.simulation.tick_count else np.zeros(6))
+            bench.run(0.002, push("flange", CENTRE))
+            dofs = [bench.plant.model.joint(f"theta/{name}").dofadr[0] for name in UR5E.chain.joints]
+            true.append(bench.plant.data.qfrc_applied[dofs].copy())
+        seen, applied = np.mean(rows[100:], axis=0), np.mean(true[98:-2], axis=0)
+        assert np.allclose(seen, applied, rtol=error + 0.002, atol=0.05)
