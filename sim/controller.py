@@ -17,11 +17,11 @@ from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Re
 
 Array = NDArray[np.float64]
 
-BANDWIDTH = 20.0  # of the position loop round the rotor alone [Hz]
-DAMPING_RATIO = 0.9
-SUPPORT = 0.5  # share of the transmission's load torque that is fed forward to the motor: it stiffens the hold
-SUPPORT_BANDWIDTH = 40.0  # of that path [Hz]
-INTEGRAL_TIME = 0.15  # of the output-side integral [s]
+BANDWIDTH = 12.0  # of the position loop round the rotor alone [Hz]
+DAMPING_RATIO = 1.25
+SUPPORT = 0.6  # share of the transmission's load torque that is fed forward to the motor: it stiffens the hold
+SUPPORT_BANDWIDTH = 90.0  # of that path [Hz]
+INTEGRAL_TIME = 0.1  # of the output-side integral [s]
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt

@@ -17,7 +17,7 @@ from sim.sensors import Sample
 
 Array = NDArray[np.float64]
 
-SPEED_BANDWIDTH = 60.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
+SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
 
 
