@@ -142,11 +142,11 @@ class Controller:
         assert self._reference is not None
         self._settling = 0
         q = self._reference.q
+        limits = (self._speed, self._acceleration, self._position)
         try:
             if isinstance(move, JointMove):
-                self._motion = JointTrajectory(q, move, self._speed, self._acceleration)
+                self._motion = JointTrajectory(q, move, limits)
             elif isinstance(move, LinearMove):
-                limits = (self._speed, self._acceleration, self._position)
                 self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, limits)
             else:
                 self._motion = Stop(q, np.zeros_like(q), self._acceleration)

@@ -16,7 +16,9 @@ Array = NDArray[np.float64]
 
 SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leave them at rest
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
-SAMPLES = 24  # places along a line where joint speeds are checked beforehand
+SPACING = 0.01  # between the places along a line that are looked at beforehand [m]
+SAMPLES = (24, 200)  # fewest and most of them
+SINGULAR = 0.02  # smallest singular value of the tool's Jacobian that a line may pass: shoulder, elbow or wrist aligned
 LINE_GAIN = 20.0  # pulls the line's reference back onto the line [1/s]
 
 
@@ -72,7 +74,10 @@ class Stop:
 class JointTrajectory:
     """All joints to a target at rest, at the same time, within speed, acceleration and jerk limits (ruckig)."""
 
-    def __init__(self, q: Array, move: JointMove, speed: Array, acceleration: Array) -> None:
+    def __init__(self, q: Array, move: JointMove, limits: tuple[Array, Array, Array]) -> None:
+        """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
+        speed, acceleration, position = limits
+        _check_range(np.array(move.q), position, "joint move")
         n = q.size
         entry = ruckig.InputParameter(n)
         entry.current_position, entry.target_position = q.tolist(), list(move.q)
@@ -127,37 +132,39 @@ class LinearTrajectory:
     def _slowest(self, q: Array, limits: tuple[Array, Array, Array], move: LinearMove, span: float) -> float:
         """Factor on the path's speed that keeps every joint within its speed and acceleration, and the line in reach."""
         speed, acceleration, position = limits
-        q, worst, previous = q.copy(), 1e-9, np.zeros_like(q)
-        for k in range(SAMPLES):
-            rate = self._solve(q, (k + 0.5) / SAMPLES, 1.0)
-            ratio = np.abs(rate) * (move.speed / span) / speed
-            bend = np.abs(rate - previous) * SAMPLES * (move.speed / span) ** 2 / acceleration if k else np.zeros_like(q)
-            worst = max(worst, float(ratio.max()), math.sqrt(float(bend.max())))
+        count = min(max(SAMPLES[0], math.ceil(span / SPACING)), SAMPLES[1])
+        pace = move.speed / span
+        q, worst, previous = q.copy(), 1e-9, None
+        for k in range(count + 1):
+            if np.linalg.svd(self._jacobian(q)[2], compute_uv=False)[-1] < SINGULAR:
+                way = 1000.0 * k / count * float(np.linalg.norm(self._way))
+                raise MoveRefused(f"linear move: out of reach or singular {way:.0f} mm on its way; use a joint move")
+            rate = self._solve(q, k / count, 1.0)
+            worst = max(worst, float((np.abs(rate) * pace / speed).max()))
+            if previous is not None:
+                worst = max(worst, math.sqrt(float((np.abs(rate - previous) * count * pace**2 / acceleration).max())))
             previous = rate
-            q = q + rate / SAMPLES
-            beyond = np.abs(q) - position
-            if beyond.max() > 0.0:
-                joint = int(np.argmax(beyond))
-                reached = f"joint {joint + 1} would reach {q[joint]:.3f} rad"
-                raise MoveRefused(f"linear move: {reached}, allowed ±{position[joint]:.3f}")
-        p, R, _ = self._dynamics.update(q)
-        miss = float(np.linalg.norm(p + R @ self._tcp - self._start - self._way))
-        if worst > 20.0 or miss > 0.02:
-            raise MoveRefused(f"linear move: the line passes a singularity or leaves the reach (ends {1000 * miss:.0f} mm off)")
+            _check_range(q, position, "linear move")
+            q = q + rate / count
         return 1.0 / worst
 
-    def _solve(self, q: Array, s: float, rate: float) -> Array:
-        """Joint speeds (n,) for path position s in 0..1 and its rate [1/s]."""
+    def _jacobian(self, q: Array) -> tuple[Array, Array, Array]:
+        """Tool centre point (3,), orientation (3, 3) and the Jacobian (6, n) of the tool centre point, in axes of B."""
         p, R, jacobian = self._dynamics.update(q)
         lever = R @ self._tcp
         at_tcp = jacobian.copy()
         at_tcp[:3] += np.cross(jacobian[3:].T, lever).T
+        return p + lever, R, at_tcp
+
+    def _solve(self, q: Array, s: float, rate: float) -> Array:
+        """Joint speeds (n,) for path position s in 0..1 and its rate [1/s]."""
+        point, R, jacobian = self._jacobian(q)
         twist = np.empty(6)
-        twist[:3] = rate * self._way + LINE_GAIN * (self._start + s * self._way - p - lever)
+        twist[:3] = rate * self._way + LINE_GAIN * (self._start + s * self._way - point)
         error = _rotation_vector(R.T @ self._R @ _rotation(s * self._turn))
         twist[3:] = self._R @ (rate * self._turn) + LINE_GAIN * (R @ error)
-        # Damping only bites near a singularity, where the plan has been refused or slowed down already.
-        return np.linalg.solve(at_tcp.T @ at_tcp + 1e-8 * np.eye(q.size), at_tcp.T @ twist)
+        # Damping only bites near a singularity, where the plan has been refused already.
+        return np.linalg.solve(jacobian.T @ jacobian + 1e-8 * np.eye(q.size), jacobian.T @ twist)
 
     def step(self) -> Reference:
         """The reference of the next tick; at the end it stays at the target."""
@@ -170,6 +177,13 @@ class LinearTrajectory:
             self._q, self._qd = self._q + TICK * qd, qd
             return Reference(self._q, qd, qdd)
         return Reference(self._q, np.zeros_like(self._q), np.zeros_like(self._q))
+
+
+def _check_range(q: Array, position: Array, move: str) -> None:
+    beyond = np.abs(q) - position
+    joint = int(np.argmax(beyond))
+    if beyond[joint] > 0.0:
+        raise MoveRefused(f"{move}: joint {joint + 1} would reach {q[joint]:.4f} rad, allowed ±{position[joint]:.4f}")
 
 
 def _rotation_vector(R: Array) -> Array:
