@@ -1,0 +1,58 @@
+"""Vectors and poses as plain floats, for what is computed for single points in every tick."""
+
+import math
+from typing import NamedTuple
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]  # wxyz
+Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a matrix, row by row
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+UNTURNED: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+
+class Pose(NamedTuple):
+    """Pose X_AB of a frame B in a frame A."""
+
+    p: Vector = ORIGIN  # p_AB [m]
+    R: Rotation = UNTURNED  # R_AB
+
+
+HERE = Pose()
+"""The pose of a frame in itself."""
+
+
+def rotation(quaternion: Quaternion) -> Rotation:
+    """The matrix of a quaternion wxyz of any length but 0."""
+    w, x, y, z = quaternion
+    scale = 2.0 / (w * w + x * x + y * y + z * z)
+    xx, yy, zz = scale * x * x, scale * y * y, scale * z * z
+    xy, xz, yz = scale * x * y, scale * x * z, scale * y * z
+    wx, wy, wz = scale * w * x, scale * w * y, scale * w * z
+    return (1.0 - yy - zz, xy - wz, xz + wy, xy + wz, 1.0 - xx - zz, yz - wx, xz - wy, yz + wx, 1.0 - xx - yy)
+
+
+def turned(R: Rotation, v: Vector) -> Vector:
+    """R_AB times a vector in B: the vector in A."""
+    a, b, c, d, e, f, g, h, i = R
+    x, y, z = v
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
+
+
+def turned_back(R: Rotation, v: Vector) -> Vector:
+    """The transpose of R_AB times a vector in A: the vector in B."""
+    a, b, c, d, e, f, g, h, i = R
+    x, y, z = v
+    return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
+
+
+def seen_from(frame: Pose, point: Vector) -> Vector:
+    """A point in A, given in B, by the pose X_AB of B."""
+    x, y, z = point
+    px, py, pz = frame.p
+    return turned_back(frame.R, (x - px, y - py, z - pz))
+
+
+def finite(pose: Pose) -> bool:
+    """All twelve numbers are finite."""
+    return math.isfinite(sum(pose.p) + sum(pose.R))
