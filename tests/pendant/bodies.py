@@ -1,5 +1,6 @@
 """Shapes for tests, with surfaces worked out here, apart from pendant's distance functions."""
 
+import functools
 import itertools
 import math
 
@@ -14,12 +15,21 @@ coordinates = st.one_of(st.just(0.0), st.floats(-1.0, 1.0), st.floats(-0.1, 0.1)
 points = st.tuples(coordinates, coordinates, coordinates)
 
 
+@functools.cache
 def hull(seed: int, count: int) -> Polyhedron:
-    """Convex hull of points drawn on a stretched sphere."""
+    """Convex hull of points drawn on a stretched sphere: every triple with all other points on one side is a face."""
     rng = np.random.default_rng(seed)
     cloud = rng.normal(size=(count, 3))
     cloud *= rng.uniform(0.05, 0.4, 3) / np.linalg.norm(cloud, axis=1, keepdims=True)
-    return from_mesh(trimesh.Trimesh(cloud + rng.uniform(-0.1, 0.1, 3)).convex_hull)
+    cloud += rng.uniform(-0.1, 0.1, 3)
+    triples = np.array(list(itertools.combinations(range(count), 3)))
+    a, b, c = cloud[triples[:, 0]], cloud[triples[:, 1]], cloud[triples[:, 2]]
+    normals = np.cross(b - a, c - a)
+    heights = normals @ cloud.T - np.einsum("ij,ij->i", normals, a)[:, None]
+    np.put_along_axis(heights, triples, 0.0, axis=1)
+    before, behind = (heights <= 0.0).all(axis=1), (heights >= 0.0).all(axis=1)
+    faces = [*triples[before].tolist(), *triples[behind][:, ::-1].tolist()]
+    return Polyhedron(vertices=tuple(map(tuple, cloud.tolist())), faces=tuple(map(tuple, faces)))
 
 
 def from_mesh(mesh: trimesh.Trimesh) -> Polyhedron:
@@ -59,7 +69,7 @@ def flat_mesh(shape: AnyShape) -> trimesh.Trimesh:
             (-a / 2, b / 2, -c / 2),
             (0, 0, c / 2),
         ]
-        return trimesh.Trimesh(corners).convex_hull
+        return trimesh.Trimesh(corners, [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)], process=False)
     assert isinstance(shape, Polyhedron)
     triangles = [(f[0], f[k], f[k + 1]) for f in shape.faces for k in range(1, len(f) - 1)]
     return trimesh.Trimesh(shape.vertices, triangles, process=False)
