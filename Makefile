@@ -11,7 +11,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet
 WORKERS ?= 2
 SEED ?= 1000
-BENCHES := $(filter-out __init__ common,$(basename $(notdir $(wildcard benchmarks/*.py))))
+BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
 .PHONY: run test bench bench-full clean lint types contracts unit e2e wheel browser
