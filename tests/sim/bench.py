@@ -63,7 +63,8 @@ class Bench:
         assert self.mode is Mode.FREE_DRIVE
 
     def start(self, *steps: JointMove | LinearMove | Wait) -> None:
-        """Load a program of these steps and start it."""
+        """Load a program of these steps and start it, once the arm has stood long enough to count as static."""
+        self.run(0.2)
         self.do(program=Program(steps=steps))
         self.do(Command.START_PROGRAM)
         assert self.mode is Mode.RUN
