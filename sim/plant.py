@@ -189,7 +189,7 @@ class Plant:
         """True linear velocity (3,) in W of a point of a MuJoCo body [m/s]."""
         six = np.empty(6)
         mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_BODY, body, six, 0)
-        return six[3:] + np.cross(six[:3], point - self.data.xpos[body])
+        return np.asarray(six[3:] + np.cross(six[:3], point - self.data.xpos[body]), dtype=np.float64)
 
     def _move_world(self) -> None:
         """Drive moving objects, let snap-fits go, choose the friction under the tool: what objects need once a tick."""

@@ -99,12 +99,14 @@ def test_invalid_joints_leave_the_last_estimate_and_do_not_count_as_motion_after
     device = estimator()
     q = np.array(BENT)
     for _ in range(100):
+        q = q + 0.002 * 0.7
         device.update(sample(q, q), 0, "")
     nothing = np.full(6, np.nan)
     for _ in range(50):
         result = device.update(sample(nothing, nothing, joints=False), 0, "")
         assert not result.joints_valid
         assert (result.q == q).all()
+        assert np.allclose(result.qd, 0.7, atol=1e-6)
         assert np.isfinite(result.tau_ext).all()
     moved = q + 0.1
     for _ in range(20):

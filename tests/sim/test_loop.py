@@ -175,15 +175,14 @@ def test_paused_it_stands_and_steps_one_tick_at_a_time(running: Callable[..., Lo
     until(lambda: loop.simulation.plant.tick > stood + 50)
 
 
-def test_a_step_asked_for_while_running_is_none_later(running: Callable[..., Loop]) -> None:
+def test_steps_asked_for_while_running_are_none_later(running: Callable[..., Loop]) -> None:
     loop = running()
-    for _ in range(5):
+    for _ in range(10000):
         loop.step_once()
     loop.paused = True
-    time.sleep(0.1)
     stood = loop.simulation.plant.tick
-    time.sleep(0.1)
-    assert loop.simulation.plant.tick == stood
+    time.sleep(0.2)
+    assert loop.simulation.plant.tick <= stood + 30, "what was left of a debt, no more"
 
 
 def test_after_a_pause_no_time_is_made_up_for(running: Callable[..., Loop], clock: Clock) -> None:
