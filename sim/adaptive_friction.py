@@ -58,9 +58,10 @@ class AdaptiveFriction:
         self._ceiling = deviation**2
         self._walk = walk**2 * TICK
         self._noise = (NOISE * limit) ** 2 * CORRELATED
-        self._output_share = filed.output_share
+        self.output_share = filed.output_share
         self._reference, self._per_kelvin = filed.temperature, filed.per_kelvin
         self.total, self.deviation = np.zeros((2, n))
+        self.warmth = np.ones(n)
 
     def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, temperature: Array, free: bool) -> None:
         """One tick.
@@ -74,9 +75,7 @@ class AdaptiveFriction:
             free: no contact, so that the surplus is friction.
         """
         warmth = np.maximum(1.0 + self._per_kelvin * (temperature - self._reference), 0.2)
-        _learn(
-            speed, surplus, tau_dyn, tau_J, warmth, free, self.terms, self.covariance, self._walk, self._ceiling, self._noise
-        )
+        _learn(speed, surplus, tau_dyn, tau_J, warmth, free, self.terms, self.covariance, self._walk, self._ceiling, self._noise)
         _evaluate(speed, tau_J, warmth, self.terms, self.covariance, self.total, self.deviation)
         self.warmth = warmth
 
@@ -89,12 +88,17 @@ class AdaptiveFriction:
     @property
     def input_side(self) -> Array:
         """Friction torque of the input side (n,) [N·m], with the sign of the speed."""
-        return (1.0 - self._output_share) * self.total
+        return (1.0 - self.output_share) * self.total
 
     @property
     def output_side(self) -> Array:
         """Friction torque of the output side (n,) [N·m]."""
-        return self._output_share * self.total
+        return self.output_share * self.total
+
+    @property
+    def breakaway(self) -> Array:
+        """What a standing joint may hold by friction (n,) [N·m]."""
+        return self.terms[:, 0] * self.warmth
 
 
 @numba.njit(cache=True)

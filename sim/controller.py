@@ -1,6 +1,7 @@
 """The control law of each mode: what the decision asks for becomes motor currents."""
 
 import math
+from collections import deque
 
 import numba
 import numpy as np
@@ -10,10 +11,12 @@ from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import TICK, Law
 from pendant.program import JointMove, LinearMove, Move
+from sim.adaptive_friction import AdaptiveFriction
 from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop
+from sim.sensors import LATENCY
 
 Array = NDArray[np.float64]
 
@@ -23,7 +26,11 @@ SUPPORT = 0.6  # share of the transmission's load torque that is fed forward to 
 SUPPORT_BANDWIDTH = 90.0  # of that path [Hz]
 INTEGRAL_TIME = 0.1  # of the output-side integral [s]
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
+STANDING = 0.02  # [rad/s]
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
+DELAY = LATENCY + 1
+"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
+
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 
 
@@ -32,7 +39,8 @@ class Controller:
 
     Tracking (HOLD, BRAKE, FOLLOW) is one law, fed by different references:
         tau = M(q) qdd + h + P (theta_ref - theta) + D (theta_d_ref - theta_d) + I ∫(q_ref - q) + S (tau_J - tau_model)
-    with theta_ref = q_ref + tau_model / K. FREE (FD-2, FD-3) is tau = gravity + J^T gain F_user, no feedback of position.
+    with theta_ref = q_ref + tau_model / K. A program's motion gets the friction estimate as feed-forward on top (AF-7).
+    FREE (FD-2, FD-3) is tau = gravity + J^T gain F_user, no feedback of position.
 
     Args:
         arm: the arm's numbers.
@@ -65,23 +73,26 @@ class Controller:
         self._move: Move | None = None
         self._reference: Reference | None = None
         self._taking_over = True  # in this tick the law or its reference begins anew
+        self._driven = False  # the reference comes from a program, which knows its speed ahead
+        self._past: deque[Reference] = deque()  # references of the last ticks
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self.move_done = 0
         self.refusal = ""
 
-    def update(self, estimate: Estimate, decision: Decision, jacobian: Array) -> Array:
+    def update(self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction) -> Array:
         """Motor currents (n,) [A] for this tick.
 
         Args:
             estimate: this tick's estimate.
             decision: this tick's decision.
             jacobian: of the flange (6, n), linear first, axes of B.
+            friction: its estimate.
         """
         self.refusal = ""
         if decision.law is Law.FREE:
             torque = self._free(estimate, decision, jacobian)
         else:
-            torque = self._track(estimate, decision)
+            torque = self._track(estimate, decision, friction)
         current = np.empty_like(torque)
         _to_current(torque, self._per_torque, self._current_limit, current, self._command)
         self._law = decision.law
@@ -98,29 +109,35 @@ class Controller:
             torque = torque + jacobian.T @ (wrench * gain)
         return torque
 
-    def _track(self, estimate: Estimate, decision: Decision) -> Array:
+    def _track(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction) -> Array:
         reference = self._next_reference(estimate, decision)
         model = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
         torque = np.empty_like(model)
         if self._taking_over:
+            self._past.clear()
             np.subtract(estimate.tau_J, model, out=self._support)
+        self._past.append(reference)
+        then = self._past.popleft() if len(self._past) > DELAY else self._past[0]
         state = (estimate.q, estimate.theta, estimate.theta_d, estimate.tau_J)
-        _tracking_law(reference, state, model, self._gains, self._support, torque)
+        _tracking_law(reference, then, state, model, self._gains, self._support, torque)
+        if self._driven:
+            torque += friction.at(reference.qd, model)
         if self._taking_over:
             # Bumpless: the integral starts where the torque was, so that taking over moves nothing by itself.
             self._integral[:] = (model if self._law is None else self._command) - torque
-        _integrate(reference.q, estimate.q, self._I, self._dead, self._integral, torque)
+        _integrate(then.q, estimate.q, self._I, self._dead, self._integral, torque)
         return torque
 
     def _next_reference(self, estimate: Estimate, decision: Decision) -> Reference:
         law = decision.law
         self._taking_over = self._reference is None or self._law is Law.FREE
         if self._reference is None or self._law is Law.FREE:
-            self._motion, self._settling = Stop(estimate.q, estimate.qd, self._acceleration), SETTLE_TICKS
+            self._stop(estimate.q, estimate.qd)
         elif law is not Law.FOLLOW and self._law is Law.FOLLOW:
-            self._motion, self._settling = Stop(self._reference.q, self._reference.qd, self._acceleration), SETTLE_TICKS
+            self._stop(self._reference.q, self._reference.qd)
         elif self._settling and self._motion is not None and self._motion.done:
             self._motion = self._settle(estimate, self._reference)
+        self._driven = law is Law.FOLLOW or (self._driven and not self._taking_over)
         if law is Law.FOLLOW and decision.move is not self._move:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
@@ -129,6 +146,11 @@ class Controller:
         if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
             self.move_done = self._move.id
         return self._reference
+
+    def _stop(self, q: Array, qd: Array) -> None:
+        """Come to rest from this motion; one that stood already has nothing to settle."""
+        self._motion = Stop(q, qd, self._acceleration)
+        self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
 
     def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
         """After a stop has run out, let its end lean towards where the arm swings about, for a while.
@@ -156,8 +178,9 @@ class Controller:
 
 
 @numba.njit(cache=True)
-def _tracking_law(reference, state, model, gains, support, torque) -> None:
-    q_ref, qd_ref, qdd_ref = reference
+def _tracking_law(reference, then, state, model, gains, support, torque) -> None:
+    qdd_ref = reference[2]
+    q_ref, qd_ref, _ = then
     _, theta, theta_d, tau_J = state
     stiffness, damping, rotor, compliance, support_rate = gains
     for i in range(torque.size):

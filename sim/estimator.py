@@ -8,12 +8,14 @@ from numpy.typing import NDArray
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
+from sim.adaptive_friction import GATE, AdaptiveFriction
 from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.chain import Body
 from sim.dynamics import Dynamics
 from sim.frames import skew
 from sim.sensors import Sample
+from sim.transmission_torque import WAYS, TransmissionTorque
 
 Array = NDArray[np.float64]
 
@@ -50,6 +52,9 @@ class Estimator:
         stiffening = np.array(spring.stiffening) * calibration.stiffness
         slip = (slip_stiffness, np.array(spring.hysteresis_yield))
         self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping), *slip)
+        self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
+        self.friction, self.transmission = AdaptiveFriction(arm), TransmissionTorque(arm)
+        self._use = np.ones(len(WAYS), dtype=bool)
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
@@ -89,6 +94,7 @@ class Estimator:
         qd = q[1]
         self.tau_ext = dynamics.inverse(self.q, qd, q[2]) - self.tau_J
         v_elbow = dynamics.elbow_speed()
+        self._learn_friction(sample)
         p, R, self.jacobian = dynamics.update(self.q)
         F_user, v_F = np.zeros(6), np.empty(6)
         v_tcp = _tcp_speed(self.jacobian, qd, R, self._tcp, v_F)
@@ -125,6 +131,25 @@ class Estimator:
             v_elbow,
             move_done,
             move_refused,
+        )
+
+    def _learn_friction(self, sample: Sample) -> None:
+        """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
+        friction, transmission, motor = self.friction, self.transmission, self._theta
+        # The motor's speed stands for the joint's: it is far less noisy, and differs by the deflection's rate only.
+        tau_dyn = self._dynamics.inverse(self.q, motor[1], motor[2])
+        spent = self.tau_m - self._rotor * motor[2]
+        free = sample.joints_valid and not transmission.contact
+        friction.learn(motor[1], spent - tau_dyn, tau_dyn, transmission.fused, sample.temperature, free)
+        standing = np.abs(motor[1]) < GATE
+        transmission.update(
+            tau_dyn + friction.output_side,
+            self.tau_J,
+            spent - friction.input_side,
+            friction.deviation,
+            np.where(standing, friction.breakaway, 0.0),
+            not standing.all(),
+            self._use,
         )
 
 

@@ -84,10 +84,7 @@ class JointTrajectory:
         entry.max_velocity = (move.speed * speed).tolist()
         entry.max_acceleration = (move.acceleration * acceleration).tolist()
         entry.max_jerk = (move.acceleration * acceleration / JERK_TIME).tolist()
-        self._trajectory = ruckig.Trajectory(n)
-        result = ruckig.Ruckig(n).calculate(entry, self._trajectory)
-        if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-            raise MoveRefused(f"joint move: no trajectory to {list(move.q)} ({result.name})")
+        self._trajectory = _planned(entry, n)
         self._time = 0.0
         self.done = False
 
@@ -97,6 +94,28 @@ class JointTrajectory:
         self.done = self._time >= self._trajectory.duration
         position, velocity, acceleration = self._trajectory.at_time(min(self._time, self._trajectory.duration))
         return Reference(np.array(position), np.array(velocity), np.array(acceleration))
+
+
+def _planned(entry: ruckig.InputParameter, n: int) -> ruckig.Trajectory:
+    """The trajectory of `entry`.
+
+    Ruckig's root search fails for some way that lies within rounding of a profile's border; a hair less jerk is a profile
+    next to it, which it finds.
+
+    Raises:
+        MoveRefused: none is found with a few hairs less, either.
+    """
+    jerk = np.array(entry.max_jerk)
+    for less in (1.0, 0.999, 0.99, 0.9):
+        entry.max_jerk = (less * jerk).tolist()
+        trajectory = ruckig.Trajectory(n)
+        try:
+            result = ruckig.Ruckig(n).calculate(entry, trajectory)
+        except ruckig.RuckigError:
+            continue
+        if result in (ruckig.Result.Working, ruckig.Result.Finished):
+            return trajectory
+    raise MoveRefused(f"joint move: no trajectory to {list(entry.target_position)}")
 
 
 class LinearTrajectory:
@@ -164,7 +183,7 @@ class LinearTrajectory:
         error = _rotation_vector(R.T @ self._R @ _rotation(s * self._turn))
         twist[3:] = self._R @ (rate * self._turn) + LINE_GAIN * (R @ error)
         # Damping only bites near a singularity, where the plan has been refused already.
-        return np.linalg.solve(jacobian.T @ jacobian + 1e-8 * np.eye(q.size), jacobian.T @ twist)
+        return np.asarray(np.linalg.solve(jacobian.T @ jacobian + 1e-8 * np.eye(q.size), jacobian.T @ twist), dtype=np.float64)
 
     def step(self) -> Reference:
         """The reference of the next tick; at the end it stays at the target."""

@@ -78,7 +78,7 @@ class Simulation:
         sample = self.sensors.read(self.plant, self._current)
         estimate = self.estimator.update(sample, self.controller.move_done, self.controller.refusal)
         decision = self.supervisor.step(estimate, wishes.inputs)
-        self._current = self.controller.update(estimate, decision, self.estimator.jacobian)
+        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction)
         self.plant.advance(self._current * self._motor, wishes.touches)
         self._estimate, self._decision = estimate, decision
         return decision
