@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from pendant.barrier import WRONG_WAY, Around, Barrier, Consequence, Part, Reading, Stage
 from pendant.enclosure import Enclosure, worst
+from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall
+
 from pendant.modes import TICK
 from pendant.pose import HERE, ORIGIN, Pose, Quaternion, Vector, rotation
 from pendant.shapes import Box, HalfSpace, Shape, Sphere
-from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall
 from tests.pendant.test_pose import matrix, quaternions, vectors
 
 BALL = Sphere(radius=0.1)
