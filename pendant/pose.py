@@ -46,6 +46,13 @@ def turned_back(R: Rotation, v: Vector) -> Vector:
     return a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z
 
 
+def product(A: Rotation, B: Rotation) -> Rotation:
+    """R_AB R_BC: the rotation R_AC."""
+    columns = (turned(A, (B[k], B[k + 3], B[k + 6])) for k in range(3))
+    (a, d, g), (b, e, h), (c, f, i) = columns
+    return a, b, c, d, e, f, g, h, i
+
+
 def seen_from(frame: Pose, point: Vector) -> Vector:
     """A point in A, given in B, by the pose X_AB of B."""
     x, y, z = point

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.pose import HERE, Pose, finite, rotation, seen_from, turned, turned_back
+from pendant.pose import HERE, Pose, finite, product, rotation, seen_from, turned, turned_back
 
 numbers = st.floats(-2.0, 2.0)
 vectors = st.tuples(numbers, numbers, numbers)
@@ -28,6 +28,11 @@ def test_agrees_with_matrices(q: tuple[float, float, float, float], p: tuple[flo
     assert np.allclose(turned(flat, v), R @ v, atol=1e-12)
     assert np.allclose(turned_back(flat, v), R.T @ v, atol=1e-12)
     assert np.allclose(seen_from(Pose(p, flat), v), R.T @ (np.array(v) - p), atol=1e-12)
+
+
+@given(quaternions, quaternions)
+def test_rotations_multiply_as_matrices(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> None:
+    assert np.allclose(np.reshape(product(rotation(a), rotation(b)), (3, 3)), matrix(a) @ matrix(b), atol=1e-12)
 
 
 def test_a_quarter_turn_about_z_takes_x_to_y() -> None:

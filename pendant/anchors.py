@@ -1,0 +1,136 @@
+"""Where a wall round a part is anchored, and when anew: fixed, stepwise, average, user (VW-3 to VW-5).
+
+A fallen or too heavy payload must not take its wall along. So a part counts as moved by somebody only when a user force acts
+on it, or when it moved against the force of the payload-like residual, which no payload does by itself.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from pendant.pose import Vector
+from pendant.walls import Policy, Wall
+
+MOVED = 0.005
+"""So far against the payload-like residual within a period counts as moved by somebody [m]."""
+
+RESIDUAL = 2.0
+"""A payload-like residual below this has no direction to speak of [N]."""
+
+
+class Stay(NamedTuple):
+    """A part at its wall in one tick."""
+
+    local: Vector  # the part in the wall's reference [m]
+    outward: Vector  # direction towards the wall, of length 1, axes of B
+    in_band: bool
+    exceeded: bool
+    moved: Vector  # since the tick before, axes of B [m]
+    user_force: Vector  # without the payload-like residual, axes of B [N]
+    payload_force: Vector  # of the payload-like residual, axes of B [N]
+    safety_ticks: int  # safety period
+    redefine_ticks: int  # redefine period
+
+
+class Anchor:
+    """The anchor of one wall.
+
+    Args:
+        wall: its settings.
+        local: the part in the wall's reference now [m].
+        averaging_ticks: averaging period.
+    """
+
+    __slots__ = ("_away", "_clear", "_decide", "_left", "_length", "_next", "_sums", "_touched", "_track", "_wall", "local")
+
+    def __init__(self, wall: Wall, local: Vector, averaging_ticks: int) -> None:
+        self.local = local  # the anchor in the wall's reference [m]
+        self._wall = wall
+        self._clear = 0  # ticks in a row in which the wall was not exceeded
+        self._left = 0  # stepwise: ticks to the end of the redefine period, 0 before the first
+        self._touched = False  # stepwise: a user force acted in this redefine period
+        self._away = 0.0  # stepwise: way against the residual in it; user: way away from the wall [m]
+        self._track: list[tuple[float, float, float, float, int]] = []  # average: place, way against the residual, touched
+        self._next = 0
+        self._length = averaging_ticks
+        self._sums = [0.0, 0.0, 0.0, 0.0, 0]
+        decide: dict[Policy, Callable[[Stay, bool], bool]] = {
+            Policy.STEPWISE: self._stepwise,
+            Policy.AVERAGE: self._average,
+            Policy.USER: self._user,
+        }
+        self._decide = decide.get(wall.policy)  # none: fixed
+
+    def step(self, stay: Stay) -> bool:
+        """One tick. Returns whether the anchor has moved."""
+        if self._decide is None:
+            return False
+        self._clear = 0 if stay.exceeded else self._clear + 1
+        x, y, z = stay.user_force
+        least = self._wall.push_back
+        return self._decide(stay, x * x + y * y + z * z >= least * least)
+
+    def _stepwise(self, stay: Stay, pushed: bool) -> bool:
+        """VW-3: at the end of each redefine period, unless exceeded within the safety period before."""
+        if self._left == 0:
+            self._left = stay.redefine_ticks
+        self._left -= 1
+        self._touched = self._touched or pushed
+        self._away += _against(stay)
+        if self._left > 0:
+            return False
+        somebody = (self._touched or self._away >= MOVED) and not stay.in_band
+        self._touched, self._away = False, 0.0
+        if self._clear >= stay.safety_ticks and (somebody or self._wall.literal):
+            self.local = stay.local
+            return True
+        return False
+
+    def _average(self, stay: Stay, pushed: bool) -> bool:
+        """VW-4: the mean of the part's places in the averaging period, while somebody moves it."""
+        entry = (*stay.local, _against(stay), int(pushed))
+        sums = self._sums
+        if len(self._track) < self._length:
+            self._track.append(entry)
+            for k in range(5):
+                sums[k] += entry[k]
+        else:
+            oldest = self._track[self._next]
+            self._track[self._next] = entry
+            self._next = (self._next + 1) % self._length
+            for k in range(5):
+                sums[k] += entry[k] - oldest[k]
+        somebody = (sums[4] > 0 or sums[3] >= MOVED) and not stay.in_band
+        count = len(self._track)
+        if self._clear >= count and (somebody or self._wall.literal):
+            self.local = (sums[0] / count, sums[1] / count, sums[2] / count)
+            return True
+        return False
+
+    def _user(self, stay: Stay, pushed: bool) -> bool:
+        """VW-5: once a user has moved the part a set distance away from the wall."""
+        away = -_dot(stay.moved, stay.outward)
+        if stay.exceeded:
+            self._away = 0.0
+        elif away < 0.0:
+            self._away = max(self._away + away, 0.0)
+        elif pushed and _dot(stay.user_force, stay.outward) < 0.0:
+            self._away += away
+        if self._away >= self._wall.step:
+            self.local, self._away = stay.local, 0.0
+            return True
+        return False
+
+
+def _against(stay: Stay) -> float:
+    """How far the part moved against the payload-like residual in this tick [m]."""
+    fx, fy, fz = stay.payload_force
+    size = math.sqrt(fx * fx + fy * fy + fz * fz)
+    if size < RESIDUAL:
+        return 0.0
+    x, y, z = stay.moved
+    return -(x * fx + y * fy + z * fz) / size
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

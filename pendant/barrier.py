@@ -1,0 +1,251 @@
+"""One wall or area at work: its place, the part's distance to it, its resistance, and what follows (VW-1 to VW-10)."""
+
+import math
+from collections.abc import Mapping
+from enum import IntEnum
+from typing import NamedTuple
+
+from pendant.anchors import Anchor, Stay
+from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, finite, product, rotation, seen_from, turned, turned_back
+from pendant.resistance import Guard, closeness, resisting
+from pendant.settings import ticks
+from pendant.walls import AnyBorder, Measure, Policy, Reaction, Wall
+
+WRONG_WAY = 0.005
+"""A part that started outside has gone further out when it is so far beyond its place [m]."""
+
+LET_GO = 0.5  # of the force that frees a caught part: with less, it is caught again
+
+
+class Stage(IntEnum):
+    """Which shape holds."""
+
+    ACTIVATION = 0
+    OPERATION = 1
+
+
+class Consequence(IntEnum):
+    """What a wall asks of the supervisor; the order is the severity."""
+
+    NONE = 0
+    HOLD = 1  # keep the posture; stay in FREE_DRIVE
+    LEAVE = 2  # to the remembered mode
+    STOP = 3  # to mode STOP
+    REFUSE = 4  # do not enter (FD-10)
+
+
+class Part(NamedTuple):
+    """A point of the arm in one tick."""
+
+    p: Vector  # in B [m]
+    v: Vector  # axes of B [m/s]
+
+
+class Around(NamedTuple):
+    """What walls need to know of one tick. Everything in B."""
+
+    parts: Mapping[str, Part]
+    references: Mapping[str, Pose]  # X_BR of each reference
+    user_force: Vector  # without the payload-like residual [N]
+    payload_force: Vector  # of the payload-like residual [N]
+    measures: Mapping[Measure, float]
+
+
+class Reading(NamedTuple):
+    """One wall in one tick."""
+
+    border: AnyBorder
+    distance: float  # to the wall, negative inside, infinite when it cannot be told [m]
+    outward: Vector  # direction towards the wall, or away from it outside, of length 1, axes of B; zeros when it cannot be told
+    near: float  # 0 before the feedback band, 1 at the wall and beyond
+    exceeded: bool
+    consequence: Consequence
+    force: Vector  # on the part, against motion outwards, axes of B [N]
+    anchored: bool  # anew in this tick
+
+
+class Place(NamedTuple):
+    """Where a wall's shape lies, to draw it."""
+
+    pose: Pose  # of the shape in B
+    factor: float  # on the shape's lengths
+
+
+class Barrier:
+    """A wall or an area from its beginning, in one stage.
+
+    Args:
+        border: its settings.
+        stage: which shape holds, and what follows when it is exceeded.
+    """
+
+    __slots__ = (
+        "_anchor",
+        "_anchors",
+        "_base",
+        "_before",
+        "_border",
+        "_caught",
+        "_constant",
+        "_field",
+        "_guard",
+        "_lies",
+        "_offset",
+        "_part",
+        "_reference",
+        "_sign",
+        "_stage",
+        "_turn",
+    )
+
+    def __init__(self, border: AnyBorder, stage: Stage) -> None:
+        self._border = border
+        self._stage = stage
+        self._field = border.shape.field()
+        turn = rotation(border.orientation)
+        self._turn = None if turn == UNTURNED else turn
+        self._anchor: Anchor | None = None  # of a wall, from its first tick on
+        self._guard: Guard | None = None
+        self._lies: tuple[Vector, float, Pose] | None = None  # anchor, factor, reference of the tick before
+        self._before = 0.0  # distance in the tick before [m]
+        self._part: Vector = ORIGIN  # place in the tick before, in B [m]
+        self._caught = False
+        self._reference: Pose | None = None  # the last one found finite
+        self._anchors = False  # the anchor may move
+        self._constant: tuple[int, int] | None = None  # safety and redefine period, unless they depend on something [ticks]
+        if isinstance(border, Wall):
+            self._base = border.activation_size if stage is Stage.ACTIVATION else border.operation_size
+            self._offset: Vector = border.offset
+            self._sign = 1.0
+            self._anchors = stage is Stage.OPERATION and border.policy is not Policy.FIXED
+            safety = ticks(border.safety_period)
+            if border.safety_dependence is None:
+                self._constant = (safety, safety if border.redefine_period is None else ticks(border.redefine_period))
+        else:
+            self._base, self._offset = 1.0, ORIGIN
+            self._sign = -1.0 if border.keep_out else 1.0
+
+    def step(self, around: Around) -> Reading:
+        """One tick. The first anchors a wall."""
+        border = self._border
+        part, reference = around.parts.get(border.part), around.references.get(border.reference)
+        if part is None or reference is None:
+            return self._lost()
+        place, (vx, vy, vz) = part
+        px, py, pz = place
+        total = px + py + pz + vx + vy + vz
+        if total - total != 0.0 or not (reference is self._reference or finite(reference)):
+            return self._lost()
+        self._reference = reference
+        local = place if reference is HERE else seen_from(reference, place)
+        factor = self._base if border.size is None else self._base * border.size.factor(around.measures)
+        if isinstance(border, Wall):
+            if self._anchor is None:
+                self._anchor = Anchor(border, local, ticks(border.averaging_period))
+            anchor = self._anchor.local
+        else:
+            anchor = border.position
+        distance, outward = self._measure(local, anchor, factor, reference)
+        nx, ny, nz = outward
+        if self._guard is None:
+            self._guard, self._part, self._before = Guard(distance), place, distance
+        x, y, z = self._part
+        moved = (px - x, py - y, pz - z)
+        drift = 0.0
+        lies = (anchor, factor, reference)
+        if lies != self._lies and self._lies is not None:
+            drift = distance - self._before - _dot(outward, moved)
+        self._lies, self._before, self._part = lies, distance, place
+        beyond = self._guard.step(distance, drift)
+        exceeded = distance > 0.0
+        near = closeness(distance, border.band)
+        force, consequence, anchored = ORIGIN, Consequence.NONE, False
+        if near > 0.0:
+            fx, fy, fz = around.user_force
+            push = fx * nx + fy * ny + fz * nz
+            if self._stage is Stage.OPERATION:
+                size = -self._resist(exceeded, beyond, near, vx * nx + vy * ny + vz * nz, push)
+                force = (size * nx, size * ny, size * nz)
+            if exceeded:
+                consequence = self._consequence(beyond, push)
+        self._caught = consequence is Consequence.HOLD
+        if self._anchors:
+            assert self._anchor is not None
+            safety, redefine = self._constant or self._periods(around)
+            forces = (around.user_force, around.payload_force)
+            anchored = self._anchor.step(Stay(local, outward, near > 0.0, exceeded, moved, *forces, safety, redefine))
+        return Reading(border, distance, outward, near, exceeded, consequence, force, anchored)
+
+    def place(self) -> Place | None:
+        """Where the shape lies; None before the first tick."""
+        if self._lies is None:
+            return None
+        (ax, ay, az), factor, reference = self._lies
+        ox, oy, oz = self._offset
+        x, y, z = turned(reference.R, (ax + factor * ox, ay + factor * oy, az + factor * oz))
+        px, py, pz = reference.p
+        turn = reference.R if self._turn is None else product(reference.R, self._turn)
+        return Place(Pose((x + px, y + py, z + pz), turn), factor)
+
+    def _measure(self, local: Vector, anchor: Vector, factor: float, reference: Pose) -> tuple[float, Vector]:
+        """Distance [m] and its gradient in axes of B."""
+        (x, y, z), (ax, ay, az), (ox, oy, oz) = local, anchor, self._offset
+        point = ((x - ax) / factor - ox, (y - ay) / factor - oy, (z - az) / factor - oz)
+        if self._turn is not None:
+            point = turned_back(self._turn, point)
+        distance, gx, gy, gz = self._field(*point)
+        sign = self._sign
+        outward = (sign * gx, sign * gy, sign * gz)
+        if self._turn is not None:
+            outward = turned(self._turn, outward)
+        if reference.R is not UNTURNED:
+            outward = turned(reference.R, outward)
+        return sign * factor * distance, outward
+
+    def _resist(self, exceeded: bool, beyond: float, near: float, speed: float, push: float) -> float:
+        """Size of the resisting force [N]."""
+        border = self._border
+        if not exceeded:
+            return min(resisting(near, speed, push, border.damping), border.force)
+        assert self._guard is not None
+        return min(self._guard.resisting(beyond, speed, push, border.stiffness, border.damping), border.force)
+
+    def _consequence(self, beyond: float, push: float) -> Consequence:
+        """Of a part outside. `push`: the user's force outwards [N]."""
+        assert self._guard is not None
+        over = beyond > WRONG_WAY if self._guard.started_outside else True
+        if self._stage is Stage.ACTIVATION:
+            return Consequence.REFUSE if over else Consequence.NONE
+        border = self._border
+        if border.reaction is not Reaction.STAY:
+            return _LEAVING[border.reaction] if over else Consequence.NONE
+        # Caught until the user pushes it back; and again when the user lets go outside.
+        if self._caught:
+            held = push > -border.push_back
+        else:
+            held = over and push > -LET_GO * border.push_back
+        return Consequence.HOLD if held else Consequence.NONE
+
+    def _periods(self, around: Around) -> tuple[int, int]:
+        """Safety and redefine period, where they depend on something [ticks]."""
+        border = self._border
+        assert isinstance(border, Wall)
+        assert border.safety_dependence is not None
+        safety = ticks(border.safety_period * border.safety_dependence.factor(around.measures))
+        return safety, safety if border.redefine_period is None else ticks(border.redefine_period)
+
+    def _lost(self) -> Reading:
+        """The part or the reference is not known, or not finite: nothing can be told of the distance (FD-12)."""
+        border = self._border
+        if self._stage is Stage.ACTIVATION:
+            consequence = Consequence.REFUSE
+        else:
+            consequence = _LEAVING[border.reaction]
+        return Reading(border, math.inf, ORIGIN, 1.0, True, consequence, ORIGIN, False)
+
+
+_LEAVING = {Reaction.STAY: Consequence.LEAVE, Reaction.LEAVE: Consequence.LEAVE, Reaction.STOP: Consequence.STOP}
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -1,0 +1,50 @@
+"""All walls and areas together, from the activation period to leaving (VW-6)."""
+
+from pendant.barrier import Around, Barrier, Consequence, Place, Reading, Stage
+from pendant.walls import AnyBorder, Start, Wall
+
+
+class Enclosure:
+    """The walls and areas of one arm. Nothing holds before `begin` and after `leave`.
+
+    Args:
+        borders: their settings; `pendant.walls.problem` has found nothing.
+    """
+
+    __slots__ = ("_barriers", "_borders")
+
+    def __init__(self, borders: tuple[AnyBorder, ...]) -> None:
+        self._borders = borders
+        self._barriers: list[Barrier] = []
+
+    def begin(self, start: Start) -> None:
+        """The activation period begins, or the sequence: the activation shapes that are to be anchored then hold from now on."""
+        if start is Start.ACTIVATION:
+            self._barriers = []
+        self._barriers += [Barrier(border, Stage.ACTIVATION) for border in self._borders if _start(border) is start]
+
+    def enter(self) -> None:
+        """FREE_DRIVE begins: the operation shapes hold, anchored in the next step."""
+        self._barriers = [Barrier(border, Stage.OPERATION) for border in self._borders]
+
+    def leave(self) -> None:
+        """Refused, cancelled, or left: nothing holds."""
+        self._barriers = []
+
+    def step(self, around: Around) -> tuple[Reading, ...]:
+        """One tick: every wall that holds."""
+        return tuple([barrier.step(around) for barrier in self._barriers])
+
+    def places(self) -> tuple[Place | None, ...]:
+        """Where their shapes lie, in the order of the readings; None for one that has not been anchored yet."""
+        return tuple(barrier.place() for barrier in self._barriers)
+
+
+def worst(readings: tuple[Reading, ...]) -> Reading | None:
+    """The reading with the gravest consequence, the one furthest out among equals; None when nothing follows."""
+    grave = [reading for reading in readings if reading.consequence is not Consequence.NONE]
+    return max(grave, key=lambda reading: (reading.consequence, reading.distance), default=None)
+
+
+def _start(border: AnyBorder) -> Start:
+    return border.anchored_at if isinstance(border, Wall) else Start.SEQUENCE

@@ -1,0 +1,151 @@
+"""When a wall is anchored anew (VW-3 to VW-5)."""
+
+from typing import NamedTuple
+
+import pytest
+
+from pendant.anchors import MOVED, RESIDUAL, Anchor, Stay
+from pendant.pose import Vector
+from pendant.shapes import Sphere
+from pendant.walls import Policy, Wall
+
+N = 100  # ticks of every period
+PUSH = (0.0, 0.0, 8.0)
+DOWN = (0.0, 0.0, -20.0)
+NONE = (0.0, 0.0, 0.0)
+
+
+class Tick(NamedTuple):
+    z: float = 0.0  # height of the part
+    user: Vector = NONE
+    payload: Vector = NONE
+    in_band: bool = False
+    exceeded: bool = False
+    outward: Vector = (0.0, 0.0, -1.0)
+
+
+def run(policy: Policy, ticks: list[Tick], literal: bool = False, safety: int = N, redefine: int = N) -> tuple[Anchor, list[int]]:
+    """The anchor after the ticks, and the ticks, from 1, in which it moved."""
+    anchor = Anchor(Wall(name="w", shape=Sphere(radius=0.2), policy=policy, literal=literal, step=0.02), (0.0, 0.0, 0.0), N)
+    moved, before = [], 0.0
+    for k, tick in enumerate(ticks, 1):
+        way = (0.0, 0.0, tick.z - before)
+        stay = Stay((1.0, 0.0, tick.z), tick.outward, tick.in_band, tick.exceeded, way, tick.user, tick.payload, safety, redefine)
+        if anchor.step(stay):
+            moved.append(k)
+        before = tick.z
+    return anchor, moved
+
+
+def path(end: float, ticks: int, start: float = 0.0, **values: object) -> list[Tick]:
+    return [Tick(z=start + (end - start) * k / ticks, **values) for k in range(1, ticks + 1)]  # type: ignore[arg-type]
+
+
+def test_fixed_stays() -> None:
+    anchor, moved = run(Policy.FIXED, path(0.1, 5 * N, user=PUSH), literal=True)
+    assert moved == []
+    assert anchor.local == (0.0, 0.0, 0.0)
+
+
+def test_stepwise_moves_at_the_end_of_each_period_to_where_the_part_is() -> None:
+    anchor, moved = run(Policy.STEPWISE, path(0.3, 3 * N, user=PUSH))
+    assert moved == [N, 2 * N, 3 * N]
+    assert anchor.local == (1.0, 0.0, pytest.approx(0.3))
+
+
+def one(at: int, **values: object) -> list[Tick]:
+    """Two periods at rest, but for one tick."""
+    return [Tick(**values) if k == at else Tick() for k in range(1, 2 * N + 1)]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("ticks", "literal", "expected"),
+    [
+        (one(3), False, []),
+        (one(3), True, [N, 2 * N]),
+        (one(3, user=PUSH), False, [N]),
+        (one(N, user=PUSH), False, [N]),
+        (one(N + 1, user=PUSH), False, [2 * N]),
+        (one(3, user=(0.0, 0.0, 7.99)), False, []),
+        (one(3, user=(-6.0, 6.0, 0.0)), False, [N]),
+        # exceeded in the period; in the second one, the whole safety period before its end is clear
+        ([*one(3, exceeded=True, user=PUSH)[:N], *[Tick(user=PUSH)] * N], False, [2 * N]),
+        ([*one(3, exceeded=True)[:N], *[Tick()] * N], True, [2 * N]),
+        ([Tick(user=PUSH, in_band=k >= N - 1) for k in range(N)], False, []),
+        ([Tick(user=PUSH, in_band=k < N - 1) for k in range(N)], False, [N]),
+        ([Tick(in_band=True)] * N, True, [N]),
+        # a load that falls, one that is lifted, one lifted too little, none to speak of
+        (path(-0.1, N, payload=DOWN), False, []),
+        (path(-0.1, N, payload=DOWN), True, [N]),
+        (path(1.01 * MOVED, N, payload=DOWN), False, [N]),
+        (path(0.99 * MOVED, N, payload=DOWN), False, []),
+        (path(0.1, N, payload=(0.0, 0.0, -0.99 * RESIDUAL)), False, []),
+        (path(0.1, N, payload=(0.0, 0.0, -1.01 * RESIDUAL)), False, [N]),
+        # up and down again: where it began
+        ([*path(0.1, N // 2, payload=DOWN), *path(0.0, N // 2, 0.1, payload=DOWN)], False, []),
+        # lifted in two periods together, in none enough
+        (path(1.8 * MOVED, 2 * N, payload=DOWN), False, []),
+    ],
+)
+def test_stepwise_needs_somebody(ticks: list[Tick], literal: bool, expected: list[int]) -> None:
+    assert run(Policy.STEPWISE, ticks, literal)[1] == expected
+
+
+def test_stepwise_with_a_shorter_redefine_period_still_waits_for_a_clear_safety_period() -> None:
+    ticks = [Tick(user=PUSH, exceeded=k == 5) for k in range(1, 201)]
+    assert run(Policy.STEPWISE, ticks, safety=100, redefine=40)[1] == [120, 160, 200]
+    assert run(Policy.STEPWISE, [Tick(user=PUSH)] * 200, safety=100, redefine=40)[1] == [120, 160, 200]
+    assert run(Policy.STEPWISE, [Tick(user=PUSH)] * 200, safety=40, redefine=100)[1] == [100, 200]
+
+
+def test_average_follows_the_mean_of_the_last_period() -> None:
+    anchor, moved = run(Policy.AVERAGE, path(0.3, 3 * N, user=PUSH))
+    assert moved == list(range(1, 3 * N + 1))
+    assert anchor.local == (pytest.approx(1.0), 0.0, pytest.approx(sum(0.001 * k for k in range(201, 301)) / N))
+    anchor, _ = run(Policy.AVERAGE, path(0.05, N // 2, user=PUSH))
+    assert anchor.local[2] == pytest.approx(sum(0.001 * k for k in range(1, 51)) / 50)
+
+
+def test_average_needs_somebody_in_the_last_period() -> None:
+    assert run(Policy.AVERAGE, one(3))[1] == []
+    assert run(Policy.AVERAGE, one(3), literal=True)[1] == list(range(1, 2 * N + 1))
+    assert run(Policy.AVERAGE, one(3, user=PUSH))[1] == list(range(3, N + 3))
+    assert run(Policy.AVERAGE, [Tick(user=PUSH, in_band=k != 7) for k in range(N)])[1] == [8]
+    assert run(Policy.AVERAGE, path(-0.1, 3 * N, payload=DOWN))[1] == []
+    # after the first 5 mm the rest of the lift, and until the way up has left the period
+    assert run(Policy.AVERAGE, [*path(0.11, N, payload=DOWN), *[Tick(z=0.11, payload=DOWN)] * N])[1] == list(range(5, 2 * N - 4))
+
+
+def test_average_waits_for_a_period_without_exceeding() -> None:
+    ticks = [Tick(user=PUSH, exceeded=k == 10) for k in range(1, 2 * N + 1)]
+    assert run(Policy.AVERAGE, ticks)[1] == [*range(1, 10), *range(N + 10, 2 * N + 1)]
+
+
+def test_user_moves_once_pushed_away_from_the_wall_by_the_step() -> None:
+    anchor, moved = run(Policy.USER, path(0.0473, 43, user=PUSH))
+    assert moved == [19, 38]
+    assert anchor.local == (1.0, 0.0, pytest.approx(0.0418))
+
+
+@pytest.mark.parametrize(
+    "ticks",
+    [
+        path(0.1, N),  # nobody
+        path(0.1, N, payload=DOWN),
+        path(0.1, N, user=(0.0, 0.0, 7.9)),  # too weak
+        path(0.1, N, user=(0.0, 0.0, -30.0)),  # pushed to the wall, whatever moved it
+        path(-0.1, N, user=PUSH),  # towards the wall
+        path(0.1, N, user=PUSH, outward=(0.0, 0.0, 1.0)),
+        path(0.1, N, user=PUSH, outward=(1.0, 0.0, 0.0)),  # along it
+        path(0.1, N, user=PUSH, exceeded=True),
+        [*path(0.019, 19, user=PUSH), *path(0.0, 19, 0.019), *path(0.019, 19, user=PUSH)],  # back between
+        [*path(0.019, 19, user=PUSH), Tick(z=0.019, exceeded=True), *path(0.038, 19, 0.019, user=PUSH)],  # and out
+    ],
+)
+def test_user_moves_at_nothing_else(ticks: list[Tick]) -> None:
+    assert run(Policy.USER, ticks, literal=True)[1] == []
+
+
+def test_user_ways_add_up_over_pauses() -> None:
+    ticks = [*path(0.0132, 12, user=PUSH), *[Tick(z=0.0132)] * N, *path(0.0264, 12, 0.0132, user=PUSH)]
+    assert run(Policy.USER, ticks)[1] == [N + 19]
