@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from pendant.events import Event
+from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.program import Move, ProgramState
 
@@ -32,3 +33,4 @@ class Decision:
     events: tuple[Event, ...]  # what happened in this tick
     program: ProgramState = ProgramState.NONE
     step: int = 0  # of the program, from 1; 0 unless it is running or paused
+    monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them

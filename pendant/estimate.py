@@ -1,11 +1,14 @@
 """What the controller knows in one tick: measured or derived from measurement, never the truth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+GRAVITY = 9.81
+"""[m/s²]"""
 
 
 @dataclass(slots=True)
@@ -37,6 +40,7 @@ class Estimate:
     v_elbow: float  # speed of the elbow [m/s]
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
+    g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -63,4 +67,5 @@ class Estimate:
             self.v_elbow,
             self.move_done,
             self.move_refused,
+            self.g_B.copy(),
         )

@@ -8,8 +8,11 @@ from typing import NamedTuple
 from pendant.decision import Remaining
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
-from pendant.maintain import ZEROS, Reference, manipulation, reference
+from pendant.limits import Monitored
+from pendant.maintain import Maintained
 from pendant.modes import TICK, Mode, Phase
+from pendant.parameters import ZEROS
+from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, ticks
 from pendant.table import TABLE
 from pendant.watch import Stillness, WrenchMean, joints_ok
@@ -18,8 +21,6 @@ ABSENT = ticks(0.2)
 """A signal present at a refusal or a leaving counts again after an absence of so many ticks (FD-7)."""
 
 IN_FREE_DRIVE = frozenset({Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART})
-
-SENSOR = "joint encoders and motor currents"
 
 
 class Surroundings(NamedTuple):
@@ -45,20 +46,30 @@ class FreeDrive:
         "_held",
         "_joints",
         "_left",
+        "_maintained",
         "_pressed",
-        "_since",
+        "_rated",
+        "_sequence",
         "_total",
+        "_verdict",
         "baseline",
         "phase",
         "use_wrench",
     )
 
-    def __init__(self, joints: tuple[str, ...]) -> None:
-        """`joints` are the names used in events, base to flange."""
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...]) -> None:
+        """
+        Args:
+            joints: the names used in events, base to flange.
+            rated: torque of each joint [N·m].
+        """
         self.phase = Phase.OFF
         self.baseline: tuple[float, ...] = ZEROS
         self.use_wrench = False  # since entry the flange sensor was valid in every tick
         self._joints = joints
+        self._rated = rated
+        self._sequence: Sequence | None = None
+        self._verdict = Verdict()
         self._left = 0  # ticks left of the phase's period
         self._total = 0
         self._cool = 0  # ticks left of the cool-down (FD-12c)
@@ -69,12 +80,13 @@ class FreeDrive:
         self._began = False
         self._ended = False
         self._pressed = -1  # ticks since a press that began in free-drive, -1 for the press that entered it
-        self._since = Reference(ZEROS, (0.0,) * len(joints))
+        self._maintained: Maintained | None = None
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return tuple(getattr(self, name) for name in self.__slots__)
+        values = [getattr(self, name) for name in self.__slots__]
+        return tuple([getattr(value, "memory", value) for value in values])
 
     @property
     def idle(self) -> bool:
@@ -86,6 +98,8 @@ class FreeDrive:
         running: list[Remaining] = []
         if self.phase is Phase.ACTIVATION:
             running.append(Remaining("activation", self._left, self._total))
+        elif self.phase is Phase.SEQUENCE:
+            running.append(Remaining("sequence", self._left, self._total))
         elif self.phase is Phase.PERIOD:
             running.append(Remaining("free-drive", self._left, self._total))
         elif self.phase is Phase.RESTART:
@@ -93,6 +107,10 @@ class FreeDrive:
         if self._cool > 0:
             running.append(Remaining("cool-down", self._cool, self._cool_total))
         return tuple(running)
+
+    def monitored(self) -> tuple[Monitored, ...]:
+        """What the activation sequence checks, while it runs."""
+        return self._sequence.monitored() if self._sequence is not None else ()
 
     def sense(self, held: bool) -> None:
         """Begin a tick: the button, the cool-down, the absence of the signal."""
@@ -109,13 +127,16 @@ class FreeDrive:
         """Decide the tick that `sense` began. Returns what happened, in order."""
         if self.phase in IN_FREE_DRIVE:
             return self._stay(around, settings)
+        if self.phase is Phase.SEQUENCE:
+            return self._check(around, settings)
+        events = self._verdict.step(seen(around), self._cool <= 1) if self._verdict.waiting else []
         if self._held:
-            return self._activate(around, settings)
+            return events + self._activate(around, settings)
         if self.phase is Phase.ACTIVATION:
             values: Values = {"value": (self._total - self._left + 1) * TICK, "limit": self._total * TICK}
             self.phase = Phase.OFF
-            return [Event(Kind.ACTIVATION_CANCELLED, around.estimate.tick, values)]
-        return []
+            events.append(Event(Kind.ACTIVATION_CANCELLED, around.estimate.tick, values))
+        return events
 
     def stop(self, kind: Kind, settings: Settings) -> None:
         """Free-drive or its activation ends because of an event of `kind` from elsewhere, such as an emergency stop."""
@@ -136,28 +157,69 @@ class FreeDrive:
         else:
             self._left -= 1
         if self._left == 0:
-            # The activation sequence (FD-9 to FD-12) belongs between here and the entry: a phase of its own.
+            events += self._end_activation(around, settings)
+        return events
+
+    def _end_activation(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
+        tick = around.estimate.tick
+        if not joints_ok(around.estimate):
+            return [self._refuse(Kind.REFUSED_SENSORS, tick, settings, {"sensor": JOINTS_SENSED})]
+        if around.still.count < ticks(settings.static.time):
+            values = moving(around.still, self._joints, settings)
+            return [self._refuse(Kind.REFUSED_MOVING, tick, settings, values)]
+        if not settings.sequence.on:
+            return [self._enter(around, settings)]
+        self.phase = Phase.SEQUENCE
+        self._total = self._left = ticks(settings.sequence.period)
+        self._sequence = Sequence(seen(around), settings, self._joints, self._rated)
+        self.use_wrench = around.wrench_ok
+        self.baseline = around.mean.mean()
+        return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(around, settings)]
+
+    def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """The activation sequence runs; the button does not matter any more (FD-8a)."""
+        self._left -= 1
+        if not may_enter(around.mode, settings):
+            values: Values = {"mode": around.mode, "allowed": origins(settings)}
+            return [self._refuse(Kind.REFUSED_MODE, around.estimate.tick, settings, values)]
+        events = self._judge(around, settings)
+        if not events and self._left == 0:
             events.append(self._enter(around, settings))
         return events
 
+    def _judge(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """One tick of the sequence; what refuses free-drive."""
+        sequence = self._sequence
+        assert sequence is not None
+        now = seen(around)
+        missing = sequence.missing(now)
+        if missing:
+            return [self._refuse(Kind.REFUSED_SENSORS, around.estimate.tick, settings, {"sensor": missing})]
+        beyond = sequence.check(now)
+        if not beyond:
+            return []
+        events = sequence.reasons(beyond, now, settings)
+        self._end(events[-1].kind, settings)
+        if events[-1].kind is Kind.REFUSED_PAYLOAD and self._cool > 0:
+            self._verdict.begin(now)
+        return events
+
     def _enter(self, around: Surroundings, settings: Settings) -> Event:
-        tick = around.estimate.tick
-        if not joints_ok(around.estimate):
-            return self._refuse(Kind.REFUSED_SENSORS, tick, settings, {"sensor": SENSOR})
-        if around.still.count < ticks(settings.static.time):
-            values = moving(around.still, self._joints, settings)
-            return self._refuse(Kind.REFUSED_MOVING, tick, settings, values)
-        self.phase = Phase.HELD
+        self.phase = Phase.HELD if self._held else Phase.PERIOD
+        self._sequence = None
         self._pressed = -1
         self.use_wrench = around.wrench_ok
         self.baseline = around.mean.mean()
+        if self.phase is Phase.PERIOD:
+            self._begin(Phase.PERIOD, settings.free_drive.period, around, settings)
         gain = settings.free_drive.gain if self.use_wrench else 0.0
-        return Event(Kind.ENTERED, tick, {"from": around.mode, "gain": gain})
+        return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})
 
     def _stay(self, around: Surroundings, settings: Settings) -> list[Event]:
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
-            return [self._leave(Kind.SENSORS_LOST, tick, settings, {"sensor": SENSOR})]
+            return [self._leave(Kind.SENSORS_LOST, tick, settings, {"sensor": JOINTS_SENSED})]
         events: list[Event] = []
         if self.use_wrench and not around.wrench_ok:
             self.use_wrench = False
@@ -171,7 +233,7 @@ class FreeDrive:
         elif self.phase is Phase.GUIDED:
             self._left = max(self._left - 1, 0)
             if self._left == 0 and around.still.count >= self._total:
-                self._begin(Phase.RESTART, settings.free_drive.restart_period, around)
+                self._begin(Phase.RESTART, settings.free_drive.restart_period, around, settings)
                 events.append(Event(Kind.RESTARTED, tick, {"period": self._total * TICK}))
         else:
             self._count(around, settings, events)
@@ -190,13 +252,14 @@ class FreeDrive:
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
             events.append(self._leave(Kind.LEFT_PRESS, tick, settings, values))
         else:
-            self._begin(Phase.PERIOD, settings.free_drive.period, around)
+            self._begin(Phase.PERIOD, settings.free_drive.period, around, settings)
 
     def _count(self, around: Surroundings, settings: Settings, events: list[Event]) -> None:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick
         self._left -= 1
-        excess = manipulation(around.estimate, self._since, settings.maintain, self.use_wrench)
+        assert self._maintained is not None
+        excess = self._maintained.step(around.estimate, self.use_wrench)
         if excess is not None:
             self.phase = Phase.GUIDED
             # static again: for its whole time after the manipulation began
@@ -206,10 +269,10 @@ class FreeDrive:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
             events.append(self._leave(kind, tick, settings, {"limit": self._total * TICK}))
 
-    def _begin(self, phase: Phase, seconds: float, around: Surroundings) -> None:
+    def _begin(self, phase: Phase, seconds: float, around: Surroundings, settings: Settings) -> None:
         self.phase = phase
         self._total = self._left = ticks(seconds)
-        self._since = reference(around.estimate, self.use_wrench)
+        self._maintained = Maintained(around.estimate, settings, self.use_wrench, self._joints)
 
     def _refuse(self, kind: Kind, tick: int, settings: Settings, values: Values) -> Event:
         self._end(kind, settings)
@@ -223,9 +286,17 @@ class FreeDrive:
         self.phase = Phase.OFF
         self.use_wrench = False
         self.baseline = ZEROS
+        self._sequence = None
+        self._maintained = None
+        self._verdict.waiting = False
         self._blocked = self._held
         if TABLE[kind].cool_down:
             self._cool = self._cool_total = ticks(settings.free_drive.cool_down)
+
+
+def seen(around: Surroundings) -> Seen:
+    """What the sequence needs of the surroundings."""
+    return Seen(around.estimate, around.wrench_ok, around.mean)
 
 
 def moving(still: Stillness, joints: tuple[str, ...], settings: Settings) -> Values:

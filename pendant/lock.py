@@ -5,13 +5,22 @@ from pendant.modes import Mode
 from pendant.settings import SettingError, Settings, Value, apply, find, value_of
 
 
-def change(settings: Settings, changes: dict[str, Value], mode: Mode, tick: int) -> tuple[Settings, list[Event]]:
-    """The settings after the changes that are allowed in `mode`, each on its own, and what became of every change."""
+def change(settings: Settings, changes: dict[str, Value], mode: Mode, trying: bool, tick: int) -> tuple[Settings, list[Event]]:
+    """The settings after the changes that are allowed, each on its own, and what became of every change.
+
+    Args:
+        settings: as they are.
+        changes: by dotted name.
+        mode: of the robot.
+        trying: the activation sequence runs.
+        tick: for the events.
+    """
     events: list[Event] = []
     for name, value in changes.items():
         try:
-            if find(name).locked and mode in (Mode.RUN, Mode.FREE_DRIVE):
-                raise SettingError(name, value, f"no change of a limit in {mode}")
+            if find(name).locked and (trying or mode in (Mode.RUN, Mode.FREE_DRIVE)):
+                where = "the activation sequence" if trying else mode
+                raise SettingError(name, value, f"no change of a limit in {where}")
             old = value_of(settings, name)
             settings = apply(settings, {name: value})
         except SettingError as error:

@@ -1,65 +1,62 @@
 """Manipulation (FD-13): is the user changing, or trying to change, the posture?"""
 
 import math
-from typing import NamedTuple
 
 from pendant.estimate import Estimate
-from pendant.settings import Maintain
+from pendant.limits import Excess
+from pendant.modes import TICK
+from pendant.parameters import Monitor, Reference, View, reference
+from pendant.residual import Split, split, upward
+from pendant.settings import Settings
 
-ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+SETTLING = 0.5
+"""Time constant with which a change that a payload could explain stops counting as the user's [s]: a hand never keeps one."""
 
-
-class Excess(NamedTuple):
-    """A parameter beyond its limit."""
-
-    parameter: str
-    value: float
-    limit: float
-    unit: str
+RATE = 1.0 - math.exp(-TICK / SETTLING)
 
 
-class Reference(NamedTuple):
-    """What the user already did when a maintain period began; force limits are changes since then."""
+class Maintained:
+    """Watches one free-drive or restart period for manipulation. Forces and torques are changes since it began."""
 
-    wrench: tuple[float, ...]  # F_user [N, N·m]
-    torques: tuple[float, ...]  # tau_ext [N·m]
+    __slots__ = ("_joints", "_monitor", "_ones", "_since", "_slow", "_up")
 
+    def __init__(self, estimate: Estimate, settings: Settings, use_wrench: bool, joints: tuple[str, ...]) -> None:
+        """
+        Args:
+            estimate: of the tick in which the period begins.
+            settings: as they are now; they stay so to the end of the period.
+            use_wrench: False: judged by the joints alone (FD-3a).
+            joints: names, base to flange.
+        """
+        self._monitor = Monitor(settings.limits.maintain)
+        self._since: Reference = reference(estimate, use_wrench)
+        self._joints = joints
+        self._ones = (1.0,) * len(joints)
+        self._up = upward(estimate.g_B.tolist())
+        self._slow = [0.0] * 6  # the change, smoothed
 
-def reference(estimate: Estimate, use_wrench: bool) -> Reference:
-    """What is stored at the beginning of a period."""
-    return Reference(tuple(estimate.F_user.tolist()) if use_wrench else ZEROS, tuple(estimate.tau_ext.tolist()))
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._since, self._up, tuple(self._slow), self._monitor.memory)
 
+    def step(self, estimate: Estimate, use_wrench: bool) -> Excess | None:
+        """One tick; its joint values are finite. Returns the first parameter that exceeds its maintain limit, or None."""
+        parts = self._split(estimate) if use_wrench else None
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, 0.0))
+        return beyond[0].excess if beyond else None
 
-def manipulation(estimate: Estimate, since: Reference, limits: Maintain, use_wrench: bool) -> Excess | None:
-    """The first parameter that exceeds its maintain limit, or None.
-
-    Args:
-        estimate: of this tick; its joint values are finite.
-        since: what was stored when the period began.
-        limits: each parameter's limit; a value equal to it does not exceed it.
-        use_wrench: False: judged by the joints alone (FD-3a).
-    """
-    if use_wrench:
-        x, y, z, rx, ry, rz = estimate.F_user.tolist()
-        x0, y0, z0, rx0, ry0, rz0 = since.wrench
-        x, y, z = x - x0, y - y0, z - z0
-        force = math.sqrt(x * x + y * y + z * z)
-        if force > limits.force:
-            return Excess("user force", force, limits.force, "N")
-        x, y, z = rx - rx0, ry - ry0, rz - rz0
-        torque = math.sqrt(x * x + y * y + z * z)
-        if torque > limits.torque:
-            return Excess("user torque", torque, limits.torque, "N·m")
-    limit = limits.joint_torque
-    for value, start in zip(estimate.tau_ext.tolist(), since.torques, strict=True):
-        if abs(value - start) > limit:
-            return Excess("joint external torque", abs(value - start), limit, "N·m")
-    limit = limits.joint_speed
-    for value in estimate.qd.tolist():
-        if abs(value) > limit:
-            return Excess("joint speed", abs(value), limit, "rad/s")
-    vx, vy, vz = estimate.v_F.tolist()[:3]
-    speed = math.sqrt(vx * vx + vy * vy + vz * vz)
-    if speed > limits.flange_speed:
-        return Excess("flange speed", speed, limits.flange_speed, "m/s")
-    return None
+    def _split(self, estimate: Estimate) -> Split:
+        """The change without its payload-like part: that which stays, along gravity (force) or across it (torque)."""
+        change = [now - then for now, then in zip(estimate.F_user.tolist(), self._since.wrench, strict=True)]
+        slow = self._slow
+        for k in range(6):
+            slow[k] += RATE * (change[k] - slow[k])
+        ux, uy, uz = self._up
+        fx, fy, fz, tx, ty, tz = slow
+        along = fx * ux + fy * uy + fz * uz
+        about = tx * ux + ty * uy + tz * uz
+        x, y, z = change[0] - along * ux, change[1] - along * uy, change[2] - along * uz
+        rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
+        parts = split(change, self._up)
+        return parts._replace(user_force=math.sqrt(x * x + y * y + z * z), user_torque=math.sqrt(rx * rx + ry * ry + rz * rz))

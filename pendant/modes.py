@@ -34,6 +34,7 @@ class Phase(StrEnum):
 
     OFF = "OFF"
     ACTIVATION = "ACTIVATION"  # the signal is present, its period runs (FD-7)
+    SEQUENCE = "SEQUENCE"  # the arm is freed, to see whether it stays (FD-9)
     HELD = "HELD"  # in free-drive, button held: the period is suspended (FD-8a)
     PERIOD = "PERIOD"  # in free-drive, free-drive period runs (FD-14)
     GUIDED = "GUIDED"  # in free-drive, the user moves the arm
@@ -46,7 +47,7 @@ class Law(StrEnum):
     HOLD = "HOLD"  # keep the posture
     BRAKE = "BRAKE"  # come to rest as fast as the limits allow, then keep the posture
     FOLLOW = "FOLLOW"  # track the requested move
-    FREE = "FREE"  # free-drive law (FD-2, FD-3)
+    FREE = "FREE"  # free-drive law (FD-2, FD-3); also in the activation sequence, where the mode is still the old one
 
 
 def way_out(mode: Mode) -> str:

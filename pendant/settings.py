@@ -42,14 +42,42 @@ def _switch(ident: str, text: str) -> Meta:
     return Meta(description=text, extra={"unit": "", "id": ident, "locked": True})
 
 
+def _limit(low: float, high: float, unit: str, ident: str, text: str) -> Meta:
+    """Of a `Limit`: the range of its `max`."""
+    return Meta(description=text, extra={"unit": unit, "id": ident, "low": low, "high": high})
+
+
 class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Base of all sections."""
+
+
+class Limit(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """One cell of the table of limits (FD-25)."""
+
+    max: float
+    time: Annotated[float, _number(0.0, 2.0, "s", "FD-12a", "allowed time beyond")] = 0.0
+    on: Annotated[bool, _switch("FD-25", "checked")] = True
+
+
+class Operation(Limit, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A limit while free-drive lasts, with its reaction."""
+
+    stop: Annotated[bool, _switch("FD-18", "beyond is STOP")] = False
 
 
 class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """From the signal to entry."""
 
     period: Annotated[float, _number(0.0, 15.0, "s", "FD-7", "how long the signal must be present without a break")] = 1.0
+
+
+class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The activation sequence, in which the arm is freed to see whether it stays."""
+
+    on: Annotated[bool, _switch("FD-24", "free-drive begins with an activation sequence")] = True
+    period: Annotated[float, _number(0.25, 5.0, "s", "FD-9", "how long the freed arm must stay within limits")] = 1.0
+    amplified: Annotated[bool, _switch("FD-9", "the user's force is amplified in it already")] = False
+    protective_stop: Annotated[bool, _switch("FD-10", "a limit exceeded in it is a protective stop")] = False
 
 
 class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -86,14 +114,54 @@ class ButtonUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hold_to_run: Annotated[bool, _switch("FD-8a", "letting go of the button leaves free-drive")] = False
 
 
-class Maintain(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What counts as moving the arm by hand. Force, torque and joint torque are changes since the period began."""
+class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What the freed arm must not do in the activation sequence."""
 
-    force: Annotated[float, _number(1.0, 100.0, "N", "FD-13", "change of the user's force")] = 8.0
-    torque: Annotated[float, _number(0.1, 20.0, "N·m", "FD-13", "change of the user's torque")] = 1.5
-    joint_torque: Annotated[float, _number(0.5, 100.0, "N·m", "FD-13", "change of a joint's external torque")] = 8.0
-    joint_speed: Annotated[float, _number(0.005, 1.0, "rad/s", "FD-13", "speed of a joint")] = 0.05
-    flange_speed: Annotated[float, _number(0.002, 1.0, "m/s", "FD-13", "speed of the flange")] = 0.02
+    flange_displacement: Annotated[Limit, _limit(0.0005, 0.01, "m", "FD-9", "way of the flange")] = Limit(max=0.002)
+    flange_speed: Annotated[Limit, _limit(0.002, 0.1, "m/s", "FD-9", "speed of the flange")] = Limit(max=0.02)
+    flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-9", "acceleration of the flange")] = Limit(max=1.5)
+    joint_speed: Annotated[Limit, _limit(0.01, 0.5, "rad/s", "FD-9", "speed of a joint")] = Limit(max=0.05)
+    joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "external torque of a joint")] = Limit(max=0.04)
+    payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force as of a wrong payload")] = Limit(max=5.3)
+    payload_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque as of a wrong payload")] = Limit(max=1.5)
+    user_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force that is none of a payload")] = Limit(max=12.0)
+    user_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque that is none of a payload")] = Limit(max=1.5)
+    load_share: Annotated[float, _number(0.0, 1.0, "", "FD-9", "joint torque limits rise by this share of its load")] = 0.25
+
+
+class MaintainLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What counts as moving the arm by hand. Forces and torques are changes since the period began."""
+
+    user_force: Annotated[Limit, _limit(1.0, 100.0, "N", "FD-13", "change of the user's force")] = Limit(max=8.0)
+    user_torque: Annotated[Limit, _limit(0.1, 20.0, "N·m", "FD-13", "change of the user's torque")] = Limit(max=1.5)
+    joint_torque: Annotated[Limit, _limit(0.5, 100.0, "N·m", "FD-13", "change of a joint's external torque")] = Limit(max=8.0)
+    joint_speed: Annotated[Limit, _limit(0.005, 1.0, "rad/s", "FD-13", "speed of a joint")] = Limit(max=0.05)
+    flange_speed: Annotated[Limit, _limit(0.002, 1.0, "m/s", "FD-13", "speed of the flange")] = Limit(max=0.02)
+    flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-13", "acceleration of the flange")] = Limit(max=1.5)
+    flange_displacement: Annotated[Limit, _limit(0.001, 0.5, "m", "FD-13", "way of the flange in the period")] = Limit(max=0.01)
+
+
+class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What ends free-drive while it lasts."""
+
+    tcp_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the tool centre point")] = Operation(max=1.5)
+    elbow_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the elbow")] = Operation(max=1.5)
+    joint_speed: Annotated[Operation, _limit(0.1, 6.0, "rad/s", "FD-18", "speed of a joint")] = Operation(max=3.0)
+    flange_acceleration: Annotated[Operation, _limit(1.0, 78.0, "m/s²", "FD-18", "acceleration of the flange")] = Operation(
+        max=40.0, stop=True
+    )
+    joint_torque: Annotated[Operation, _limit(0.01, 2.0, "of rated", "FD-18", "external torque of a joint")] = Operation(
+        max=0.8, stop=True
+    )
+    user_force: Annotated[Operation, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = Operation(max=90.0, time=0.1)
+
+
+class Limits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Every limit: parameter x stage (FD-25)."""
+
+    activation: ActivationLimits = ActivationLimits()
+    maintain: MaintainLimits = MaintainLimits()
+    operation: OperationLimits = OperationLimits()
 
 
 class Static(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -107,10 +175,11 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
     activation: Activation = Activation()
+    sequence: Sequence = Sequence()
     free_drive: FreeDrive = FreeDrive()
     hold: Hold = Hold()
     button: ButtonUse = ButtonUse()
-    maintain: Maintain = Maintain()
+    limits: Limits = Limits()
     static: Static = Static()
 
 
@@ -124,14 +193,28 @@ def _rows(section: type[Section], prefix: str) -> list[Row]:
     hints = get_type_hints(section, include_extras=True)
     for field in msgspec.structs.fields(section):
         hint = hints[field.name]
+        if hint is float:  # the value of a limit: its range is said where the limit is
+            continue
         if get_origin(hint) is not Annotated:
             rows += _rows(hint, f"{prefix}{field.name}.")
             continue
         meta: Meta = get_args(hint)[1]
         extra: dict[str, Any] = meta.extra or {}
+        if isinstance(field.default, Limit):
+            rows += _limit_rows(prefix + field.name, field.default, meta.description or "", extra)
+            continue
         low, high = (None, None) if meta.ge is None else (float(meta.ge), float(meta.le or 0.0))
         text = meta.description or ""
         rows.append(Row(prefix + field.name, field.default, low, high, extra["unit"], extra["id"], text, extra["locked"]))
+    return rows
+
+
+def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> list[Row]:
+    """The rows of one limit: its value and what all limits have."""
+    first = Row(f"{name}.max", default.max, extra["low"], extra["high"], extra["unit"], extra["id"], text, True)
+    rows = [first]
+    for row in _rows(type(default), f"{name}."):
+        rows.append(row._replace(default=getattr(default, row.name.rpartition(".")[2]), text=f"{text}: {row.text}"))
     return rows
 
 

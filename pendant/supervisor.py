@@ -3,12 +3,13 @@
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
-from pendant.freedrive import SENSOR, FreeDrive, Surroundings, moving
+from pendant.freedrive import FreeDrive, Surroundings, moving
 from pendant.inputs import Button, Command, Inputs
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
 from pendant.program import Program, ProgramState, Sequencer, misfit
+from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, ticks
 from pendant.table import TABLE, Effect
 from pendant.watch import Stillness, WrenchMean, joints_ok
@@ -26,12 +27,19 @@ STOPPING = {
 class Supervisor:
     """Decides every tick from the estimate and the inputs; keeps all of its memory in `state`."""
 
-    def __init__(self, settings: Settings, n_joints: int, joints: tuple[str, ...] | None = None) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        n_joints: int,
+        joints: tuple[str, ...] | None = None,
+        rated: tuple[float, ...] | None = None,
+    ) -> None:
         """
         Args:
             settings: to start with; `Inputs.settings` changes them.
             n_joints: number of joints of the arm, as in every estimate.
             joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
+            rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
         """
         self.settings = settings
         self._n = n_joints
@@ -41,12 +49,13 @@ class Supervisor:
         self._remembered = Mode.TEACH  # where free-drive was entered from
         self._origin = Mode.TEACH  # where the program was started from
         self._braking = False  # since free-drive or a motion was ended, until static
+        self._freed = False  # the law was FREE in the last tick
         self._static = False
         self._button = KeepAlive()
         self._still = Stillness()
         self._mean = WrenchMean()
         self._sequencer = Sequencer()
-        self._free = FreeDrive(self._joints)
+        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints)
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -61,7 +70,7 @@ class Supervisor:
         """All that the next decision depends on, besides its arguments; equal states decide equally."""
         button = (self._button.held, self._button.silent)
         still = (self._still.count, self._still.joint, self._still.speed)
-        own = (self._mode, self._safety, self._remembered, self._origin, self._braking, button, still)
+        own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
         return (self.settings, *own, self._mean.memory, self._sequencer.memory, self._free.memory)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
@@ -74,7 +83,8 @@ class Supervisor:
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
         if inputs.settings:
-            self.settings, changed = change(self.settings, inputs.settings, self._mode, estimate.tick)
+            trying = self._free.phase is Phase.SEQUENCE
+            self.settings, changed = change(self.settings, inputs.settings, self._mode, trying, estimate.tick)
             events += changed
             self._refresh()
         return self._publish(events)
@@ -102,7 +112,7 @@ class Supervisor:
         elif self._button.held:
             events.append(Event(Kind.RESET_REFUSED_SIGNAL, estimate.tick))
         elif not joints_ok(estimate):
-            events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": SENSOR}))
+            events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": JOINTS_SENSED}))
         elif not self._static:
             values = moving(self._still, self._joints, self.settings)
             events.append(Event(Kind.RESET_REFUSED_MOVING, estimate.tick, values))
@@ -140,7 +150,7 @@ class Supervisor:
         if move is None or sequencer.move is not move:
             return
         if not joints_ok(estimate):
-            self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": SENSOR}), events)
+            self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED}), events)
         elif estimate.move_refused:
             values: Values = {"name": self._name, "step": sequencer.index + 1, "reason": estimate.move_refused}
             events.append(Event(Kind.PROGRAM_FAILED, estimate.tick, values))
@@ -175,8 +185,10 @@ class Supervisor:
             return None
         if command is Command.RESUME_PROGRAM and state is ProgramState.RUNNING:
             return "it is running already"
+        if self._free.phase is Phase.SEQUENCE:
+            return "free-drive is being tried"
         if not joints_ok(estimate):
-            return f"check {SENSOR}"
+            return f"check {JOINTS_SENSED}"
         return None if self._static else "the arm still moves"
 
     def _steer(self, command: Command, estimate: Estimate, events: list[Event]) -> None:
@@ -222,15 +234,15 @@ class Supervisor:
     def _take_effect(self, event: Event, events: list[Event]) -> None:
         events.append(event)
         effect = TABLE[event.kind].effect
-        if effect is Effect.ENTER:
-            self._remembered = self._mode
+        if effect in (Effect.TRY, Effect.ENTER):
             if self._sequencer.state is ProgramState.RUNNING:
                 self._pause(event.tick, events)
-            self._mode = Mode.FREE_DRIVE
+            if effect is Effect.ENTER:
+                self._remembered = self._mode
+                self._mode = Mode.FREE_DRIVE
         elif effect is Effect.LEAVE:
             if self._mode is Mode.FREE_DRIVE:
                 self._mode = self._remembered
-                self._braking = True
         elif effect in STOPPING:
             self._mode = Mode.STOP
             self._safety = max(self._safety, STOPPING[effect])
@@ -253,8 +265,11 @@ class Supervisor:
         return program.name if program else ""
 
     def _law(self) -> Law:
-        if self._mode is Mode.FREE_DRIVE:
+        if self._mode is Mode.FREE_DRIVE or self._free.phase is Phase.SEQUENCE:
+            self._freed = True
             return Law.FREE
+        if self._freed:
+            self._freed, self._braking = False, True
         if self._mode is Mode.STOP:
             return Law.BRAKE
         if self._sequencer.move is not None:
@@ -271,6 +286,8 @@ class Supervisor:
         law = self._law()
         key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
         periods = () if free.idle else free.periods()
+        trying = free.phase is Phase.SEQUENCE
+        gain = self.settings.free_drive.gain if free.use_wrench and not (trying and not self.settings.sequence.amplified) else 0.0
         if self._decision is not None and not events and not periods and key == self._key:
             return self._decision
         active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
@@ -280,13 +297,14 @@ class Supervisor:
             phase=free.phase,
             law=law,
             move=sequencer.move,
-            gain=self.settings.free_drive.gain if free.use_wrench else 0.0,
+            gain=gain,
             force_cap=self.settings.free_drive.force_cap,
             baseline=free.baseline,
             periods=periods,
             events=tuple(events),
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
+            monitored=free.monitored() if trying else (),
         )
         self._key = key
         self._decision = None if events or periods else decision

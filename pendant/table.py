@@ -10,6 +10,7 @@ class Effect(StrEnum):
     """What an event does to the mode; all that state machines ask of an event."""
 
     INFO = "INFO"  # nothing
+    TRY = "TRY"  # the arm is freed for the activation sequence; a running program pauses
     ENTER = "ENTER"  # free-drive begins
     NO_ENTRY = "NO_ENTRY"  # free-drive is refused, the mode stays
     LEAVE = "LEAVE"  # free-drive ends, back to the remembered mode
@@ -88,6 +89,48 @@ TABLE: dict[Kind, Row] = {
         "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Hands off, then try again.",
         ("joint", "value", "limit", "time"),
     ),
+    Kind.SEQUENCE_STARTED: Row(
+        Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
+    ),
+    Kind.ENTRY_PREVENTED: _denied(
+        "Beyond its limit: {parameter}",
+        "{part}: {value:.3f} {unit}, limit {limit:.3f} {unit}, {time:.2f} s into the check.",
+        ("parameter", "part", "value", "limit", "unit", "time"),
+    ),
+    Kind.REFUSED_LIMIT: _refused(
+        "Free-drive refused: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go; check the payload and mounting.",
+        ("parameter", "part", "value", "limit", "unit"),
+    ),
+    Kind.REFUSED_PAYLOAD: _refused(
+        "Free-drive refused: wrong payload or a push",
+        "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
+        ("mass", "force", "way", "parameter"),
+    ),
+    Kind.SEQUENCE_STOPPED: Row(
+        Effect.PROTECTIVE_STOP,
+        Severity.STOP,
+        "Protective stop: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go, check the payload, then reset.",
+        ("parameter", "part", "value", "limit", "unit"),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    Kind.RESIDUAL_GONE: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "It was a push: the force is gone",
+        "{force:.0f} N at the refusal, {left:.0f} N now. Hands off while the arm is checked.",
+        ("force", "left"),
+    ),
+    Kind.RESIDUAL_STAYED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The force has stayed: check the payload",
+        "{force:.0f} N, as of {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
+        ("force", "mass"),
+        Clears.NEXT,
+    ),
     Kind.NOT_YET: Row(
         Effect.INFO,
         Severity.NOTICE,
@@ -98,7 +141,9 @@ TABLE: dict[Kind, Row] = {
     ),
     # While it lasts (FD-13, FD-15, FD-23)
     Kind.MANIPULATION: _info(
-        "The arm is guided", "{parameter}: {value:.2f} {unit}, limit {limit:.2f} {unit}.", ("parameter", "value", "limit", "unit")
+        "The arm is guided",
+        "{parameter}, {part}: {value:.2f} {unit}, limit {limit:.2f} {unit}.",
+        ("parameter", "part", "value", "limit", "unit"),
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.WRENCH_LOST: Row(

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from pendant.estimate import Estimate
-from pendant.maintain import ZEROS
+from pendant.parameters import ZEROS
 from pendant.settings import ticks
 
 WINDOW = ticks(0.1)

@@ -40,7 +40,7 @@ class Dynamics:
         self.model, self.data = model, model.createData()
         self._last, self._elbow = parent, elbow + 1
         self._bare = model.inertias[parent].copy()
-        self._gravity_B = np.array(model.gravity.linear)
+        self.gravity_B = np.array(model.gravity.linear)
         self.set_load(load)
 
     def set_load(self, load: Body) -> None:
@@ -78,4 +78,4 @@ class Dynamics:
         pin.forwardKinematics(self.model, self.data, q, qd, qdd)
         acceleration = pin.getFrameClassicalAcceleration(self.model, self.data, self._flange, pin.LOCAL)
         R = pin.updateFramePlacement(self.model, self.data, self._flange).rotation
-        return acceleration.linear - R.T @ self._gravity_B, acceleration.angular
+        return acceleration.linear - R.T @ self.gravity_B, acceleration.angular

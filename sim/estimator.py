@@ -131,6 +131,7 @@ class Estimator:
             v_elbow,
             move_done,
             move_refused,
+            dynamics.gravity_B,
         )
 
     def _learn_friction(self, sample: Sample) -> None:

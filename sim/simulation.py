@@ -46,7 +46,7 @@ class Simulation:
         links = calibration.believed(rigid, calibrated)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, calibrated, self.dynamics, tcp)
-        self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints))
+        self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque))
         self.controller = Controller(arm, calibrated, self.dynamics, tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor

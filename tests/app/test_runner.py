@@ -15,6 +15,7 @@ SHORT: dict[str, Any] = {
     "title": "short",
     "duration": 2.2,
     "seed": 3,
+    "settings": {"sequence.period": 0.25},
     "timeline": [
         {"at": 0.1, "do": "press", "control": "free_drive"},
         {"after": "mode FREE_DRIVE", "delay": 0.1, "do": "release", "control": "free_drive"},

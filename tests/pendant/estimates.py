@@ -18,10 +18,16 @@ def estimate(
     force: float | list[float] = 0.0,
     torque: float | list[float] = 0.0,
     speed: float | list[float] = 0.0,
+    position: float | list[float] = 0.0,
+    acceleration: float | list[float] = 0.0,
+    acceleration_valid: bool = True,
+    tau_J: float | list[float] = 0.0,
+    v_tcp: float = 0.0,
+    v_elbow: float = 0.0,
     move_done: int = 0,
     move_refused: str = "",
 ) -> Estimate:
-    """An estimate. A plain number for `qd` or `tau_ext` is joint 0's, for `force`, `torque` and `speed` the x component."""
+    """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component."""
 
     def vector(value: float | list[float], length: int) -> list[float]:
         return value if isinstance(value, list) else [value] + [0.0] * (length - 1)
@@ -30,23 +36,23 @@ def estimate(
         tick=tick,
         joints_valid=joints_valid,
         wrench_valid=wrench_valid,
-        acceleration_valid=True,
+        acceleration_valid=acceleration_valid,
         q=np.zeros(n),
         qd=np.array(vector(qd, n)),
         qdd=np.zeros(n),
         theta=np.zeros(n),
         theta_d=np.zeros(n),
         tau_m=np.zeros(n),
-        tau_J=np.zeros(n),
+        tau_J=np.array(vector(tau_J, n)),
         tau_ext=np.array(vector(tau_ext, n)),
         w_sensor=np.zeros(6),
         F_user=np.array(vector(force, 3) + vector(torque, 3)),
-        a_F=np.zeros(3),
-        p_BF=np.zeros(3),
+        a_F=np.add(vector(acceleration, 3), [0.0, 0.0, 9.81]),
+        p_BF=np.array(vector(position, 3)),
         R_BF=np.eye(3),
         v_F=np.array(vector(speed, 3) + [0.0] * 3),
-        v_tcp=0.0,
-        v_elbow=0.0,
+        v_tcp=v_tcp,
+        v_elbow=v_elbow,
         move_done=move_done,
         move_refused=move_refused,
     )

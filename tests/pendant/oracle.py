@@ -106,6 +106,8 @@ class World:
     loaded: bool = False
     program: ProgramState = ProgramState.NONE
     at: int = 0
+    forces: list[float] = field(default_factory=list)  # of the last tenth of a second, the sensor being valid
+    tried: bool = False  # the sensor was valid when the sequence began
 
 
 def follow(stream: list[Step], settings: Settings) -> list[Seen]:
@@ -130,6 +132,8 @@ def _static(w: World, t: int, s: Settings) -> bool:
 
 
 def _law(w: World, t: int, s: Settings) -> Law:
+    if w.phase is Phase.SEQUENCE:
+        return Law.FREE
     moving_law = {
         Mode.FREE_DRIVE: Law.FREE,
         Mode.STOP: Law.BRAKE,
@@ -144,6 +148,8 @@ def _law(w: World, t: int, s: Settings) -> Law:
 
 
 def _end(w: World, t: int, present: bool, cool: bool) -> None:
+    if w.phase is Phase.SEQUENCE and w.since < t:
+        w.brake = True
     w.phase = Phase.OFF
     w.blocked = present
     if cool:
@@ -172,6 +178,7 @@ def _tick(w: World, t: int, i: Step, s: Settings, kinds: list[Kind]) -> None:
         w.present_at = t
     if t - w.present_at >= 100:
         w.blocked = False
+    w.forces = [*w.forces[-49:], i.force] if i.wrench else []
     if not i.joints or not abs(i.qd) < s.static.speed:
         w.fast_at = t
     static = _static(w, t, s)
@@ -236,10 +243,11 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
     fresh = False
     for command in i.commands:
         runs, pauses = w.program is ProgramState.RUNNING, w.program is ProgramState.PAUSED
+        free_to_start = w.phase is not Phase.SEQUENCE
         can = {
-            Command.START_PROGRAM: w.mode in (Mode.NORMAL, Mode.TEACH) and w.loaded and static and i.joints,
+            Command.START_PROGRAM: w.mode in (Mode.NORMAL, Mode.TEACH) and w.loaded and static and i.joints and free_to_start,
             Command.PAUSE_PROGRAM: w.mode is Mode.RUN and runs,
-            Command.RESUME_PROGRAM: w.mode is Mode.RUN and pauses and static and i.joints,
+            Command.RESUME_PROGRAM: w.mode is Mode.RUN and pauses and static and i.joints and free_to_start,
             Command.STOP_PROGRAM: w.mode is Mode.RUN,
         }
         if command not in can:
@@ -299,22 +307,63 @@ def _free(
             kinds.append(Kind.REFUSED_MODE)
             _end(w, t, present, cool=True)
         elif t - w.since == _n(s.activation.period):
-            _enter(w, t, i, static, kinds)
+            _begin_entry(w, t, i, s, static, kinds)
+        return
+    if w.phase is Phase.SEQUENCE:
+        if not may:
+            kinds.append(Kind.REFUSED_MODE)
+            _end(w, t, present, cool=True)
+        elif _stays(w, t, i, s, present, kinds) and t - w.since == _n(s.sequence.period):
+            _enter(w, t, i, present, kinds)
         return
     _stay(w, t, i, s, pressed, let_go, static, kinds)
 
 
-def _enter(w: World, t: int, i: Step, static: bool, kinds: list[Kind]) -> None:
+def _begin_entry(w: World, t: int, i: Step, s: Settings, static: bool, kinds: list[Kind]) -> None:
     if not i.joints or not static:
         kinds.append(Kind.REFUSED_MOVING if i.joints else Kind.REFUSED_SENSORS)
         _end(w, t, True, cool=True)
-        return
+    elif s.sequence.on:
+        kinds.append(Kind.SEQUENCE_STARTED)
+        w.phase, w.since, w.tried = Phase.SEQUENCE, t, i.wrench
+        if w.program is ProgramState.RUNNING:
+            kinds.append(Kind.PROGRAM_PAUSED)
+            w.program, w.brake = ProgramState.PAUSED, True
+        _stays(w, t, i, s, True, kinds)
+    else:
+        _enter(w, t, i, True, kinds)
+
+
+def _stays(w: World, t: int, i: Step, s: Settings, present: bool, kinds: list[Kind]) -> bool:
+    """The sequence goes on."""
+    limits = s.limits.activation
+    if not i.joints or (w.tried and not i.wrench):
+        kinds.append(Kind.REFUSED_SENSORS)
+        _end(w, t, present, cool=True)
+        return False
+    beyond = [
+        abs(i.qd) > limits.joint_speed.max,
+        abs(i.tau) > 100.0 * limits.joint_torque.max,
+        w.tried and abs(sum(w.forces) / len(w.forces)) > limits.user_force.max,
+    ]
+    if any(beyond):
+        stop = s.sequence.protective_stop
+        kinds += [Kind.ENTRY_PREVENTED] * sum(beyond) + [Kind.SEQUENCE_STOPPED if stop else Kind.REFUSED_LIMIT]
+        _end(w, t, present, cool=True)
+        if stop:
+            _stop(w, Safety.PROTECTIVE_STOP)
+    return not any(beyond)
+
+
+def _enter(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
     kinds.append(Kind.ENTERED)
     w.back = w.mode
     if w.program is ProgramState.RUNNING:
         kinds.append(Kind.PROGRAM_PAUSED)
         w.program = ProgramState.PAUSED
-    w.mode, w.phase, w.since, w.entering_press, w.wrench = Mode.FREE_DRIVE, Phase.HELD, t, True, i.wrench
+    phase = Phase.HELD if present else Phase.PERIOD
+    w.mode, w.phase, w.since, w.entering_press, w.wrench = Mode.FREE_DRIVE, phase, t, True, i.wrench
+    w.force0, w.tau0 = i.force, i.tau
 
 
 def _leave(w: World, t: int, kind: Kind, present: bool, kinds: list[Kind]) -> None:
@@ -339,9 +388,9 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
 
     age = t - w.since
     guided = (
-        (w.wrench and abs(i.force - w.force0) > s.maintain.force)
-        or abs(i.tau - w.tau0) > s.maintain.joint_torque
-        or abs(i.qd) > s.maintain.joint_speed
+        (w.wrench and abs(i.force - w.force0) > s.limits.maintain.user_force.max)
+        or abs(i.tau - w.tau0) > s.limits.maintain.joint_torque.max
+        or abs(i.qd) > s.limits.maintain.joint_speed.max
     )
     if w.phase is Phase.HELD:
         if let_go and s.button.hold_to_run:

@@ -22,10 +22,10 @@ JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 
 
 class Bench:
-    """A supervisor that is stepped by hand; ticks count from 0."""
+    """A supervisor that is stepped by hand; ticks count from 0. There is no activation sequence unless asked for."""
 
     def __init__(self, **changes: float | bool) -> None:
-        names = {name.replace("__", "."): value for name, value in changes.items()}
+        names = {name.replace("__", "."): value for name, value in {"sequence__on": False, **changes}.items()}
         self.supervisor = Supervisor(apply(Settings(), names), 6, JOINTS)
         self.tick = -1
         self.last: Decision
@@ -116,7 +116,7 @@ def test_manipulation_in_any_tick_of_the_period_keeps_free_drive(tick: int) -> N
     bench.step(NOTHING, estimate(force=8.001))
     assert bench.last.phase is Phase.GUIDED
     assert bench.last.periods == ()
-    values = {"parameter": "user force", "value": 8.001, "limit": 8.0, "unit": "N"}
+    values = {"parameter": "user force", "part": "flange", "value": 8.001, "limit": 8.0, "unit": "N"}
     assert bench.last.events == (Event(Kind.MANIPULATION, bench.tick, values),)
 
 
@@ -266,7 +266,7 @@ def test_a_signal_present_at_a_leaving_counts_after_an_absence(absent: int, coun
 @pytest.mark.parametrize("phase", list(Phase)[1:])
 def test_the_deactivation_signal_leaves_every_phase_at_once(phase: Phase) -> None:
     """FD-17."""
-    bench = Bench()
+    bench = Bench(sequence__on=phase is Phase.SEQUENCE)
     bench.run(60)
     bench.step(HOLD)
     if phase is not Phase.ACTIVATION:
@@ -414,7 +414,7 @@ def test_periods_are_published_together_and_only_while_they_run() -> None:
 
 
 def test_any_number_of_joints() -> None:
-    supervisor = Supervisor(Settings(), 7)
+    supervisor = Supervisor(apply(Settings(), {"sequence.on": False}), 7)
     value = estimate(n=7)
     value.qd[6] = 0.02
     for _ in range(501):

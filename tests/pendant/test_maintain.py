@@ -7,25 +7,35 @@ import numpy as np
 import pytest
 
 from pendant.estimate import Estimate
-from pendant.maintain import ZEROS, Excess, Reference, manipulation, reference
-from pendant.settings import Maintain
+from pendant.limits import Excess
+from pendant.maintain import Maintained
+from pendant.settings import Settings, apply
 from tests.pendant.estimates import estimate
 
-REST = Reference(ZEROS, (0.0,) * 6)
-LIMITS = Maintain()
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
+TILT = [0.6, 0.0, -0.8]
+"""Gravity's direction on a tilted foot."""
 
 # parameter: limit, unit, how an estimate gets a value of it at component k, number of components
 PARAMETERS: dict[str, tuple[float, str, Callable[[float, int], Estimate], int]] = {
-    "user force": (8.0, "N", lambda value, k: estimate(force=at(value, k, 3)), 3),
-    "user torque": (1.5, "N·m", lambda value, k: estimate(torque=at(value, k, 3)), 3),
+    "user force": (8.0, "N", lambda value, k: estimate(force=at(value, k, 3)), 2),
+    "user torque": (1.5, "N·m", lambda value, k: estimate(torque=at(value, 2 - k, 3)), 1),
     "joint external torque": (8.0, "N·m", lambda value, k: estimate(tau_ext=at(value, k, 6)), 6),
     "joint speed": (0.05, "rad/s", lambda value, k: estimate(qd=at(value, k, 6)), 6),
     "flange speed": (0.02, "m/s", lambda value, k: estimate(speed=at(value, k, 3)), 3),
+    "flange displacement": (0.01, "m", lambda value, k: estimate(position=at(value, k, 3)), 3),
+    "flange acceleration": (1.5, "m/s²", lambda value, k: estimate(acceleration=at(value, k, 3)), 2),
 }
+JOINT = {"joint external torque", "joint speed"}
 
 
 def at(value: float, index: int, length: int) -> list[float]:
     return [value if k == index else 0.0 for k in range(length)]
+
+
+def maintained(start: Estimate | None = None, use_wrench: bool = True, **changes: float | bool) -> Maintained:
+    names = {f"limits.maintain.{name.replace('__', '.')}": value for name, value in changes.items()}
+    return Maintained(start or estimate(), apply(Settings(), names), use_wrench, JOINTS)
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
@@ -35,47 +45,101 @@ def test_beyond_the_limit_and_not_at_it(name: str) -> None:
     for component in range(count):
         for value in near:
             for sign in (1.0, -1.0):
-                excess = manipulation(make(sign * value, component), REST, LIMITS, use_wrench=True)
-                expected = Excess(name, value, limit, unit) if value > limit else None
+                excess = maintained().step(make(sign * value, component), use_wrench=True)
+                part = JOINTS[component] if name in JOINT else "flange"
+                expected = Excess(name, part, value, limit, unit) if value > limit else None
                 assert excess == expected, (value, component)
 
 
-@pytest.mark.parametrize(("name", "share"), [("user force", 0.6), ("user torque", 0.6), ("flange speed", 0.6)])
-def test_vectors_count_by_their_length(name: str, share: float) -> None:
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_a_limit_that_is_off_is_not_checked_and_one_with_time_is_late(name: str) -> None:
     limit, _, make, _ = PARAMETERS[name]
-    together = make(share * limit, 0)
-    for index, array in ((1, together.F_user), (4, together.F_user), (1, together.v_F)):
-        if array[index - 1] != 0.0:
-            array[index] = share * limit
-            array[index + 1] = share * limit
-    excess = manipulation(together, REST, LIMITS, use_wrench=True)
+    key = {"joint external torque": "joint_torque"}.get(name, name.replace(" ", "_"))
+    beyond = make(1.01 * limit, 0)
+    off = maintained(**{f"{key}__on": False})
+    assert all(off.step(beyond, use_wrench=True) is None for _ in range(20))
+    late = maintained(**{f"{key}__time": 0.02})
+    assert [late.step(beyond, use_wrench=True) is None for _ in range(11)] == [True] * 10 + [False]
+
+
+def test_vectors_count_by_their_length() -> None:
+    excess = maintained().step(estimate(force=[5.0, 7.0, 0.0]), use_wrench=True)
+    assert excess == Excess("user force", "flange", math.sqrt(74.0), 8.0, "N")
+    excess = maintained().step(estimate(speed=[0.012, -0.012, 0.012]), use_wrench=True)
     assert excess is not None
-    assert excess.parameter == name
-    assert excess.value == pytest.approx(share * limit * math.sqrt(3.0))
+    assert excess.value == pytest.approx(0.012 * math.sqrt(3.0))
 
 
 def test_forces_count_from_what_they_were_when_the_period_began() -> None:
-    leaning = estimate(force=[30.0, -12.0, 7.0], torque=[2.0, 1.0, -3.0], tau_ext=[9.0, -20.0, 3.0, 1.0, 0.5, 0.2])
-    since = reference(leaning, use_wrench=True)
-    assert since == Reference((30.0, -12.0, 7.0, 2.0, 1.0, -3.0), (9.0, -20.0, 3.0, 1.0, 0.5, 0.2))
-    assert manipulation(leaning, since, LIMITS, use_wrench=True) is None
-    let_go = manipulation(estimate(tau_ext=[9.0, -20.0, 3.0, 1.0, 0.5, 0.2]), since, LIMITS, use_wrench=True)
-    assert let_go == Excess("user force", math.sqrt(900 + 144 + 49), 8.0, "N")
-    joints = manipulation(estimate(), Reference(ZEROS, since.torques), LIMITS, use_wrench=True)
-    assert joints == Excess("joint external torque", 9.0, 8.0, "N·m")
+    joints = [9.0, -20.0, 3.0, 1.0, 0.5, 0.2]
+    leaning = estimate(force=[30.0, -12.0, 7.0], torque=[2.0, 1.0, -3.0], tau_ext=joints)
+    assert maintained(leaning).step(leaning, use_wrench=True) is None
+    let_go = maintained(leaning).step(estimate(tau_ext=joints), use_wrench=True)
+    assert let_go is not None
+    assert let_go.parameter == "user force"
+    assert let_go.value == pytest.approx(math.sqrt(900 + 144 + 49), rel=1e-3)
+    joints_only = maintained(estimate(tau_ext=joints)).step(estimate(), use_wrench=True)
+    assert joints_only == Excess("joint external torque", "shoulder", 20.0, 8.0, "N·m")
+
+
+def drift(rate: float, seconds: float, direction: list[float], g: list[float]) -> Excess | None:
+    """A force that grows by `rate` [N/s] along `direction`."""
+    watch = None
+    for k in range(round(500 * seconds)):
+        value = estimate(force=(np.array(direction) * rate * k / 500).tolist())
+        value.g_B = 9.81 * np.array(g)
+        value.a_F = -value.g_B
+        watch = watch or Maintained(value, Settings(), True, JOINTS)
+        excess = watch.step(value, use_wrench=True)
+        if excess is not None:
+            return excess
+    return None
+
+
+@pytest.mark.parametrize("g", [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], TILT])
+def test_what_stays_along_gravity_is_a_payload_and_no_manipulation(g: list[float]) -> None:
+    """A payload-like residual never counts as manipulation; a hand is told by its change, or by what is across gravity."""
+    assert drift(3.0, 10.0, g, g) is None
+    assert drift(-3.0, 10.0, g, g) is None
+    across = np.cross(g, [0.3, 0.9, 0.1])
+    across /= np.linalg.norm(across)
+    excess = drift(3.0, 10.0, across.tolist(), g)
+    assert excess is not None
+    assert excess.value == pytest.approx(8.0, abs=0.01)
+    sudden = drift(30.0, 1.0, g, g)
+    assert sudden is not None
+    assert sudden.parameter == "user force"
+
+
+def test_a_torque_that_stays_across_gravity_is_a_payload_and_one_about_it_is_not() -> None:
+    watch = maintained()
+    for k in range(2500):
+        assert watch.step(estimate(torque=[0.002 * k, -0.001 * k, 0.0]), use_wrench=True) is None
+    watch = maintained()
+    values = [watch.step(estimate(torque=[0.0, 0.0, 0.002 * k]), use_wrench=True) for k in range(800)]
+    assert next(k for k, value in enumerate(values) if value) == 751
 
 
 def test_without_the_flange_sensor_the_joints_judge_alone() -> None:
     """FD-3a."""
-    pushed = estimate(force=100.0, torque=20.0)
+    pushed = estimate(force=100.0, torque=20.0, acceleration=30.0, acceleration_valid=False)
     pushed.F_user[:] = math.nan
-    assert reference(pushed, use_wrench=False) == REST
-    assert manipulation(pushed, REST, LIMITS, use_wrench=False) is None
+    watch = maintained(pushed, use_wrench=False)
+    assert watch.step(pushed, use_wrench=False) is None
     pushed.qd[3] = 0.3
-    assert manipulation(pushed, REST, LIMITS, use_wrench=False) == Excess("joint speed", 0.3, 0.05, "rad/s")
+    assert watch.step(pushed, use_wrench=False) == Excess("joint speed", "wrist_1", 0.3, 0.05, "rad/s")
 
 
 def test_any_number_of_joints() -> None:
-    seven = estimate(n=7, tau_ext=at(12.0, 6, 7))
-    excess = manipulation(seven, Reference(ZEROS, (0.0,) * 7), LIMITS, use_wrench=True)
-    assert excess == Excess("joint external torque", 12.0, 8.0, "N·m")
+    names = tuple(f"joint {k}" for k in range(1, 8))
+    watch = Maintained(estimate(n=7), Settings(), True, names)
+    excess = watch.step(estimate(n=7, tau_ext=at(12.0, 6, 7)), use_wrench=True)
+    assert excess == Excess("joint external torque", "joint 7", 12.0, 8.0, "N·m")
+
+
+def test_its_memory_tells_all_of_it() -> None:
+    one, other = maintained(), maintained()
+    one.step(estimate(force=[1.0, 0.0, 0.5]), use_wrench=True)
+    assert one.memory != other.memory
+    other.step(estimate(force=[1.0, 0.0, 0.5]), use_wrench=True)
+    assert one.memory == other.memory

@@ -20,6 +20,7 @@ from tests.pendant.estimates import estimate
 PROGRAM = Program(steps=(JointMove(q=(0.0,) * 6),))
 BASE = {
     "activation.period": 0.04,
+    "sequence.period": 0.25,
     "free_drive.period": 0.5,
     "free_drive.restart_period": 0.5,
     "hold.silence": 0.1,
@@ -30,6 +31,9 @@ CHANGES = st.fixed_dictionaries(
     {},
     optional={
         "activation.period": st.sampled_from([0.0, 0.002, 0.1]),
+        "sequence.on": st.booleans(),
+        "sequence.amplified": st.booleans(),
+        "sequence.protective_stop": st.booleans(),
         "free_drive.cool_down": st.sampled_from([0.0, 0.1]),
         "free_drive.allowed_from.run": st.booleans(),
         "free_drive.allowed_from.normal": st.booleans(),
@@ -91,7 +95,8 @@ class Tick:
     inputs: Inputs
     ok: bool  # joints valid and finite
     static_speed: bool
-    quiet: bool  # nobody pushes, nothing moves
+    qd: float
+    wrench: bool  # valid and finite
     decision: Decision
 
 
@@ -112,7 +117,8 @@ def play(settings: Settings, pieces: list[Piece]) -> Iterator[Tick]:
             value.tick = index
             ok = piece.joints_valid and math.isfinite(piece.qd)
             slow = ok and abs(piece.qd) < settings.static.speed
-            yield Tick(index, inputs, ok, slow, piece.qd == 0.0, supervisor.step(value, inputs))
+            wrench = piece.wrench_valid and math.isfinite(piece.force)
+            yield Tick(index, inputs, ok, slow, piece.qd, wrench, supervisor.step(value, inputs))
             index += 1
 
 
@@ -142,11 +148,15 @@ def test_invariants(changes: dict[str, float | bool], pieces: list[Piece]) -> No
         free, was_free = now.mode is Mode.FREE_DRIVE, before is not None and before.mode is Mode.FREE_DRIVE
 
         # phases, law and mode tell the same
-        assert free == (now.phase in (Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART)) == (now.law is Law.FREE)
+        tried = now.phase is Phase.SEQUENCE
+        assert free == (now.phase in (Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART))
+        assert (free or tried) == (now.law is Law.FREE)
+        assert tried == bool(now.monitored)
         assert (now.law is Law.FOLLOW) == (now.move is not None)
         assert now.mode is Mode.RUN or now.move is None
         assert now.mode is not Mode.STOP or now.law is Law.BRAKE
-        assert free or (now.gain, now.baseline) == (0.0, (0.0,) * 6)
+        assert free or tried or (now.gain, now.baseline) == (0.0, (0.0,) * 6)
+        assert not tried or settings.sequence.amplified or now.gain == 0.0
         assert all(math.isfinite(value) for value in now.baseline)
         assert (now.safety in (Safety.PROTECTIVE_STOP, Safety.EMERGENCY_STOP)) <= (now.mode is Mode.STOP)
 
@@ -154,12 +164,17 @@ def test_invariants(changes: dict[str, float | bool], pieces: list[Piece]) -> No
         assert tick.ok or not free
         assert now.phase not in (Phase.HELD, Phase.ACTIVATION) or held[-1]
 
-        # never FREE_DRIVE without the activation period, in an allowed mode, from rest
+        # never FREE_DRIVE without the activation period, from rest, and the sequence, with the arm staying where it is
         if free and not was_free:
             assert Effect.ENTER in effects
-            assert len(held) > period
-            assert all(held[-period - 1 :])
-            assert all(past.static_speed for past in history[-ticks(settings.static.time) :])
+            length = ticks(settings.sequence.period) if settings.sequence.on else 0
+            start = len(held) - length - 1
+            assert start >= period
+            assert all(held[start - period : start + 1])
+            assert all(past.static_speed for past in history[start + 1 - ticks(settings.static.time) : start + 1])
+            assert all(past.ok and abs(past.qd) <= 0.05 for past in history[start:])
+            assert all(past.decision.phase is Phase.SEQUENCE for past in history[start:-1])
+            assert not length or len({past.wrench for past in history[start:]}) == 1
             allowed = settings.free_drive.allowed_from
             origin = before.mode if before else Mode.TEACH
             switched = [event.values["to"] for event in now.events if "to" in event.values]
@@ -200,6 +215,7 @@ def test_left_alone_free_drive_ends_within_its_periods(changes: dict[str, float 
         ticks(seconds)
         for seconds in (
             settings.hold.silence,
+            settings.sequence.period,
             settings.free_drive.period,
             settings.static.time,
             settings.free_drive.restart_period,

@@ -10,6 +10,10 @@ from pendant.settings import Row, SettingError, Settings, apply, describe, diges
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
 EXPECTED = {
     "activation.period": (1.0, 0.0, 15.0, "s", "FD-7", True),
+    "sequence.on": (True, None, None, "", "FD-24", True),
+    "sequence.period": (1.0, 0.25, 5.0, "s", "FD-9", True),
+    "sequence.amplified": (False, None, None, "", "FD-9", True),
+    "sequence.protective_stop": (False, None, None, "", "FD-10", True),
     "free_drive.allowed_from.normal": (False, None, None, "", "FD-1", True),
     "free_drive.allowed_from.teach": (True, None, None, "", "FD-1", True),
     "free_drive.allowed_from.run": (False, None, None, "", "FD-1", True),
@@ -21,14 +25,54 @@ EXPECTED = {
     "hold.silence": (0.5, 0.1, 1.0, "s", "FD-23", True),
     "button.short_press": (0.4, 0.1, 2.0, "s", "FD-8a", True),
     "button.hold_to_run": (False, None, None, "", "FD-8a", True),
-    "maintain.force": (8.0, 1.0, 100.0, "N", "FD-13", True),
-    "maintain.torque": (1.5, 0.1, 20.0, "N·m", "FD-13", True),
-    "maintain.joint_torque": (8.0, 0.5, 100.0, "N·m", "FD-13", True),
-    "maintain.joint_speed": (0.05, 0.005, 1.0, "rad/s", "FD-13", True),
-    "maintain.flange_speed": (0.02, 0.002, 1.0, "m/s", "FD-13", True),
     "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
     "static.time": (0.1, 0.02, 2.0, "s", "static", True),
 }
+LIMITS = {
+    "activation": {
+        "flange_displacement": (0.002, 0.0005, 0.01, "m", "FD-9"),
+        "flange_speed": (0.02, 0.002, 0.1, "m/s", "FD-9"),
+        "flange_acceleration": (1.5, 0.5, 20.0, "m/s²", "FD-9"),
+        "joint_speed": (0.05, 0.01, 0.5, "rad/s", "FD-9"),
+        "joint_torque": (0.04, 0.01, 1.0, "of rated", "FD-9"),
+        "payload_force": (5.3, 1.0, 50.0, "N", "FD-9"),
+        "payload_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
+        "user_force": (12.0, 1.0, 50.0, "N", "FD-9"),
+        "user_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
+    },
+    "maintain": {
+        "user_force": (8.0, 1.0, 100.0, "N", "FD-13"),
+        "user_torque": (1.5, 0.1, 20.0, "N·m", "FD-13"),
+        "joint_torque": (8.0, 0.5, 100.0, "N·m", "FD-13"),
+        "joint_speed": (0.05, 0.005, 1.0, "rad/s", "FD-13"),
+        "flange_speed": (0.02, 0.002, 1.0, "m/s", "FD-13"),
+        "flange_acceleration": (1.5, 0.5, 20.0, "m/s²", "FD-13"),
+        "flange_displacement": (0.01, 0.001, 0.5, "m", "FD-13"),
+    },
+    "operation": {
+        "tcp_speed": (1.5, 0.05, 5.0, "m/s", "FD-18"),
+        "elbow_speed": (1.5, 0.05, 5.0, "m/s", "FD-18"),
+        "joint_speed": (3.0, 0.1, 6.0, "rad/s", "FD-18"),
+        "flange_acceleration": (40.0, 1.0, 78.0, "m/s²", "FD-18"),
+        "joint_torque": (0.8, 0.01, 2.0, "of rated", "FD-18"),
+        "user_force": (90.0, 5.0, 100.0, "N", "FD-18"),
+    },
+}
+"""Stage, parameter: default, low, high, unit, requirement."""
+
+TIMES = {"operation.user_force": 0.1}
+STOPS = {"operation.flange_acceleration", "operation.joint_torque"}
+
+for stage, parameters in LIMITS.items():
+    for parameter, cell in parameters.items():
+        where = f"{stage}.{parameter}"
+        EXPECTED[f"limits.{where}.max"] = (*cell, True)
+        EXPECTED[f"limits.{where}.time"] = (TIMES.get(where, 0.0), 0.0, 2.0, "s", "FD-12a", True)
+        EXPECTED[f"limits.{where}.on"] = (True, None, None, "", "FD-25", True)
+        if stage == "operation":
+            EXPECTED[f"limits.{where}.stop"] = (where in STOPS, None, None, "", "FD-18", True)
+EXPECTED["limits.activation.load_share"] = (0.25, 0.0, 1.0, "", "FD-9", True)
+
 NUMBERS = [row for row in describe() if row.low is not None]
 SWITCHES = [row for row in describe() if row.low is None]
 

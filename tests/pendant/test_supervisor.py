@@ -9,11 +9,13 @@ from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Safety
 from pendant.program import JointMove, Program, ProgramState, Wait
-from pendant.settings import Settings, apply, describe
+from pendant.settings import Settings, apply, describe, value_of
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
 from tests.pendant.oracle import PROGRAM, WRONG
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+
+START = Bench().supervisor.settings
 
 
 def command(*commands: Command) -> Inputs:
@@ -236,7 +238,9 @@ def test_programs_that_cannot_be_loaded() -> None:
 
 @pytest.mark.parametrize("row", describe(), ids=lambda row: row.name)
 def test_limits_are_locked_in_free_drive_and_run(row: object) -> None:
-    name, value, locked = row.name, (not row.default if row.low is None else row.high), row.locked  # type: ignore[attr-defined]
+    name, locked = row.name, row.locked  # type: ignore[attr-defined]
+    default = value_of(START, name)
+    value = not default if row.low is None else row.high  # type: ignore[attr-defined]
     change = Inputs(settings={name: value})
     for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
         before = bench.supervisor.settings
@@ -251,9 +255,8 @@ def test_limits_are_locked_in_free_drive_and_run(row: object) -> None:
             assert bench.supervisor.settings == apply(before, {name: value})
     bench = Bench()
     bench.step(change)
-    default = row.default  # type: ignore[attr-defined]
     assert bench.last.events == (Event(Kind.SETTING_CHANGED, bench.tick, {"name": name, "old": default, "new": value}),)
-    assert bench.supervisor.settings == apply(Settings(), {name: value})
+    assert bench.supervisor.settings == apply(START, {name: value})
     assert bench.step(change).events == ()
 
 
@@ -276,7 +279,7 @@ def test_bad_settings_are_refused_one_by_one() -> None:
     assert [event.kind for event in bench.last.events] == [Kind.SETTING_REFUSED, Kind.SETTING_REFUSED, Kind.SETTING_CHANGED]
     assert bench.last.events[0].values["reason"] == "a number from 0.5 to 30 s"
     assert str(bench.last.events[1].values["reason"]).startswith("one of activation.period, ")
-    assert bench.supervisor.settings == apply(Settings(), {"free_drive.gain": 2.0})
+    assert bench.supervisor.settings == apply(START, {"free_drive.gain": 2.0})
 
 
 def test_a_running_period_keeps_its_length_and_the_next_one_is_the_new() -> None:

@@ -14,6 +14,7 @@ from tests.pendant.oracle import PROGRAM, WRONG, Step, agree, ticks_of
 SHORT = apply(
     Settings(),
     {
+        "sequence.on": False,
         "activation.period": 0.02,
         "free_drive.period": 0.5,
         "free_drive.restart_period": 0.6,
@@ -27,7 +28,24 @@ SHORT = apply(
 
 FROM_ANYWHERE = apply(SHORT, {"free_drive.allowed_from.run": True, "free_drive.allowed_from.normal": True})
 HOLD_TO_RUN = apply(SHORT, {"button.hold_to_run": True, "free_drive.cool_down": 0.0})
+CHECKED = apply(FROM_ANYWHERE, {"sequence.on": True, "sequence.period": 0.25})
+STOPPING = apply(CHECKED, {"sequence.protective_stop": True})
 AT_ONCE = apply(SHORT, {"activation.period": 0.0})
+
+TRIED = ticks_of(15) + ticks_of(40, held=True)
+CHECKED_SITUATIONS = {
+    "sequence": TRIED,
+    "sequence, let go": [*TRIED, Step(released=True), *ticks_of(3)],
+    "sequence, first tick": TRIED[:26],
+    "sequence, last tick": ticks_of(15) + ticks_of(135, held=True),
+    "sequence from RUN": [
+        *ticks_of(15),
+        Step(load=PROGRAM),
+        Step(commands=(Command.START_PROGRAM,)),
+        *ticks_of(60, held=True),
+    ],
+}
+"""Activation 10 ticks, sequence 125."""
 
 REST = ticks_of(15)
 ON = REST + ticks_of(11, held=True)
@@ -112,7 +130,7 @@ def test_the_situation_is_what_its_name_says(name: str) -> None:
 def test_situations_cover_every_mode_phase_safety_and_law() -> None:
     seen = [agree(stream, SHORT)[-1] for stream, _, _ in SITUATIONS.values()]
     assert {item[0] for item in seen} == set(Mode)
-    assert {item[2] for item in seen} == set(Phase)
+    assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE}
     assert {item[1] for item in seen} == set(Safety) - {Safety.REDUCED}
     assert {item[3] for item in seen} == set(Law)
     assert {item[4] for item in seen} == set(ProgramState)
@@ -134,6 +152,18 @@ def test_options_do_what_the_spec_says(name: str) -> None:
             agree([*stream, step, *AFTER["hold on"]], option)
 
 
+@pytest.mark.parametrize("option", [CHECKED, STOPPING], ids=["checked", "stopping"])
+@pytest.mark.parametrize("name", CHECKED_SITUATIONS)
+def test_every_input_in_the_activation_sequence_does_what_the_spec_says(name: str, option: Settings) -> None:
+    stream = CHECKED_SITUATIONS[name]
+    assert agree(stream, option)[-1][2] is Phase.SEQUENCE
+    assert agree(stream, option)[-1][3] is Law.FREE
+    for step in INPUTS.values():
+        for after in (ticks_of(140), ticks_of(30, held=True) + ticks_of(160)):
+            agree([*stream, step, *after], option)
+        agree([*stream, *[step] * 40, *ticks_of(100)], option)
+
+
 STEPS = st.builds(
     Step,
     held=st.booleans(),
@@ -153,6 +183,7 @@ USUAL = st.sampled_from(
         ticks_of(30),
         ticks_of(11, held=True),
         ticks_of(60, held=True),
+        ticks_of(140, held=True),
         [Step(released=True)],
         ticks_of(60),
         ticks_of(152),
@@ -172,6 +203,6 @@ STREAMS = st.lists(USUAL | ODD, min_size=1, max_size=40).map(lambda parts: [step
 
 
 @hypothesis_settings(max_examples=150, deadline=None)
-@given(stream=STREAMS, option=st.sampled_from([SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE]))
+@given(stream=STREAMS, option=st.sampled_from([SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, CHECKED, CHECKED, STOPPING]))
 def test_random_streams_do_what_the_spec_says(stream: list[Step], option: Settings) -> None:
     agree(REST + stream, option)

@@ -12,14 +12,18 @@ EXAMPLE: Values = {
     "command": "resume_program",
     "from": "FREE_DRIVE",
     "gain": 1.0,
+    "force": 17.6,
     "joint": "shoulder",
     "late": 123.4,
+    "left": 0.4,
     "limit": 10.0,
+    "mass": -1.8,
     "mode": "FREE_DRIVE",
     "name": "free_drive.allowed_from.normal",
     "new": True,
     "old": False,
     "parameter": "joint external torque",
+    "part": "shoulder",
     "period": 3.0,
     "reason": "switch to NORMAL or TEACH first",
     "remaining": 1.5,
@@ -30,10 +34,15 @@ EXAMPLE: Values = {
     "to": "TEACH",
     "unit": "rad/s",
     "value": 12.345,
+    "way": "down",
 }
 
 EFFECTS = {
+    Kind.SEQUENCE_STARTED: Effect.TRY,
     Kind.ENTERED: Effect.ENTER,
+    Kind.REFUSED_LIMIT: Effect.NO_ENTRY,
+    Kind.REFUSED_PAYLOAD: Effect.NO_ENTRY,
+    Kind.SEQUENCE_STOPPED: Effect.PROTECTIVE_STOP,
     Kind.REFUSED_MODE: Effect.NO_ENTRY,
     Kind.REFUSED_SENSORS: Effect.NO_ENTRY,
     Kind.REFUSED_MOVING: Effect.NO_ENTRY,
@@ -62,7 +71,7 @@ def test_effects_are_as_the_spec_says() -> None:
 def test_refusals_and_leavings_start_the_cool_down_except_the_deactivation_signal() -> None:
     """FD-12c."""
     starting = {kind for kind, row in TABLE.items() if row.cool_down}
-    assert starting == {kind for kind, effect in EFFECTS.items() if effect is not Effect.ENTER} - {Kind.DEACTIVATED}
+    assert starting == {kind for kind, effect in EFFECTS.items() if effect not in (Effect.TRY, Effect.ENTER)} - {Kind.DEACTIVATED}
 
 
 def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> None:
@@ -85,7 +94,7 @@ def fields(row: Row) -> set[str]:
 def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
     row = TABLE[kind]
     assert fields(row) <= set(row.keys)
-    assert set(row.keys) - fields(row) <= {"from", "gain"}
+    assert set(row.keys) - fields(row) <= {"from", "gain", "unit", "parameter"}
     assert len(set(row.keys)) == len(row.keys)
 
 
@@ -107,8 +116,8 @@ def test_whatever_acts_on_the_mode_has_guidance(kind: Kind) -> None:
 
 
 def test_limits_are_shown_with_numbers_and_units() -> None:
-    values: Values = {"parameter": "user force", "value": 12.34, "limit": 8.0, "unit": "N"}
-    assert render(Event(Kind.MANIPULATION, 0, values)) == ("The arm is guided", "user force: 12.34 N, limit 8.00 N.")
+    values: Values = {"parameter": "user force", "part": "flange", "value": 12.34, "limit": 8.0, "unit": "N"}
+    assert render(Event(Kind.MANIPULATION, 0, values)) == ("The arm is guided", "user force, flange: 12.34 N, limit 8.00 N.")
     values = {"joint": "elbow", "value": 0.0123, "limit": 0.01, "time": 0.1}
     assert render(Event(Kind.REFUSED_MOVING, 0, values)) == (
         "Free-drive refused: the arm moves",

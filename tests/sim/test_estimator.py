@@ -310,3 +310,16 @@ def test_motor_torque_comes_from_the_current_and_the_motor_constant() -> None:
             true.append(bench.plant.data.qfrc_applied[dofs].copy())
         seen, applied = np.mean(rows[100:], axis=0), np.mean(true[98:-2], axis=0)
         assert np.allclose(seen, applied, rtol=error + 0.002, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    ("mounting", "down"), [(FLOOR, [0.0, 0.0, -G]), (WALL, [G, 0.0, 0.0]), ([np.pi, 0.0, 0.0], [0.0, 0.0, G])]
+)
+def test_gravity_is_given_in_the_axes_of_the_base(mounting: list[float], down: list[float]) -> None:
+    """On a wall z of B is along x of W, so that down is along x of B."""
+    rigid = chain(UR5E)
+    nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    device = Estimator(UR5E, calibration.nominal(UR5E), Dynamics(rigid, rigid.links, nothing, mounting, 2), np.zeros(3))
+    result = device.update(sample(np.zeros(6), np.zeros(6)), 0, "")
+    np.testing.assert_allclose(result.g_B, down, atol=1e-12)
+    assert result.copy().g_B is not result.g_B

@@ -14,7 +14,7 @@ from pendant.events import Event, Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Mode
 from pendant.program import JointMove, LinearMove, Program, Wait
-from pendant.settings import Settings
+from pendant.settings import Settings, apply
 from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.changes import AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
@@ -26,6 +26,7 @@ from tests.sim.arms import PROBE, TWO_KG, UR5E
 from tests.sim.bench import CENTRE, IDLE, NOMINAL, Bench, push
 
 TABLE = Box(name="table", position=[0.6, 0.6, 0.0], size=[0.4, 0.4, 0.1])
+SETTINGS = apply(Settings(), {"activation.period": 0.5, "sequence.period": 0.5})
 SCENARIO = Scenario(seed=11, tool=PROBE, payload_true=TWO_KG, payload_configured=Load(mass=1.8), world=[TABLE])
 
 
@@ -71,7 +72,7 @@ def play(simulation: Simulation) -> tuple[bytes, list[Event], bytes]:
 @functools.cache
 def played(seed: int, mismatch: str = "on") -> tuple[bytes, list[Event], bytes]:
     scenario = msgspec.structs.replace(SCENARIO, seed=seed, mismatch=mismatch)
-    return play(Simulation(UR5E, scenario, Settings()))
+    return play(Simulation(UR5E, scenario, SETTINGS))
 
 
 def test_the_script_does_what_it_is_for() -> None:
@@ -82,7 +83,7 @@ def test_the_script_does_what_it_is_for() -> None:
 
 
 def test_the_same_seed_gives_the_same_events_and_angles_bit_for_bit() -> None:
-    events, _, angles = play(Simulation(UR5E, SCENARIO, Settings()))
+    events, _, angles = play(Simulation(UR5E, SCENARIO, SETTINGS))
     assert events == played(11)[0]
     assert angles == played(11)[2]
 
@@ -170,7 +171,7 @@ def test_truth_never_reaches_the_controller(monkeypatch: pytest.MonkeyPatch) -> 
             return real(blinded_arm(arm), blinded_calibration(errors), *rest)
 
         monkeypatch.setattr(sim.simulation, name, blind)
-    simulation = Simulation(UR5E, SCENARIO, Settings())
+    simulation = Simulation(UR5E, SCENARIO, SETTINGS)
     plant = simulation.plant
     sealed = Sealed(plant)
     simulation.plant = sealed  # type: ignore[assignment]
@@ -198,7 +199,7 @@ def test_truth_never_reaches_the_controller(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_the_seal_notices_who_looks() -> None:
-    simulation = Simulation(UR5E, SCENARIO, Settings())
+    simulation = Simulation(UR5E, SCENARIO, SETTINGS)
     simulation.plant = Sealed(simulation.plant)  # type: ignore[assignment]
     with pytest.raises(AssertionError, match="somebody looked at the truth"):
         simulation.tick(IDLE)
@@ -292,7 +293,7 @@ def test_changes_act_on_the_true_arm_and_on_nothing_the_controller_believes() ->
 
 
 def test_a_change_of_an_unknown_joint_or_object_is_an_error() -> None:
-    simulation = Simulation(UR5E, SCENARIO, Settings())
+    simulation = Simulation(UR5E, SCENARIO, SETTINGS)
     with pytest.raises(KeyError, match=r"knee.*there are base, shoulder"):
         simulation.apply(Friction(joint="knee", factor=1.0))
     with pytest.raises(KeyError):

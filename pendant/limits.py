@@ -1,0 +1,86 @@
+"""Values against limits: one engine for every limit of every stage (FD-12a, FD-25)."""
+
+import math
+from typing import NamedTuple
+
+
+class Excess(NamedTuple):
+    """A parameter beyond its limit."""
+
+    parameter: str
+    part: str  # joint or part
+    value: float
+    limit: float
+    unit: str
+
+
+class Monitored(NamedTuple):
+    """A parameter that is being checked, for interfaces to draw against its limit."""
+
+    name: str
+    part: str  # joint or part
+    value: float
+    limit: float
+    unit: str
+
+
+class Gauge:
+    """One limit: a maximum, a minimum or a range, with the time that a value may be beyond it.
+
+    A value equal to its limit does not exceed it; what is not a number does.
+    """
+
+    __slots__ = ("_allowed", "_beyond", "base", "high", "low", "name", "part", "stop", "unit", "value")
+
+    def __init__(
+        self, name: str, unit: str, *, low: float = -math.inf, high: float = math.inf, allowed: int = 0, stop: bool = False
+    ) -> None:
+        """
+        Args:
+            name: of the parameter, for texts.
+            unit: of value and limit.
+            low: smallest value within.
+            high: largest value within.
+            allowed: longest time beyond [ticks].
+            stop: the reaction to it is a stop.
+        """
+        self.name = name
+        self.unit = unit
+        self.low = low
+        self.high = high
+        self.base = high  # as set; `high` may rise and fall with the load
+        self.stop = stop
+        self.value = 0.0
+        self.part = ""
+        self._allowed = allowed
+        self._beyond = 0  # ticks in a row beyond
+
+    def judge(self, value: float, part: str) -> bool:
+        """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed."""
+        self.value = value
+        self.part = part
+        if self.low <= value <= self.high:
+            self._beyond = 0
+            return False
+        self._beyond += 1
+        return self._beyond > self._allowed
+
+    @property
+    def limit(self) -> float:
+        """The side that the value is nearer to exceed, or exceeds."""
+        return self.low if self.value - self.low < self.high - self.value else self.high
+
+    @property
+    def excess(self) -> Excess:
+        """The last value and its limit, as a fact."""
+        return Excess(self.name, self.part, self.value, self.limit, self.unit)
+
+    @property
+    def monitored(self) -> Monitored:
+        """The last value and its limit, to draw."""
+        return Monitored(self.name, self.part, self.value, self.limit, self.unit)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self.name, self.low, self.high, self.stop, self.value, self.part, self._allowed, self._beyond)

@@ -1,0 +1,178 @@
+"""The parameters that limits bound: how each is read from what the controller knows in one tick (FD-9, FD-13, FD-18)."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from pendant.estimate import Estimate
+from pendant.limits import Gauge, Monitored
+from pendant.residual import Split
+from pendant.settings import Limit, Section, ticks
+
+ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Reference(NamedTuple):
+    """What held when a stage or a period began."""
+
+    position: tuple[float, ...]  # of the flange in B [m]
+    wrench: tuple[float, ...]  # F_user [N, N·m]
+    torques: tuple[float, ...]  # tau_ext [N·m]
+
+
+class View(NamedTuple):
+    """What parameters are read from."""
+
+    estimate: Estimate
+    since: Reference
+    split: Split | None  # of the user's wrench; None: there is no flange sensor to go by (FD-3a)
+    joints: tuple[str, ...]
+    scale: tuple[float, ...]  # of the joint torque limits, for each joint
+    share: float  # of a joint's load torque by which its limit rises
+
+
+Reader = Callable[[View, Gauge], tuple[float, str]]
+
+
+def _size(x: float, y: float, z: float) -> float:
+    return math.sqrt(x * x + y * y + z * z)
+
+
+def _flange_displacement(view: View, _: Gauge) -> tuple[float, str]:
+    x, y, z = view.estimate.p_BF.tolist()
+    x0, y0, z0 = view.since.position
+    return _size(x - x0, y - y0, z - z0), "flange"
+
+
+def _flange_speed(view: View, _: Gauge) -> tuple[float, str]:
+    x, y, z = view.estimate.v_F.tolist()[:3]
+    return _size(x, y, z), "flange"
+
+
+def _flange_acceleration(view: View, _: Gauge) -> tuple[float, str]:
+    """What the accelerometer feels beyond gravity."""
+    x, y, z = view.estimate.a_F.tolist()
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = view.estimate.R_BF.tolist()
+    gx, gy, gz = view.estimate.g_B.tolist()
+    return _size(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz), "flange"
+
+
+def _tcp_speed(view: View, _: Gauge) -> tuple[float, str]:
+    return view.estimate.v_tcp, "tcp"
+
+
+def _elbow_speed(view: View, _: Gauge) -> tuple[float, str]:
+    return view.estimate.v_elbow, "elbow"
+
+
+def _joint_speed(view: View, _: Gauge) -> tuple[float, str]:
+    speeds = [abs(value) for value in view.estimate.qd.tolist()]
+    fastest = max(speeds)
+    return fastest, view.joints[speeds.index(fastest)]
+
+
+def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+    """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
+    worst, part, high, value = -1.0, "", 0.0, 0.0
+    base = gauge.base
+    loads = view.estimate.tau_J.tolist()
+    for joint, torque in enumerate(view.estimate.tau_ext.tolist()):
+        limit = base * view.scale[joint] + view.share * abs(loads[joint])
+        size = abs(torque - view.since.torques[joint])
+        if size > worst * limit:
+            worst, part, high, value = size / limit, view.joints[joint], limit, size
+    gauge.high = high
+    return value, part
+
+
+def _payload_force(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).payload_force, "flange"
+
+
+def _payload_torque(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).payload_torque, "flange"
+
+
+def _user_force(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).user_force, "flange"
+
+
+def _user_torque(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).user_torque, "flange"
+
+
+def _of(view: View) -> Split:
+    assert view.split is not None
+    return view.split
+
+
+class Parameter(NamedTuple):
+    """How a parameter is called and read, and what it needs."""
+
+    text: str
+    unit: str
+    read: Reader
+    wrench: bool = False  # needs the flange's force/torque sensor
+    acceleration: bool = False  # needs the flange's accelerometer
+    signed: bool = False  # its limit is a range around zero
+
+
+PARAMETERS: dict[str, Parameter] = {
+    "flange_displacement": Parameter("flange displacement", "m", _flange_displacement),
+    "flange_speed": Parameter("flange speed", "m/s", _flange_speed),
+    "flange_acceleration": Parameter("flange acceleration", "m/s²", _flange_acceleration, acceleration=True),
+    "tcp_speed": Parameter("tcp speed", "m/s", _tcp_speed),
+    "elbow_speed": Parameter("elbow speed", "m/s", _elbow_speed),
+    "joint_speed": Parameter("joint speed", "rad/s", _joint_speed),
+    "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
+    "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
+    "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),
+    "user_force": Parameter("user force", "N", _user_force, wrench=True),
+    "user_torque": Parameter("user torque", "N·m", _user_torque, wrench=True),
+}
+"""By the name of its limit in the settings."""
+
+
+class Monitor:
+    """All limits of one stage that are switched on."""
+
+    __slots__ = ("_gauges",)
+
+    def __init__(self, limits: Section) -> None:
+        """`limits`: a section of `pendant.settings.Limits`."""
+        self._gauges: list[tuple[Parameter, Gauge]] = []
+        for name, parameter in PARAMETERS.items():
+            limit = getattr(limits, name, None)
+            if isinstance(limit, Limit) and limit.on:
+                stop = bool(getattr(limit, "stop", False))
+                low = -limit.max if parameter.signed else -math.inf
+                gauge = Gauge(parameter.text, parameter.unit, low=low, high=limit.max, allowed=ticks(limit.time), stop=stop)
+                self._gauges.append((parameter, gauge))
+
+    def step(self, view: View) -> list[Gauge]:
+        """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
+        beyond: list[Gauge] = []
+        no_wrench = view.split is None
+        no_acceleration = not view.estimate.acceleration_valid
+        for parameter, gauge in self._gauges:
+            if (no_wrench and parameter.wrench) or (no_acceleration and parameter.acceleration):
+                continue
+            value, part = parameter.read(view, gauge)
+            if gauge.judge(value, part):
+                beyond.append(gauge)
+        return beyond
+
+    def monitored(self) -> tuple[Monitored, ...]:
+        """The values of the last step against their limits; without those that could not be read."""
+        return tuple([gauge.monitored for _, gauge in self._gauges if gauge.part])
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return tuple([gauge.memory for _, gauge in self._gauges])
+
+
+def reference(estimate: Estimate, use_wrench: bool) -> Reference:
+    """What is stored when a period begins."""
+    wrench = tuple(estimate.F_user.tolist()) if use_wrench else ZEROS
+    return Reference(tuple(estimate.p_BF.tolist()), wrench, tuple(estimate.tau_ext.tolist()))

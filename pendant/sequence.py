@@ -1,0 +1,139 @@
+"""The activation sequence (FD-9 to FD-12): the arm is freed for a while, to see whether it stays and nothing pulls at it."""
+
+from typing import NamedTuple
+
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind, Values
+from pendant.limits import Gauge, Monitored
+from pendant.modes import TICK
+from pendant.parameters import ZEROS, Monitor, Reference, View
+from pendant.residual import Vector, mass_error, split, upward
+from pendant.settings import Settings
+from pendant.watch import WrenchMean, joints_ok
+
+JOINTS_SENSED = "joint encoders and motor currents"
+FORCE_SENSED = "flange force sensor"
+ACCELERATION_SENSED = "flange accelerometer"
+
+PAYLOAD_LIKE = frozenset({"payload-like force", "payload-like torque"})
+
+
+class Seen(NamedTuple):
+    """What one tick brings to the sequence."""
+
+    estimate: Estimate
+    wrench_ok: bool
+    mean: WrenchMean
+
+
+class Sequence:
+    """One run of it, from its first tick on."""
+
+    __slots__ = ("_acceleration", "_joints", "_monitor", "_scale", "_share", "_since", "_start", "_up", "_wrench")
+
+    def __init__(self, seen: Seen, settings: Settings, joints: tuple[str, ...], rated: tuple[float, ...]) -> None:
+        """
+        Args:
+            seen: the tick in which it starts; its joint values are finite.
+            settings: as they are now; they stay so to the end of the sequence.
+            joints: names, base to flange.
+            rated: torque of each joint [N·m].
+        """
+        limits = settings.limits.activation
+        estimate = seen.estimate
+        self._monitor = Monitor(limits)
+        self._joints = joints
+        self._scale = rated
+        self._share = limits.load_share
+        # Torques are judged as they are, not as changes: what was wrong before is what is looked for.
+        self._since = Reference(tuple(estimate.p_BF.tolist()), ZEROS, (0.0,) * len(joints))
+        self._wrench = seen.wrench_ok
+        self._acceleration = estimate.acceleration_valid
+        self._up: Vector = upward(estimate.g_B.tolist())
+        self._start = estimate.tick
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._since, self._wrench, self._acceleration, self._up, self._start, self._share, self._monitor.memory)
+
+    def missing(self, seen: Seen) -> str:
+        """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
+        if not joints_ok(seen.estimate):
+            return JOINTS_SENSED
+        if self._wrench and not seen.wrench_ok:
+            return FORCE_SENSED
+        if self._acceleration and not seen.estimate.acceleration_valid:
+            return ACCELERATION_SENSED
+        return ""
+
+    def check(self, seen: Seen) -> list[Gauge]:
+        """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
+        parts = split(seen.mean.mean(), self._up) if self._wrench else None
+        return self._monitor.step(View(seen.estimate, self._since, parts, self._joints, self._scale, self._share))
+
+    def monitored(self) -> tuple[Monitored, ...]:
+        """What was checked last."""
+        return self._monitor.monitored()
+
+    def reasons(self, beyond: list[Gauge], seen: Seen, settings: Settings) -> list[Event]:
+        """Every parameter that prevented entry (FD-11), then the refusal itself (FD-10)."""
+        tick = seen.estimate.tick
+        after = (tick - self._start) * TICK
+        events: list[Event] = []
+        for gauge in beyond:
+            values: Values = {**gauge.excess._asdict(), "time": after}
+            events.append(Event(Kind.ENTRY_PREVENTED, tick, values))
+        gauge = next((gauge for gauge in beyond if gauge.name in PAYLOAD_LIKE), beyond[0])
+        excess = gauge.excess
+        if settings.sequence.protective_stop:
+            events.append(Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict())))
+        elif gauge.name in PAYLOAD_LIKE:
+            force = split(seen.mean.mean(), self._up).payload_force
+            values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
+            events.append(Event(Kind.REFUSED_PAYLOAD, tick, {**values, "parameter": excess.parameter}))
+        else:
+            events.append(Event(Kind.REFUSED_LIMIT, tick, dict(excess._asdict())))
+        return events
+
+
+class Verdict:
+    """Payload or push: what was refused as either is told apart by what stays when the user lets go (FD-11, FD-22)."""
+
+    __slots__ = ("_force", "_up", "waiting")
+
+    GONE = 0.5  # share of the force below which it counts as gone
+    SAME = 1.5  # a force that stayed within so much is the same [N]
+
+    def __init__(self) -> None:
+        self.waiting = False
+        self._force = 0.0
+        self._up: Vector = (0.0, 0.0, 1.0)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self.waiting, self._force, self._up)
+
+    def begin(self, seen: Seen) -> None:
+        """A refusal that may be payload or push."""
+        self._up = upward(seen.estimate.g_B.tolist())
+        self._force = split(seen.mean.mean(), self._up).payload_force
+        self.waiting = True
+
+    def step(self, seen: Seen, last: bool) -> list[Event]:
+        """One tick of the cool-down, or its `last`."""
+        if not seen.wrench_ok:
+            self.waiting = False
+            return []
+        tick = seen.estimate.tick
+        force = split(seen.mean.mean(), self._up).payload_force
+        if abs(force) < self.GONE * abs(self._force):
+            self.waiting = False
+            return [Event(Kind.RESIDUAL_GONE, tick, {"force": abs(self._force), "left": abs(force)})]
+        if not last:
+            return []
+        self.waiting = False
+        if abs(force - self._force) > self.SAME:
+            return []
+        return [Event(Kind.RESIDUAL_STAYED, tick, {"force": abs(force), "mass": mass_error(force)})]

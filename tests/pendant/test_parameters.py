@@ -1,0 +1,119 @@
+"""How every parameter is read, against numpy."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pendant.limits import Gauge
+from pendant.parameters import PARAMETERS, ZEROS, Monitor, Reference, View, reference
+from pendant.residual import split
+from pendant.settings import Limit, Section, Settings
+from tests.pendant.estimates import estimate
+from tests.pendant.test_settings import LIMITS
+
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
+RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
+
+
+def view(value, since: Reference | None = None, scale: tuple[float, ...] = RATED, share: float = 0.0) -> View:
+    parts = split(value.F_user.tolist(), (0.0, 0.0, 1.0))
+    return View(value, since or Reference((0.0,) * 3, ZEROS, (0.0,) * 6), parts, JOINTS, scale, share)
+
+
+def test_every_limit_of_every_stage_is_of_a_parameter() -> None:
+    for stage, parameters in LIMITS.items():
+        assert set(parameters) <= set(PARAMETERS), stage
+    assert set(PARAMETERS) == set().union(*LIMITS.values())
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_sizes(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    value = estimate(v_tcp=0.7, v_elbow=0.3)
+    value.p_BF, value.a_F, value.g_B = rng.normal(size=(3, 3))
+    value.v_F, value.qd, value.F_user = rng.normal(size=(3, 6))
+    value.R_BF = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    start = rng.normal(size=3)
+    since = Reference(tuple(start), ZEROS, (0.0,) * 6)
+    fastest = int(np.abs(value.qd).argmax())
+    expected = {
+        "flange_displacement": (np.linalg.norm(value.p_BF - start), "flange"),
+        "flange_speed": (np.linalg.norm(value.v_F[:3]), "flange"),
+        "flange_acceleration": (np.linalg.norm(value.R_BF @ value.a_F + value.g_B), "flange"),
+        "tcp_speed": (0.7, "tcp"),
+        "elbow_speed": (0.3, "elbow"),
+        "joint_speed": (abs(value.qd[fastest]), JOINTS[fastest]),
+        "payload_force": (value.F_user[2], "flange"),
+        "payload_torque": (math.hypot(*value.F_user[3:5]), "flange"),
+        "user_force": (math.hypot(*value.F_user[:2]), "flange"),
+        "user_torque": (abs(value.F_user[5]), "flange"),
+    }
+    for name, (size, part) in expected.items():
+        found, where = PARAMETERS[name].read(view(value, since), Gauge(name, ""))
+        assert found == pytest.approx(size), name
+        assert where == part, name
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_joint_nearest_to_its_own_limit_counts(seed: int) -> None:
+    """The limit is a share of the rated torque, and rises with the load."""
+    rng = np.random.default_rng(seed)
+    value = estimate()
+    value.tau_ext, value.tau_J = rng.normal(0.0, 5.0, (2, 6))
+    before = rng.normal(0.0, 2.0, 6)
+    since = Reference((0.0,) * 3, ZEROS, tuple(before))
+    gauge = Gauge("joint external torque", "N·m", high=0.04)
+    size, part = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), gauge)
+    limits = 0.04 * np.array(RATED) + 0.25 * np.abs(value.tau_J)
+    worst = int((np.abs(value.tau_ext - before) / limits).argmax())
+    assert part == JOINTS[worst]
+    assert size == pytest.approx(abs(value.tau_ext[worst] - before[worst]))
+    assert gauge.high == pytest.approx(limits[worst])
+    PARAMETERS["joint_torque"].read(view(estimate(), since), gauge)
+    assert gauge.base == 0.04
+
+
+def test_nothing_at_all_is_within_its_limit() -> None:
+    gauge = Gauge("joint external torque", "N·m", high=0.04)
+    assert PARAMETERS["joint_torque"].read(view(estimate()), gauge) == (0.0, "base")
+
+
+@pytest.mark.parametrize("stage", LIMITS)
+def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
+    section = getattr(Settings().limits, stage)
+    assert isinstance(section, Section)
+    monitor = Monitor(section)
+    assert monitor.step(view(estimate())) == []
+    names = [PARAMETERS[name].text for name in PARAMETERS if name in LIMITS[stage]]
+    assert [item.name for item in monitor.monitored()] == names
+    blind = Monitor(section)
+    value = estimate(acceleration=90.0, force=95.0, torque=15.0, acceleration_valid=False)
+    assert blind.step(view(value)._replace(split=None)) == []
+    sensed = {PARAMETERS[name].text for name in PARAMETERS if PARAMETERS[name].wrench or PARAMETERS[name].acceleration}
+    assert [item.name for item in blind.monitored()] == [name for name in names if name not in sensed]
+    seeing = Monitor(section)
+    value.acceleration_valid = True
+    for _ in range(51):
+        beyond = seeing.step(view(value))
+    assert {gauge.name for gauge in beyond} >= {"flange acceleration", "user force"}
+
+
+def test_limits_carry_reaction_and_time() -> None:
+    class Few(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+        payload_force: Limit = Limit(max=5.0, time=0.004)
+        user_force: Limit = Limit(max=5.0, on=False)
+
+    monitor = Monitor(Few())
+    heavy = view(estimate(force=[50.0, 0.0, -5.1]))
+    assert [len(monitor.step(heavy)) for _ in range(3)] == [0, 0, 1]
+    (shown,) = monitor.monitored()
+    assert (shown.value, shown.limit) == (-5.1, -5.0)
+    assert monitor.memory != Monitor(Few()).memory
+
+
+def test_a_reference_is_what_is_so_now() -> None:
+    value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    torques = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    assert reference(value, use_wrench=True) == Reference((1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques)
+    assert reference(value, use_wrench=False) == Reference((1.0, 2.0, 3.0), ZEROS, torques)
