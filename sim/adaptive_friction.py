@@ -74,10 +74,21 @@ class AdaptiveFriction:
             temperature: measured (n,) [°C].
             free: no contact, so that the surplus is friction.
         """
-        warmth = np.maximum(1.0 + self._per_kelvin * (temperature - self._reference), 0.2)
-        _learn(speed, surplus, tau_dyn, tau_J, warmth, free, self.terms, self.covariance, self._walk, self._ceiling, self._noise)
-        _evaluate(speed, tau_J, warmth, self.terms, self.covariance, self.total, self.deviation)
-        self.warmth = warmth
+        _warm(temperature, self._reference, self._per_kelvin, self.warmth)
+        _learn(
+            speed,
+            surplus,
+            tau_dyn,
+            tau_J,
+            self.warmth,
+            free,
+            self.terms,
+            self.covariance,
+            self._walk,
+            self._ceiling,
+            self._noise,
+        )
+        _evaluate(speed, tau_J, self.warmth, self.terms, self.covariance, self.total, self.deviation)
 
     def at(self, speed: Array, tau_J: Array) -> Array:
         """Friction (n,) [N·m] of both sides at another speed and load, at the last temperature."""
@@ -85,20 +96,11 @@ class AdaptiveFriction:
         _evaluate(speed, tau_J, self.warmth, self.terms, self.covariance, total, deviation)
         return total
 
-    @property
-    def input_side(self) -> Array:
-        """Friction torque of the input side (n,) [N·m], with the sign of the speed."""
-        return (1.0 - self.output_share) * self.total
 
-    @property
-    def output_side(self) -> Array:
-        """Friction torque of the output side (n,) [N·m]."""
-        return self.output_share * self.total
-
-    @property
-    def breakaway(self) -> Array:
-        """What a standing joint may hold by friction (n,) [N·m]."""
-        return self.terms[:, 0] * self.warmth
+@numba.njit(cache=True)
+def _warm(temperature, reference, per_kelvin, out) -> None:
+    for i in range(out.size):
+        out[i] = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
 
 
 @numba.njit(cache=True)

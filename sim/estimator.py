@@ -55,6 +55,7 @@ class Estimator:
         self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
         self.friction, self.transmission = AdaptiveFriction(arm), TransmissionTorque(arm)
         self._use = np.ones(len(WAYS), dtype=bool)
+        self._torques = np.zeros((4, n))
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
@@ -139,19 +140,35 @@ class Estimator:
         friction, transmission, motor = self.friction, self.transmission, self._theta
         # The motor's speed stands for the joint's: it is far less noisy, and differs by the deflection's rate only.
         tau_dyn = self._dynamics.inverse(self.q, motor[1], motor[2])
-        spent = self.tau_m - self._rotor * motor[2]
+        surplus, model, motor_side, stiction = self._torques
+        _surplus(self.tau_m, self._rotor, motor, tau_dyn, surplus)
         free = sample.joints_valid and not transmission.contact
-        friction.learn(motor[1], spent - tau_dyn, tau_dyn, transmission.fused, sample.temperature, free)
-        standing = np.abs(motor[1]) < GATE
-        transmission.update(
-            tau_dyn + friction.output_side,
-            self.tau_J,
-            spent - friction.input_side,
-            friction.deviation,
-            np.where(standing, friction.breakaway, 0.0),
-            not standing.all(),
-            self._use,
+        friction.learn(motor[1], surplus, tau_dyn, transmission.fused, sample.temperature, free)
+        share = friction.output_share
+        moving = _sides(
+            motor, tau_dyn, surplus, friction.total, share, friction.terms, friction.warmth, model, motor_side, stiction
         )
+        transmission.update(model, self.tau_J, motor_side, friction.deviation, stiction, moving, self._use)
+
+
+@numba.njit(cache=True)
+def _surplus(tau_m, rotor, motor, tau_dyn, surplus) -> None:
+    """What the motor spends beyond the rotor's inertia and the rigid model."""
+    for i in range(surplus.size):
+        surplus[i] = tau_m[i] - rotor[i] * motor[2, i] - tau_dyn[i]
+
+
+@numba.njit(cache=True)
+def _sides(motor, tau_dyn, surplus, total, share, terms, warmth, model, motor_side, stiction) -> bool:
+    """Transmission torque seen from the links and from the motor, what stiction may hide, and whether any joint moves."""
+    moving = False
+    for i in range(model.size):
+        model[i] = tau_dyn[i] + share * total[i]
+        motor_side[i] = surplus[i] + tau_dyn[i] - (1.0 - share) * total[i]
+        stands = abs(motor[1, i]) < GATE
+        stiction[i] = terms[i, 0] * warmth[i] if stands else 0.0
+        moving = moving or not stands
+    return moving
 
 
 @numba.njit(cache=True)

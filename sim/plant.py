@@ -15,7 +15,7 @@ from sim.friction import Friction
 from sim.model import SENSORS, Step, build
 from sim.objects import SNAP_REST, SNAP_SLIP, set_contact_stiffness
 from sim.scenario import Load, Moving, Scenario, SnapFit, TwoFrictions
-from sim.touch import Pull, Touch
+from sim.touch import ZERO, Pull, Touch, Triple
 
 Array = NDArray[np.float64]
 
@@ -77,6 +77,7 @@ class Plant:
         self.fallen: Array | None = None
         self._fall_speed = np.zeros(3)
         self._pushed: set[int] = set()
+        self._six = np.empty(6)
         self.tick = 0
         self._place(np.array(scenario.posture if scenario.posture is not None else arm.chain.home))
 
@@ -167,29 +168,35 @@ class Plant:
         seen = []
         for touch in touches:
             body = self._parts[touch.part]
-            point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ touch.point
+            point = _point(data.xpos, data.xmat, body, _floats(touch.point))
             if isinstance(touch, Pull):
-                force, torque = self._hand_force(touch, body, point), np.zeros(3)
+                force, torque = self._hand_force(touch, body, point), ZERO
             else:
-                force, torque = np.array(touch.force), np.array(touch.torque)
-            data.xfrc_applied[body, :3] += force
-            data.xfrc_applied[body, 3:] += torque + np.cross(point - data.xipos[body], force)
+                force, torque = _floats(touch.force), _floats(touch.torque)
+            _push(data.xfrc_applied, data.xipos, body, point, force, torque)
             self._pushed.add(body)
-            seen.append((touch.part, tuple(point.tolist()), tuple(force.tolist()), tuple(torque.tolist())))
+            seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
 
-    def _hand_force(self, pull: Pull, body: int, point: Array) -> Array:
+    def _hand_force(self, pull: Pull, body: int, point: Triple) -> Triple:
         """Spring and damper of the virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
-        speed = self.velocity(body, point)
-        force = HAND_STIFFNESS * (np.array(pull.target) - point) - HAND_DAMPING * speed
-        size = math.sqrt(float(force @ force))
-        return force * (pull.cap / size) if size > pull.cap else force
+        vx, vy, vz = self._velocity(body, point)
+        (x, y, z), (px, py, pz) = pull.target, point
+        fx = HAND_STIFFNESS * (x - px) - HAND_DAMPING * vx
+        fy = HAND_STIFFNESS * (y - py) - HAND_DAMPING * vy
+        fz = HAND_STIFFNESS * (z - pz) - HAND_DAMPING * vz
+        size = math.sqrt(fx * fx + fy * fy + fz * fz)
+        share = pull.cap / size if size > pull.cap else 1.0
+        return fx * share, fy * share, fz * share
+
+    def _velocity(self, body: int, point: Triple) -> Triple:
+        """True linear velocity in W of a point of a MuJoCo body [m/s]."""
+        mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_BODY, body, self._six, 0)
+        return _speed_at(self._six, self.data.xpos, body, point)
 
     def velocity(self, body: int, point: Array) -> Array:
-        """True linear velocity (3,) in W of a point of a MuJoCo body [m/s]."""
-        six = np.empty(6)
-        mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_BODY, body, six, 0)
-        return np.asarray(six[3:] + np.cross(six[:3], point - self.data.xpos[body]), dtype=np.float64)
+        """True linear velocity (3,) in W of a point (3,) of a MuJoCo body [m/s]."""
+        return np.array(self._velocity(body, _floats(point)))
 
     def _move_world(self) -> None:
         """Drive moving objects, let snap-fits go, choose the friction under the tool: what objects need once a tick."""
@@ -285,6 +292,45 @@ class Plant:
 
 
 # Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
+
+
+def _floats(three: Sequence[float] | Array) -> Triple:
+    x, y, z = three
+    return float(x), float(y), float(z)
+
+
+@numba.njit(cache=True)
+def _point(xpos, xmat, body, point):
+    p, R = xpos[body], xmat[body]
+    x, y, z = point
+    return (
+        p[0] + R[0] * x + R[1] * y + R[2] * z,
+        p[1] + R[3] * x + R[4] * y + R[5] * z,
+        p[2] + R[6] * x + R[7] * y + R[8] * z,
+    )
+
+
+@numba.njit(cache=True)
+def _push(applied, centres, body, point, force, torque) -> None:
+    c, w = centres[body], applied[body]
+    x, y, z = point[0] - c[0], point[1] - c[1], point[2] - c[2]
+    for k in range(3):
+        w[k] += force[k]
+        w[3 + k] += torque[k]
+    w[3] += y * force[2] - z * force[1]
+    w[4] += z * force[0] - x * force[2]
+    w[5] += x * force[1] - y * force[0]
+
+
+@numba.njit(cache=True)
+def _speed_at(six, xpos, body, point):
+    p = xpos[body]
+    x, y, z = point[0] - p[0], point[1] - p[1], point[2] - p[2]
+    return (
+        six[3] + six[1] * z - six[2] * y,
+        six[4] + six[2] * x - six[0] * z,
+        six[5] + six[0] * y - six[1] * x,
+    )
 
 
 @numba.njit(cache=True)

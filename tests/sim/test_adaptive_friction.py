@@ -113,7 +113,6 @@ def test_the_prior_is_the_filed_curve_and_falls_with_temperature() -> None:
     assert np.allclose(friction.total / cold, 1.0 + 10.0 * UR5E.frictions.per_kelvin)
     friction.learn(np.full(6, -0.5), still, still, still, np.full(6, 54.0), False)
     assert (friction.total < 0.0).all()
-    assert np.allclose(friction.input_side + friction.output_side, friction.total)
 
 
 def test_fused_torque_leans_on_what_is_certain() -> None:
