@@ -156,11 +156,11 @@ class Barrier:
         if lies != self._lies and self._lies is not None:
             drift = distance - self._before - _dot(outward, moved)
         self._lies, self._before, self._part = lies, distance, place
-        beyond = self._guard.step(distance, drift)
         exceeded = distance > 0.0
-        near = closeness(distance, border.band)
-        force, consequence, anchored = ORIGIN, Consequence.NONE, False
-        if near > 0.0:
+        near, force, consequence, anchored = 0.0, ORIGIN, _NONE, False
+        if distance > -border.band or exceeded or self._guard.place > 0.0:
+            near = closeness(distance, border.band)
+            beyond = self._guard.step(distance, drift)
             fx, fy, fz = around.user_force
             push = fx * nx + fy * ny + fz * nz
             if self._stage is Stage.OPERATION:
@@ -168,12 +168,12 @@ class Barrier:
                 force = (size * nx, size * ny, size * nz)
             if exceeded:
                 consequence = self._consequence(beyond, push)
-        self._caught = consequence is Consequence.HOLD
+        self._caught = consequence is _HOLD
         if self._anchors:
             assert self._anchor is not None
             safety, redefine = self._constant or self._periods(around)
-            forces = (around.user_force, around.payload_force)
-            anchored = self._anchor.step(Stay(local, outward, near > 0.0, exceeded, moved, *forces, safety, redefine))
+            user, payload = around.user_force, around.payload_force
+            anchored = self._anchor.step(Stay(local, outward, near > 0.0, exceeded, moved, user, payload, safety, redefine))
         return Reading(border, distance, outward, near, exceeded, consequence, force, anchored)
 
     def place(self) -> Place | None:
@@ -189,15 +189,18 @@ class Barrier:
 
     def _measure(self, local: Vector, anchor: Vector, factor: float, reference: Pose) -> tuple[float, Vector]:
         """Distance [m] and its gradient in axes of B."""
-        (x, y, z), (ax, ay, az), (ox, oy, oz) = local, anchor, self._offset
-        point = ((x - ax) / factor - ox, (y - ay) / factor - oy, (z - az) / factor - oz)
-        if self._turn is not None:
-            point = turned_back(self._turn, point)
-        distance, gx, gy, gz = self._field(*point)
+        x, y, z = local
+        ax, ay, az = anchor
+        ox, oy, oz = self._offset
+        x, y, z = (x - ax) / factor - ox, (y - ay) / factor - oy, (z - az) / factor - oz
+        turn = self._turn
+        if turn is not None:
+            x, y, z = turned_back(turn, (x, y, z))
+        distance, gx, gy, gz = self._field(x, y, z)
         sign = self._sign
         outward = (sign * gx, sign * gy, sign * gz)
-        if self._turn is not None:
-            outward = turned(self._turn, outward)
+        if turn is not None:
+            outward = turned(turn, outward)
         if reference.R is not UNTURNED:
             outward = turned(reference.R, outward)
         return sign * factor * distance, outward
@@ -244,6 +247,7 @@ class Barrier:
         return Reading(border, math.inf, ORIGIN, 1.0, True, consequence, ORIGIN, False)
 
 
+_NONE, _HOLD = Consequence.NONE, Consequence.HOLD  # looked up in every tick
 _LEAVING = {Reaction.STAY: Consequence.LEAVE, Reaction.LEAVE: Consequence.LEAVE, Reaction.STOP: Consequence.STOP}
 
 

@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,7 +15,7 @@ from pendant.enclosure import Enclosure, worst
 from pendant.modes import TICK
 from pendant.pose import HERE, ORIGIN, Pose, Quaternion, Vector, rotation
 from pendant.shapes import Box, HalfSpace, Shape, Sphere
-from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall
+from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
 from tests.pendant.test_pose import matrix, quaternions, vectors
 
 BALL = Sphere(radius=0.1)
@@ -399,3 +401,14 @@ def test_any_stream_gives_finite_readings_and_the_same_again(stream: list[tuple[
         for reading in readings:
             assert all(map(math.isfinite, (reading.distance, *reading.outward, *reading.force)))
             assert reading.exceeded == (reading.distance > 0.0)
+
+
+def test_the_walls_of_the_page_are_accepted() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "walls.md").read_text(encoding="utf-8")
+    text = page.split("```json")[1].split("```")[0]
+    borders = msgspec.json.decode(text, type=tuple[AnyBorder, ...])
+    assert len(borders) == 5
+    assert problem(borders, frozenset({"flange"}), frozenset({"base", "world", "cart"})) is None
+    references = {"world": Pose((0.0, 0.0, -0.5)), "cart": Pose((2.0, 0.0, 0.5))}
+    readings = entered(*borders).step(around((0.4, 0.0, 0.5), references=references, reach=0.8))
+    assert [round(reading.distance, 6) for reading in readings] == [-0.1, -0.1, -0.98, -1.3, -0.1]
