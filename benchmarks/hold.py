@@ -81,7 +81,8 @@ def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
 
 def enter(simulation: Simulation) -> bool:
     """Hold the button until free-drive is on, then let go."""
-    for _ in range(520):
+    settings = simulation.settings
+    for _ in range(round(500 * (settings.activation.period + settings.sequence.period)) + 20):
         simulation.tick(HOLD)
     return simulation.tick(RELEASE).mode is Mode.FREE_DRIVE
 

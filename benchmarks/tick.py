@@ -79,7 +79,7 @@ def guided(arm: str, seed: int) -> Scene:
     """The button held, a hand leading the flange round a circle."""
     simulation = Simulation(load_arm(arm), Scenario(seed=seed), Settings())
     held = Inputs(held=frozenset({Button.FREE_DRIVE}))
-    for _ in range(600):
+    for _ in range(1200):
         simulation.tick(Wishes(held, (), ()))
     x, y, z = simulation.plant.poses()[-1, :3].tolist()
 

@@ -20,7 +20,7 @@ from websockets.sync.client import ClientConnection, connect
 PROTOCOL = Subprotocol("viser-v1.1.1")
 HOLD_RATE = 20.0  # of the messages of a held button, and of a drag, as a browser sends them [Hz]
 SLIDER_RATE = 10.0  # of a slider that is being moved [Hz]
-ENTRY = 1.5  # until the held button has brought free-drive [s]
+ENTRY = 2.6  # until the held button and the activation sequence have brought free-drive [s]
 RADIUS, ROUND = 0.06, 5.0  # of the circle on which the cursor leads the arm [m], [s]
 CAMERA = {
     "type": "ViewerCameraMessage",
