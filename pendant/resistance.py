@@ -56,7 +56,7 @@ class Guard:
             drift: how far the wall moved inwards past the part in this tick, by itself [m]; a wall pushes no part.
         """
         if drift > 0.0 and distance > 0.0:
-            self.place += min(drift, distance)
+            self.place += drift
         if distance < self.place:
             self.place = max(distance, 0.0)
             if distance <= 0.0:

@@ -133,6 +133,7 @@ def test_user_moves_once_pushed_away_from_the_wall_by_the_step() -> None:
         path(0.1, N),  # nobody
         path(0.1, N, payload=DOWN),
         path(0.1, N, user=(0.0, 0.0, 7.9)),  # too weak
+        path(0.1, N, user=(9.0, 0.0, 0.0)),  # pushed along it
         path(0.1, N, user=(0.0, 0.0, -30.0)),  # pushed to the wall, whatever moved it
         path(-0.1, N, user=PUSH),  # towards the wall
         path(0.1, N, user=PUSH, outward=(0.0, 0.0, 1.0)),

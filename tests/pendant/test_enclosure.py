@@ -185,7 +185,8 @@ def test_a_caught_part_stays_until_pushed_back_and_again_when_let_go() -> None:
     assert barrier.step(around(out, user=(-5.0, 0.0, 0.0))).consequence is none
 
 
-def test_a_part_that_starts_outside_is_neither_trapped_nor_kicked() -> None:
+@pytest.mark.parametrize("inside", [0.01, 0.5])
+def test_a_part_that_starts_outside_is_neither_trapped_nor_kicked(inside: float) -> None:
     for reaction in Reaction:
         barrier = Barrier(Area(name="a", shape=FLOOR, reaction=reaction), Stage.OPERATION)
         for z in (-0.1, -0.1, -0.08, -0.08):  # at rest, and on its way back
@@ -198,7 +199,7 @@ def test_a_part_that_starts_outside_is_neither_trapped_nor_kicked() -> None:
         reading = barrier.step(around((0.0, 0.0, -0.08 - 1.1 * WRONG_WAY)))
         assert reading.consequence is {"stay": Consequence.HOLD, "leave": Consequence.LEAVE, "stop": Consequence.STOP}[reaction]
         # in, and out again: now as any other
-        assert barrier.step(around((0.0, 0.0, 0.01))).consequence is Consequence.NONE
+        assert barrier.step(around((0.0, 0.0, inside))).consequence is Consequence.NONE
         assert barrier.step(around((0.0, 0.0, -0.001))).consequence is not Consequence.NONE
 
 

@@ -78,6 +78,7 @@ BAD = [
     ((*TETRAHEDRON[:2], (2.0, 0.0, 0.0), TETRAHEDRON[3]), SIDES, "faces[0]: its corners lie on a line, allowed: a face with an"),
     ((*TETRAHEDRON[:3], TETRAHEDRON[0]), SIDES, "faces[1]: vertices 3 and 0 are the same point, allowed: an edge with a length"),
     (DENTED, SQUARES, "in front of it"),
+    ((*CORNERS[:7], (0.09999, 0.09999, 0.09999)), SQUARES, "in front of it"),
     ((*CORNERS[:6], (-0.1, 0.1, 0.09), CORNERS[7]), SQUARES, "faces[1]: a corner lies 5 mm off its plane, allowed: a flat face"),
 ]
 

@@ -128,6 +128,25 @@ def test_the_nearest_point_of_an_ellipsoid_from_its_focal_ellipse() -> None:
     assert Ellipsoid(radii=(a, b, 0.2)).field()(0.27, 0.0, 0.0)[0] == pytest.approx(-0.03, abs=1e-12)
 
 
+lengths = st.floats(0.02, 0.6)
+
+
+@given(st.tuples(lengths, lengths, lengths), st.tuples(*[st.floats(0.001, 0.8)] * 3))
+@settings(max_examples=200, deadline=None)
+def test_an_ellipsoid_agrees_with_bisection(radii: Point, point: Point) -> None:
+    a, y = np.array(radii), np.array(point)
+    low, high = -(a.min() ** 2), float(np.linalg.norm(a * y))
+    for _ in range(200):
+        t = 0.5 * (low + high)
+        low, high = (t, high) if np.sum((a * y / (t + a * a)) ** 2) > 1.0 else (low, t)
+    foot = a * a * y / (high + a * a)
+    normal = foot / (a * a)
+    normal /= np.linalg.norm(normal)
+    distance, *gradient = Ellipsoid(radii=radii).field()(*point)
+    assert distance == pytest.approx(float(normal @ (y - foot)), abs=1e-9)
+    assert gradient == pytest.approx(list(normal), abs=1e-8)
+
+
 @pytest.mark.parametrize("edge", [(a * a - b * b) / a for a, b in ((0.3, 0.1), (0.3, 0.29), (10.0, 0.001))])
 def test_an_ellipsoid_at_the_end_of_its_focal_line_where_roots_are_hardest_to_find(edge: float) -> None:
     field = Ellipsoid(radii=(0.3, 0.1, 0.1)).field()
