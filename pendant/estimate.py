@@ -7,6 +7,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+
+def _no_joints() -> Array:
+    return np.zeros(0)
+
+
 GRAVITY = 9.81
 """[m/s²]"""
 
@@ -28,8 +33,8 @@ class Estimate:
     theta: Array  # (n,) motor angle referred to the output [rad]
     theta_d: Array  # (n,) motor speed referred to the output [rad/s]
     tau_m: Array  # (n,) motor torque referred to the output, from the current [N·m]
-    tau_J: Array  # (n,) transmission torque [N·m]
-    tau_ext: Array  # (n,) external torque, from the joints alone [N·m]
+    tau_J: Array  # (n,) transmission torque, fused from the ways in use (AF-3) [N·m]
+    tau_ext: Array  # (n,) external torque, from the joints alone: rigid model minus transmission torque [N·m]
     w_sensor: Array  # (6,) wrench that the flange exerts on what it carries, in F at the flange origin
     F_user: Array  # (6,) the user's wrench on the flange: -(w_sensor - w_expected), axes of B, at the flange origin
     a_F: Array  # (3,) specific force at the flange accelerometer, in F [m/s²]
@@ -41,6 +46,11 @@ class Estimate:
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
+    theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]
+    friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]
+    friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
+    tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
+    touched: bool = False  # the joints feel a contact, so that nothing is learned
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -68,4 +78,9 @@ class Estimate:
             self.move_done,
             self.move_refused,
             self.g_B.copy(),
+            self.theta_dd.copy(),
+            self.friction.copy(),
+            self.friction_deviation.copy(),
+            self.tau_ways.copy(),
+            self.touched,
         )

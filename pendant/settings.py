@@ -171,6 +171,27 @@ class Static(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     time: Annotated[float, _number(0.02, 2.0, "s", "static", "for this long")] = 0.1
 
 
+class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Which terms make the motor torque, and which ways lead to the transmission torque."""
+
+    feed_forward: Annotated[bool, _switch("AF-4", "inertia and speed of a motion are fed forward")] = True
+    friction: Annotated[bool, _switch("AF-7", "the friction estimate helps motor and hand")] = True
+    adaptive: Annotated[bool, _switch("AF-2", "friction is learned while the robot works")] = True
+    torque_feedback: Annotated[bool, _switch("AF-5", "the transmission-torque error is corrected")] = True
+    theta: Annotated[bool, _switch("AF-5", "the motor angle's error is corrected")] = True
+    theta_speed: Annotated[bool, _switch("AF-5", "the motor speed's error is corrected")] = True
+    theta_acceleration: Annotated[bool, _switch("AF-5", "the motor acceleration's error is corrected")] = False
+    q: Annotated[bool, _switch("AF-5", "the output angle's error is integrated")] = True
+    q_speed: Annotated[bool, _switch("AF-5", "the output speed's error is corrected")] = False
+    q_acceleration: Annotated[bool, _switch("AF-5", "the output acceleration's error is corrected")] = False
+    motor_torque: Annotated[bool, _switch("AF-5", "the motor torque's error is corrected")] = False
+    tcp_pose: Annotated[bool, _switch("AF-5", "the tool centre point's error is corrected")] = False
+    tcp_speed: Annotated[bool, _switch("AF-5", "the error of its speed is corrected")] = False
+    from_dynamics: Annotated[bool, _switch("AF-3", "transmission torque from output angle and model")] = True
+    from_deflection: Annotated[bool, _switch("AF-3", "transmission torque from both angles")] = True
+    from_motor: Annotated[bool, _switch("AF-3", "transmission torque from the motor angle and torque")] = True
+
+
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
@@ -181,6 +202,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     button: ButtonUse = ButtonUse()
     limits: Limits = Limits()
     static: Static = Static()
+    joint_control: JointControl = JointControl()
 
 
 def ticks(seconds: float) -> int:

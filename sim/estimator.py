@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
+from pendant.settings import JointControl
 from sim.adaptive_friction import GATE, AdaptiveFriction
 from sim.arm import Arm
 from sim.calibration import Calibration
@@ -15,9 +16,11 @@ from sim.chain import Body
 from sim.dynamics import Dynamics
 from sim.frames import skew
 from sim.sensors import Sample
-from sim.transmission_torque import WAYS, TransmissionTorque
+from sim.transmission_torque import DEFLECTION, DYNAMICS, MOTOR, WAYS, TransmissionTorque
 
 Array = NDArray[np.float64]
+
+SHIPPED = JointControl()
 
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
@@ -54,12 +57,13 @@ class Estimator:
         self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping), *slip)
         self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
         self.friction, self.transmission = AdaptiveFriction(arm), TransmissionTorque(arm)
-        self._use = np.ones(len(WAYS), dtype=bool)
-        self._torques = np.zeros((4, n))
+        self._use: JointControl | None = None
+        self._ways = np.ones(len(WAYS), dtype=bool)
+        self._torques = np.zeros((5, n))
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
-        self.tau_m, self.tau_J, self.tau_ext = np.zeros((3, n))
+        self.tau_m, self.tau_ext = np.zeros((2, n))
         self._started = False
         self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
         self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
@@ -73,8 +77,8 @@ class Estimator:
         about_flange = load.inertia - load.mass * cross @ cross
         self._load = (load.mass, np.array(load.com), about_flange)
 
-    def update(self, sample: Sample, move_done: int, move_refused: str) -> Estimate:
-        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`.
+    def update(self, sample: Sample, move_done: int, move_refused: str, use: JointControl = SHIPPED) -> Estimate:
+        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -89,13 +93,14 @@ class Estimator:
             if self._rest is None:
                 self._rest = sample.theta - sample.q
             measured = (sample.theta, sample.q, sample.current)
-            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self.tau_J)
+            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._torques[4])
             self.q = sample.q
         self._started = sample.joints_valid
         qd = q[1]
-        self.tau_ext = dynamics.inverse(self.q, qd, q[2]) - self.tau_J
+        self._estimate_torques(sample, use)
+        # Accelerations of the slower filter: an external torque that comes a little late serves better than a noisy one.
+        self._external_torque(dynamics.inverse(self.q, qd, q[2]))
         v_elbow = dynamics.elbow_speed()
-        self._learn_friction(sample)
         p, R, self.jacobian = dynamics.update(self.q)
         F_user, v_F = np.zeros(6), np.empty(6)
         v_tcp = _tcp_speed(self.jacobian, qd, R, self._tcp, v_F)
@@ -120,7 +125,7 @@ class Estimator:
             theta[0],
             theta[1],
             self.tau_m,
-            self.tau_J,
+            self.transmission.fused,
             self.tau_ext,
             sample.wrench,
             F_user,
@@ -133,22 +138,38 @@ class Estimator:
             move_done,
             move_refused,
             dynamics.gravity_B,
+            theta[2],
+            self.friction.total,
+            self.friction.deviation,
+            self.transmission.ways,
+            self.transmission.contact,
         )
 
-    def _learn_friction(self, sample: Sample) -> None:
+    def _estimate_torques(self, sample: Sample, use: JointControl) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
         # The motor's speed stands for the joint's: it is far less noisy, and differs by the deflection's rate only.
         tau_dyn = self._dynamics.inverse(self.q, motor[1], motor[2])
-        surplus, model, motor_side, stiction = self._torques
+        surplus, model, motor_side, stiction, deflection = self._torques
+        if use is not self._use:
+            self._use = use
+            self._ways[:] = (use.from_dynamics, use.from_deflection, use.from_motor)
         _surplus(self.tau_m, self._rotor, motor, tau_dyn, surplus)
-        free = sample.joints_valid and not transmission.contact
+        free = sample.joints_valid and use.adaptive and not transmission.contact
         friction.learn(motor[1], surplus, tau_dyn, transmission.fused, sample.temperature, free)
         share = friction.output_share
         moving = _sides(
             motor, tau_dyn, surplus, friction.total, share, friction.terms, friction.warmth, model, motor_side, stiction
         )
-        transmission.update(model, self.tau_J, motor_side, friction.deviation, stiction, moving, self._use)
+        transmission.update(model, deflection, motor_side, friction.deviation, stiction, moving, self._ways)
+
+    def _external_torque(self, tau_dyn: Array) -> None:
+        """What the rigid model does not explain; unknown, and then zero, without the model or any other way."""
+        for way in (DEFLECTION, MOTOR):
+            if self._ways[DYNAMICS] and self._ways[way]:
+                np.subtract(tau_dyn, self.transmission.ways[way], out=self.tau_ext)
+                return
+        self.tau_ext[:] = 0.0
 
 
 @numba.njit(cache=True)

@@ -23,6 +23,7 @@ HAND_STIFFNESS = 800.0  # of the virtual hand [N/m]
 HAND_DAMPING = 40.0  # of the virtual hand [N·s/m]
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
 GRAVITY = 9.81
+SIGN_SPEED = 0.01  # [rad/s]
 
 
 class Plant:
@@ -267,6 +268,15 @@ class Plant:
         """Put the world object `name` at `position` (3,) in W [m]."""
         body = self.model.body(f"object/{name}").id
         self.model.body_pos[body] = position
+
+    def sliding_friction(self) -> Array:
+        """True friction (n,) of both sides at the present speeds, with their signs [N·m].
+
+        The sign of a speed is blurred over some mrad/s: a joint at rest slides neither way.
+        """
+        friction = self.friction
+        sign = np.tanh(self.theta_d / SIGN_SPEED)
+        return (self.friction_in + friction.output_coulomb) * sign + friction.output_viscous * self.qd
 
     def poses(self) -> Array:
         """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""

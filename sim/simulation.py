@@ -76,9 +76,10 @@ class Simulation:
         for change in wishes.changes:
             self.apply(change)
         sample = self.sensors.read(self.plant, self._current)
-        estimate = self.estimator.update(sample, self.controller.move_done, self.controller.refusal)
+        use, references = self.supervisor.settings.joint_control, self.controller.references
+        estimate = self.estimator.update(sample, references.move_done, references.refusal, use)
         decision = self.supervisor.step(estimate, wishes.inputs)
-        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction)
+        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
         self.plant.advance(self._current * self._motor, wishes.touches)
         self._estimate, self._decision = estimate, decision
         return decision
@@ -136,4 +137,7 @@ class Simulation:
             plant.load.mass,
             self.configured.mass,
             plant.touched,
+            plant.sliding_friction(),
+            plant.tau_J.copy(),
+            plant.temperature.copy(),
         )

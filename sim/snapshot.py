@@ -1,12 +1,16 @@
 """What a picture or a log of one tick needs: copied values, safe to read from any thread."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+
+
+def _nothing() -> NDArray[np.float64]:
+    return np.zeros(0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,3 +27,6 @@ class Snapshot:
     configured_mass: float  # what the controller believes [kg]
     touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
     # each: part, point in W [m], force in W [N], torque in W [N·m]
+    truth_friction: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of both sides, with the speed's sign [N·m]
+    truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
+    truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]

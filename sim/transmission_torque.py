@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 WAYS = ("dynamics", "deflection", "motor")
 """From q and the rigid model; from theta and q; from theta and the motor torque, with the friction estimate."""
 
+DYNAMICS, DEFLECTION, MOTOR = range(3)
+
 MODEL_FLOOR = 0.008  # what the rigid model misses at least, relative to the torque limit: centres of mass, output friction
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]

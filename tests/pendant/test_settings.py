@@ -71,6 +71,25 @@ for stage, parameters in LIMITS.items():
         EXPECTED[f"limits.{where}.on"] = (True, None, None, "", "FD-25", True)
         if stage == "operation":
             EXPECTED[f"limits.{where}.stop"] = (where in STOPS, None, None, "", "FD-18", True)
+TERMS = {
+    "feed_forward": ("AF-4", True),
+    "friction": ("AF-7", True),
+    "adaptive": ("AF-2", True),
+    "torque_feedback": ("AF-5", True),
+    "theta": ("AF-5", True),
+    "theta_speed": ("AF-5", True),
+    "theta_acceleration": ("AF-5", False),
+    "q": ("AF-5", True),
+    "q_speed": ("AF-5", False),
+    "q_acceleration": ("AF-5", False),
+    "motor_torque": ("AF-5", False),
+    "tcp_pose": ("AF-5", False),
+    "tcp_speed": ("AF-5", False),
+    "from_dynamics": ("AF-3", True),
+    "from_deflection": ("AF-3", True),
+    "from_motor": ("AF-3", True),
+}
+EXPECTED |= {f"joint_control.{name}": (on, None, None, "", ident, True) for name, (ident, on) in TERMS.items()}
 EXPECTED["limits.activation.load_share"] = (0.25, 0.0, 1.0, "", "FD-9", True)
 
 NUMBERS = [row for row in describe() if row.low is not None]

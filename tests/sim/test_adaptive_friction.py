@@ -68,7 +68,7 @@ def test_tracking_is_finer_with_the_estimate_than_without() -> None:
         missed = []
         for tick in range(3500):
             simulation.tick(IDLE)
-            reference = simulation.controller._reference
+            reference = simulation.controller.references.now
             assert reference is not None
             if tick >= 2000:
                 missed.append(simulation.plant.q - reference.q)

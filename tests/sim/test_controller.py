@@ -337,7 +337,10 @@ def test_currents_never_exceed_the_motors_limit_even_when_all_of_it_is_needed() 
         bench.run(0.002, push("flange", (300.0, 300.0, 200.0), (60.0, 60.0, 60.0)))
         worst = np.maximum(worst, np.abs(torque(bench)) / limit)
     assert (worst <= 1.0 + 1e-9).all()
-    assert worst.max() > 0.999, "the limit must have been reached"
+    # The gear's torque limit, and what friction takes at full speed; 3 % of the motor constant nobody knows.
+    useful = np.array(UR5E.limits.torque) + np.array([row[-1] for row in UR5E.frictions.torque])
+    assert (worst * limit <= useful / 0.97).all()
+    assert (worst * limit > 0.97 * useful).any(), "the limit must have been reached"
 
 
 def test_fast_moves_leave_current_to_spare() -> None:

@@ -1,0 +1,148 @@
+"""Feedback controller: corrections of state errors, each with its switch (AF-5)."""
+
+import math
+from collections import deque
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.estimate import Estimate
+from pendant.modes import TICK
+from pendant.settings import JointControl
+from sim.arm import Arm
+from sim.calibration import Calibration
+from sim.dynamics import Dynamics
+from sim.moves import Reference
+from sim.sensors import LATENCY
+
+Array = NDArray[np.float64]
+
+BANDWIDTH = 12.0  # of the position loop round the rotor alone [Hz]
+DAMPING_RATIO = 1.25
+INTEGRAL_TIME = 0.1  # of the output-side integral [s]
+"""With `sim.torque_feedback.SUPPORT` these keep every mode above 6 Hz inside a circle of 0.993 a tick, for link inertias from
+bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and two ticks of delay, sticking or sliding."""
+
+DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
+DELAY = LATENCY + 1
+"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
+
+# The optional terms are gentle: they show their effect without touching the loop's margins.
+OUTPUT_SPEED = 0.05  # of the motor-speed gain
+ACCELERATION = 0.1  # of the rotor's inertia
+MOTOR_TORQUE = 0.1
+TCP_STIFFNESS, TCP_DAMPING = 500.0, 20.0  # [N/m], [N·s/m]
+
+OPTIONAL = ("theta_acceleration", "q_speed", "q_acceleration", "motor_torque", "tcp_pose", "tcp_speed")
+"""Terms that are off as shipped."""
+
+
+class Feedback:
+    """Motor torque from the errors of theta, q, their speeds and accelerations, motor torque, and the tool centre point.
+
+    The integral acts on the output angle: where the arm shall be. It waits inside the dead band, and where the motor's limits
+    are reached (AF-6).
+
+    Attributes:
+        integral: (n,) [N·m].
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+        spring = arm.transmissions
+        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        omega = 2.0 * math.pi * BANDWIDTH
+        stiffness = rotor * omega**2
+        compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness)
+        integral_gain = TICK * stiffness / INTEGRAL_TIME
+        damping = 2.0 * DAMPING_RATIO * rotor * omega
+        self._gains = np.stack([stiffness, damping, compliance, integral_gain])
+        self._rotor, self._damping = rotor, damping
+        self._dead = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
+        self._dynamics, self._tcp = dynamics, tcp
+        self._past: deque[tuple[Reference, Array]] = deque()
+        self._use: JointControl | None = None
+        self._on, self._optional = (True, True, True), False
+        self.integral = np.zeros(arm.n)
+
+    def add(
+        self,
+        reference: Reference,
+        desired: Array,
+        estimate: Estimate,
+        use: JointControl,
+        limited: NDArray[np.bool_],
+        torque: Array,
+        start: Array | None,
+    ) -> None:
+        """Add all corrections to `torque` (n,) [N·m].
+
+        Args:
+            reference: of this tick.
+            desired: transmission torque (n,) [N·m] that it needs; it bends the spring.
+            estimate: of this tick.
+            use: which terms are on.
+            limited: (n,) where the motor gave less than it was asked for, so that the integral waits.
+            torque: (n,) what the other controllers ask for.
+            start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
+                would do at once, so that taking over moves nothing by itself.
+        """
+        if use is not self._use:
+            self._use = use
+            self._on = (use.theta, use.theta_speed, use.q)
+            self._optional = any(getattr(use, name) for name in OPTIONAL)
+        past = self._past
+        if start is not None:
+            past.clear()
+        past.append((reference, desired))
+        then, load = past.popleft() if len(past) > DELAY else past[0]
+        if self._optional:
+            self._add_optional(then, estimate, use, torque)
+        theta, theta_d, q = estimate.theta, estimate.theta_d, estimate.q
+        begin = torque if start is None else start
+        _correct(
+            then.q, then.qd, load, theta, theta_d, q, self._gains, self._on, self._dead, limited,
+            start is not None, begin, self.integral, torque,
+        )  # fmt: skip
+
+    def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
+        wanted = torque.copy()
+        if use.theta_acceleration:
+            torque += ACCELERATION * self._rotor * (then.qdd - estimate.theta_dd)
+        if use.q_speed:
+            torque += OUTPUT_SPEED * self._damping * (then.qd - estimate.qd)
+        if use.q_acceleration:
+            torque += ACCELERATION * self._rotor * (then.qdd - estimate.qdd)
+        if use.motor_torque:
+            torque += MOTOR_TORQUE * (wanted - estimate.tau_m)
+        if use.tcp_pose or use.tcp_speed:
+            self._add_tcp(then, estimate, use, torque)
+
+    def _add_tcp(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
+        p, R, jacobian = self._dynamics.update(then.q)
+        at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, R @ self._tcp).T
+        force = np.zeros(3)
+        if use.tcp_pose:
+            force += TCP_STIFFNESS * (p + R @ self._tcp - estimate.p_BF - estimate.R_BF @ self._tcp)
+        if use.tcp_speed:
+            force += TCP_DAMPING * (at_tcp @ (then.qd - estimate.qd))
+        torque += at_tcp.T @ force
+
+
+@numba.njit(cache=True)
+def _correct(q_ref, qd_ref, load, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, integral, torque) -> None:
+    with_theta, with_speed, with_integral = on
+    for i in range(torque.size):
+        total = torque[i]
+        if with_theta:
+            total += gains[0, i] * (q_ref[i] + gains[2, i] * load[i] - theta[i])
+        if with_speed:
+            total += gains[1, i] * (qd_ref[i] - theta_d[i])
+        if with_integral:
+            if fresh:
+                integral[i] = begin[i] - total
+            error = q_ref[i] - q[i]
+            if abs(error) > dead_band and not limited[i]:
+                integral[i] += gains[3, i] * error
+            total += integral[i]
+        torque[i] = total

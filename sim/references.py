@@ -1,0 +1,100 @@
+"""Reference generator: the posture, stop or move that the tracking laws follow, chosen by the decision."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+from pendant.modes import Law
+from pendant.program import JointMove, LinearMove, Move
+from sim.arm import Arm
+from sim.dynamics import Dynamics
+from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop
+
+Array = NDArray[np.float64]
+
+SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
+STANDING = 0.02  # [rad/s]
+SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
+
+
+class References:
+    """One reference a tick under HOLD, BRAKE and FOLLOW; free-drive has none, and what comes after it begins anew.
+
+    Attributes:
+        now: the last reference, None before the first.
+        fresh: in this tick it began anew, at the arm's own state.
+        driven: it comes from a program, which knows its speed ahead.
+        move_done: id of the last move finished.
+        refusal: why the move of this tick cannot be done, or "".
+    """
+
+    def __init__(self, arm: Arm, dynamics: Dynamics, tcp: Array) -> None:
+        limits = arm.limits
+        self._dynamics, self._tcp = dynamics, tcp
+        self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
+        self._law: Law | None = None
+        self._motion: Motion | None = None
+        self._move: Move | None = None
+        self._settling = 0  # ticks for which a stop's reference still leans towards the arm
+        self._standing = np.zeros(arm.n)
+        self.now: Reference | None = None
+        self.fresh = True
+        self.driven = False
+        self.move_done = 0
+        self.refusal = ""
+
+    def skip(self) -> None:
+        """A tick without a reference: free-drive."""
+        self._law = Law.FREE
+        self.refusal = ""
+
+    def step(self, estimate: Estimate, decision: Decision) -> Reference:
+        """The reference of this tick."""
+        law = decision.law
+        self.refusal = ""
+        self.fresh = self.now is None or self._law is Law.FREE
+        if self.now is None or self._law is Law.FREE:
+            self._stop(estimate.q, estimate.qd)
+        elif law is not Law.FOLLOW and self._law is Law.FOLLOW:
+            self._stop(self.now.q, self.now.qd)
+        elif self._settling and self._motion is not None and self._motion.done:
+            self._motion = self._settle(estimate, self.now)
+        self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
+        if law is Law.FOLLOW and decision.move is not self._move:
+            self._begin(decision.move)
+        self._move = decision.move if law is Law.FOLLOW else None
+        assert self._motion is not None
+        self.now = self._motion.step()
+        if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
+            self.move_done = self._move.id
+        self._law = law
+        return self.now
+
+    def _stop(self, q: Array, qd: Array) -> None:
+        """Come to rest from this motion; one that stood already has nothing to settle."""
+        self._motion = Stop(q, qd, self._limits[1])
+        self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
+
+    def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
+        """After a stop has run out, let its end lean towards where the arm swings about, for a while.
+
+        The arm then keeps the posture it came to, instead of creeping back to where the plan ended.
+        """
+        self._settling -= 1
+        return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing, self._limits[1])
+
+    def _begin(self, move: Move | None) -> None:
+        assert self.now is not None
+        self._settling = 0
+        q = self.now.q
+        try:
+            if isinstance(move, JointMove):
+                self._motion = JointTrajectory(q, move, self._limits)
+            elif isinstance(move, LinearMove):
+                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._limits)
+            else:
+                self._motion = Stop(q, self._standing, self._limits[1])
+        except MoveRefused as refusal:
+            self.refusal = str(refusal)
+            self._motion = Stop(q, self._standing, self._limits[1])

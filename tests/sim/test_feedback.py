@@ -1,0 +1,145 @@
+"""Feedback: each term by its switch, delayed references, the integral and what stops it."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pendant.estimate import Estimate
+from pendant.settings import JointControl
+from sim.feedback import DELAY, Feedback
+from sim.moves import Reference
+from tests.sim.arms import UR5E
+from tests.sim.control import EXACT, N, dynamics, estimate
+
+FREE = np.zeros(N, dtype=bool)
+ZERO = np.zeros(N)
+TERMS = ("theta", "theta_speed", "theta_acceleration", "q", "q_speed", "q_acceleration", "motor_torque", "tcp_pose", "tcp_speed")
+TCP = np.array([0.0, 0.0, 0.1])
+ROTOR = np.array(UR5E.motors.rotor_inertia)
+OMEGA = 2.0 * math.pi * 12.0
+COMPLIANCE = 1.0 / (np.array(UR5E.transmissions.stiffness) + np.array(UR5E.transmissions.hysteresis_stiffness))
+
+
+def only(*names: str) -> JointControl:
+    """These feedback terms and no other."""
+    switches: dict[str, Any] = {name: name in names for name in TERMS}
+    return JointControl(**switches)
+
+
+def resting(q: np.ndarray) -> Reference:
+    return Reference(q, ZERO, ZERO)
+
+
+STANDING = resting(ZERO)
+
+
+def correction(use: JointControl, seen: Estimate, reference: Reference = STANDING, load: np.ndarray = ZERO) -> np.ndarray:
+    """What a fresh feedback adds to nothing."""
+    torque = np.zeros(N)
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, torque, None)
+    return torque
+
+
+def test_with_every_term_off_nothing_is_added() -> None:
+    seen = estimate(theta=np.ones(N), theta_d=np.ones(N), q=np.ones(N), tau_m=np.ones(N), theta_dd=np.ones(N))
+    assert (correction(only(), seen) == 0.0).all()
+
+
+def test_motor_angle_speed_and_acceleration() -> None:
+    error = np.linspace(-1e-3, 2e-3, N)
+    np.testing.assert_allclose(correction(only("theta"), estimate(theta=-error)), ROTOR * OMEGA**2 * error)
+    np.testing.assert_allclose(correction(only("theta_speed"), estimate(theta_d=-error)), 2 * 1.25 * ROTOR * OMEGA * error)
+    added = correction(only("theta_acceleration"), estimate(theta_dd=-100.0 * error))
+    np.testing.assert_allclose(added, 0.1 * ROTOR * 100.0 * error)
+
+
+def test_a_load_bends_the_spring_ahead_of_the_motor_angle() -> None:
+    load = np.linspace(-40.0, 60.0, N)
+    seen = estimate(theta=load * COMPLIANCE)
+    np.testing.assert_allclose(correction(only("theta"), seen, load=load), 0.0, atol=1e-12)
+
+
+def test_output_speed_and_acceleration() -> None:
+    error = np.linspace(-0.1, 0.2, N)
+    added = correction(only("q_speed"), estimate(qd=-error))
+    np.testing.assert_allclose(added, 0.05 * 2 * 1.25 * ROTOR * OMEGA * error)
+    np.testing.assert_allclose(correction(only("q_acceleration"), estimate(qdd=-error)), 0.1 * ROTOR * error)
+
+
+def test_motor_torque_against_what_was_asked_for() -> None:
+    torque = np.full(N, 5.0)
+    seen = estimate(tau_m=np.linspace(0.0, 10.0, N))
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, torque, None)
+    np.testing.assert_allclose(torque, 5.0 + 0.1 * (5.0 - np.linspace(0.0, 10.0, N)))
+
+
+@pytest.mark.parametrize("term", ["tcp_pose", "tcp_speed"])
+def test_the_tool_centre_point_is_pulled_back(term: str) -> None:
+    """The torque is J^T times a force along the error: its power along the error is positive, and as large as said."""
+    model, q = dynamics(), np.array(UR5E.chain.home)
+    p, R, jacobian = (part.copy() for part in model.update(q))
+    at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, R @ TCP).T
+    way = np.array([0.002, -0.001, 0.003])
+    if term == "tcp_pose":
+        seen, stiffness = estimate(q=q, p_BF=p - way, R_BF=R), 500.0
+    else:
+        rate = np.linalg.pinv(at_tcp) @ way
+        seen, stiffness = estimate(q=q, qd=-rate, p_BF=p, R_BF=R), 20.0
+    np.testing.assert_allclose(correction(only(term), seen, resting(q)), at_tcp.T @ (stiffness * way), atol=1e-12)
+
+
+def test_each_measurement_is_compared_with_its_own_reference() -> None:
+    """A reference that moves, measured DELAY ticks late without any error, asks for nothing."""
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    for k in range(40):
+        late = max(k - DELAY, 0)
+        torque = np.zeros(N)
+        seen = estimate(theta=np.full(N, 0.01 * late), q=np.full(N, 0.01 * late))
+        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, torque, None)
+        assert np.abs(torque).max() < 1e-9
+
+
+def test_the_integral_grows_with_the_output_error_and_waits_in_the_dead_band() -> None:
+    counts = 2.0 * math.pi / UR5E.sensors.encoders.output_counts
+    error = counts * np.array([0.0, 2.9, -2.9, 3.1, -3.1, 100.0])
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    for _ in range(10):
+        torque = np.zeros(N)
+        module.add(resting(error), ZERO, estimate(), only("q"), FREE, torque, None)
+    expected = 10 * 0.002 * ROTOR * OMEGA**2 / 0.1 * error
+    expected[:3] = 0.0
+    np.testing.assert_allclose(torque, expected)
+    np.testing.assert_allclose(module.integral, expected)
+
+
+def test_the_integral_waits_where_the_motor_is_at_its_limit() -> None:
+    """AF-6: no wind-up."""
+    limited = np.array([True, False, True, False, True, False])
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    for _ in range(100):
+        module.add(resting(np.full(N, 0.1)), ZERO, estimate(), only("q"), limited, np.zeros(N), None)
+    assert (module.integral[limited] == 0.0).all()
+    assert (module.integral[~limited] > 1.0).all()
+
+
+def test_taking_over_asks_for_the_feed_forward_alone() -> None:
+    """Bumpless: whatever the corrections would do at once is taken up by the integral."""
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    seen = estimate(theta=np.linspace(-0.01, 0.01, N), theta_d=np.full(N, 0.3))
+    torque, fed = np.linspace(1.0, 9.0, N), np.linspace(2.0, -4.0, N)
+    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, torque, fed)
+    np.testing.assert_allclose(torque, fed)
+
+
+def test_switches_may_change_from_tick_to_tick() -> None:
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    seen = estimate(theta=np.full(N, -1e-3))
+    sums = []
+    for use in (only("theta"), only(), only("theta")):
+        torque = np.zeros(N)
+        module.add(resting(ZERO), ZERO, seen, use, FREE, torque, None)
+        sums.append(float(torque.sum()))
+    assert sums[0] == sums[2] > 0.0
+    assert sums[1] == 0.0

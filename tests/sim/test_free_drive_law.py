@@ -1,0 +1,67 @@
+"""Free-drive law: what the hand asks for, what is taken off it, and that nothing drives an arm that nobody touches."""
+
+import numpy as np
+
+from pendant.modes import Law
+from sim.adaptive_friction import AdaptiveFriction
+from sim.frames import rotation
+from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
+from tests.sim.arms import UR5E
+from tests.sim.control import N, decision, dynamics, estimate
+
+Q = np.array(UR5E.chain.home)
+MODEL = dynamics()
+P, R, JACOBIAN = (part.copy() for part in MODEL.update(Q))
+GRAVITY = MODEL.gravity(Q).copy()
+BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
+
+
+def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
+    module = FreeDriveLaw(dynamics(), N)
+    module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
+    return module
+
+
+def asked(wrench: np.ndarray, with_friction: bool = False, gain: float = 1.0, **values: object) -> np.ndarray:
+    """Torque beyond gravity for the user's wrench."""
+    seen = estimate(**{"q": Q, "R_BF": R, "F_user": wrench, **values})
+    return law().torque(seen, decision(Law.FREE, gain=gain), JACOBIAN, AdaptiveFriction(UR5E), with_friction) - GRAVITY
+
+
+def test_without_a_hand_it_is_gravity_alone() -> None:
+    assert np.abs(asked(np.zeros(6), with_friction=True)).max() < 1e-12
+
+
+def test_the_wrench_is_amplified_through_the_jacobian_and_its_force_capped() -> None:
+    wrench = np.array([20.0, -10.0, 5.0, 0.5, 1.0, -0.3])
+    np.testing.assert_allclose(asked(wrench, gain=1.5), JACOBIAN.T @ (1.5 * wrench), atol=1e-9)
+    size = np.linalg.norm(4.0 * wrench[:3])
+    np.testing.assert_allclose(asked(4.0 * wrench), JACOBIAN.T @ (4.0 * wrench * (50.0 / size)), atol=1e-9)
+
+
+def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:
+    offset = np.array([3.0, 1.0, -2.0, 0.2, 0.1, -0.1])
+    module = law()
+    turn = rotation(2, 1.1)
+    turned = np.concatenate([turn @ offset[:3], turn @ offset[3:]])
+    seen = estimate(q=Q, R_BF=turn @ R, F_user=turned)
+    torque = module.torque(seen, decision(Law.FREE, gain=1.0, baseline=tuple(offset)), JACOBIAN, AdaptiveFriction(UR5E), True)
+    np.testing.assert_allclose(torque, GRAVITY, atol=1e-9)
+
+
+def test_before_free_drive_is_entered_nothing_helps_the_hand() -> None:
+    assert np.abs(asked(np.array([30.0, 0, 0, 0, 0, 0]), with_friction=True, gain=0.0)).max() < 1e-12
+
+
+def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -> None:
+    wrench = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0])
+    plain = asked(wrench)
+    sliding = np.array([8.0, -9.0, 7.0, 2.0, -2.0, 2.0])
+    helped = asked(wrench, with_friction=True, friction=sliding)
+    ask = JACOBIAN.T @ wrench
+    full = np.abs(ask) > (INTENT + DEAD_ZONE) * BREAKAWAY
+    assert full.any()
+    expected = np.sign(ask) * COMPENSATED * np.maximum(np.abs(sliding), BREAKAWAY)
+    np.testing.assert_allclose((helped - plain)[full], expected[full])
+    none = np.abs(ask) < DEAD_ZONE * BREAKAWAY
+    assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
