@@ -37,7 +37,7 @@ class Controller:
     """
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
-        self.references = References(arm, dynamics, tcp)
+        self.references = References(arm, calibration, dynamics, tcp)
         self.feed_forward = FeedForward(arm, calibration, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
         self.feedback = Feedback(arm, calibration, dynamics, tcp)

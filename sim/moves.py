@@ -15,6 +15,8 @@ from sim.frames import matrix_from_quaternion, quaternion_from_matrix
 Array = NDArray[np.float64]
 
 SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leave them at rest
+BRAKING_SHARE = 0.7  # of a joint's torque that a stop plans with; the rest is for the feedback
+LEAST_BRAKING = 0.1  # of it, where gravity takes all of that
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
 SPACING = 0.01  # between the places along a line that are looked at beforehand [m]
 SAMPLES = (24, 200)  # fewest and most of them
@@ -44,20 +46,41 @@ class MoveRefused(ValueError):
     """A move cannot be done; the text says why, with value and limit."""
 
 
+def stop_time(dynamics: Dynamics, q: Array, qd: Array, rotor: Array, torque: Array) -> float:
+    """Shortest time [s] in which the joints can brake from qd, all by the same law, half a cosine.
+
+    It brakes hardest half-way, by pi/2 · speed / T; every joint has a share of its torque for that, less what gravity takes.
+
+    Args:
+        dynamics: the rigid model.
+        q: angles (n,) [rad].
+        qd: speeds (n,) [rad/s].
+        rotor: inertia of the rotors, referred to the output (n,) [kg·m²].
+        torque: limits of the joints (n,) [N·m].
+    """
+    momentum = dynamics.mass(q) @ qd + rotor * qd
+    spare = np.maximum(BRAKING_SHARE * torque - np.abs(dynamics.gravity(q)), LEAST_BRAKING * torque)
+    return 0.5 * math.pi * float(np.max(np.abs(momentum) / spare))
+
+
 class Stop:
     """Come to rest along the path the joints were on, then stand.
 
     Every joint keeps its share of the speed, so the tool stays on its path. The speed falls as half a cosine: a step in the
-    deceleration would leave the flexible joints ringing. The slowest joint's limit decides how long it takes.
+    deceleration would leave the flexible joints ringing.
+
+    Args:
+        q: angles now (n,) [rad].
+        qd: speeds now (n,) [rad/s].
+        length: how long it takes [s], as `stop_time` says.
     """
 
-    def __init__(self, q: Array, qd: Array, deceleration: Array) -> None:
+    def __init__(self, q: Array, qd: Array, length: float = 0.0) -> None:
         self._q, self._from, self._speed = q.copy(), q.copy(), qd.copy()
         self._zero = np.zeros_like(qd)
         self._time = 0.0
         self.done = not qd.any()
-        # Half a cosine of length T brakes hardest half-way, by pi/2 · speed / T.
-        self._length = max(SHORTEST_STOP, float(np.max(np.abs(qd) / deceleration)) * math.pi / 2.0)
+        self._length = max(SHORTEST_STOP, length)
 
     def step(self) -> Reference:
         """The reference of the next tick; at rest it stays where it is."""

@@ -8,8 +8,9 @@ from pendant.estimate import Estimate
 from pendant.modes import Law
 from pendant.program import JointMove, LinearMove, Move
 from sim.arm import Arm
+from sim.calibration import Calibration
 from sim.dynamics import Dynamics
-from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop
+from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, stop_time
 
 Array = NDArray[np.float64]
 
@@ -29,10 +30,11 @@ class References:
         refusal: why the move of this tick cannot be done, or "".
     """
 
-    def __init__(self, arm: Arm, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tcp = dynamics, tcp
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
+        self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -73,7 +75,7 @@ class References:
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
-        self._motion = Stop(q, qd, self._limits[1])
+        self._motion = Stop(q, qd, stop_time(self._dynamics, q, qd, self._rotor, self._torque))
         self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
 
     def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
@@ -82,7 +84,7 @@ class References:
         The arm then keeps the posture it came to, instead of creeping back to where the plan ended.
         """
         self._settling -= 1
-        return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing, self._limits[1])
+        return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing)
 
     def _begin(self, move: Move | None) -> None:
         assert self.now is not None
@@ -94,7 +96,7 @@ class References:
             elif isinstance(move, LinearMove):
                 self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._limits)
             else:
-                self._motion = Stop(q, self._standing, self._limits[1])
+                self._motion = Stop(q, self._standing)
         except MoveRefused as refusal:
             self.refusal = str(refusal)
-            self._motion = Stop(q, self._standing, self._limits[1])
+            self._motion = Stop(q, self._standing)
