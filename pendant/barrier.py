@@ -164,7 +164,7 @@ class Barrier:
             fx, fy, fz = around.user_force
             push = fx * nx + fy * ny + fz * nz
             if self._stage is Stage.OPERATION:
-                size = -self._resist(exceeded, beyond, near, vx * nx + vy * ny + vz * nz, push)
+                size = -self._resist(exceeded, beyond, near, vx * nx + vy * ny + vz * nz)
                 force = (size * nx, size * ny, size * nz)
             if exceeded:
                 consequence = self._consequence(beyond, push)
@@ -205,13 +205,13 @@ class Barrier:
             outward = turned(reference.R, outward)
         return sign * factor * distance, outward
 
-    def _resist(self, exceeded: bool, beyond: float, near: float, speed: float, push: float) -> float:
+    def _resist(self, exceeded: bool, beyond: float, near: float, speed: float) -> float:
         """Size of the resisting force [N]."""
         border = self._border
         if not exceeded:
-            return min(resisting(near, speed, push, border.damping), border.force)
+            return min(resisting(near, speed, border.damping), border.force)
         assert self._guard is not None
-        return min(self._guard.resisting(beyond, speed, push, border.stiffness, border.damping), border.force)
+        return min(self._guard.resisting(beyond, speed, border.stiffness, border.damping), border.force)
 
     def _consequence(self, beyond: float, push: float) -> Consequence:
         """Of a part outside. `push`: the user's force outwards [N]."""

@@ -5,11 +5,6 @@ wall takes energy from it and gives none. Beyond the border a spring and a dampe
 has been at since it went out: motion further out meets them, the way back is free.
 """
 
-ENGAGE = 0.005
-"""Speed towards the wall at which the whole share of the user's push is resisted [m/s]; a hand pressing on at the border moves
-the part no faster. In proportion below it, since a force that came with the sign of a speed would chatter at rest."""
-
-
 def closeness(distance: float, band: float) -> float:
     """0 at the inner edge of the band and before it, 1 at the wall and beyond.
 
@@ -22,18 +17,20 @@ def closeness(distance: float, band: float) -> float:
     return max(1.0 + distance / band, 0.0) if band > 0.0 else 0.0
 
 
-def resisting(near: float, speed: float, push: float, damping: float) -> float:
-    """Size of the resisting force [N], at most the push plus the damping; 0 unless the part moves towards the wall.
+def resisting(near: float, speed: float, damping: float) -> float:
+    """Size of the resisting force [N]; 0 unless the part moves towards the wall.
+
+    The user's push is not answered in kind: a force that takes a push away as soon as the part moves has a slope of the push over
+    that speed, thousands of N·s/m, and two ticks late that much damping chatters on a part of a few kilograms and gives it energy.
 
     Args:
         near: `closeness`.
         speed: of the part, towards the wall [m/s].
-        push: the user's force, towards the wall [N].
         damping: at the wall [N·s/m].
     """
     if near <= 0.0 or speed <= 0.0:
         return 0.0
-    return near * (damping * speed + max(push, 0.0) * min(speed / ENGAGE, 1.0))
+    return near * damping * speed
 
 
 class Guard:
@@ -63,7 +60,7 @@ class Guard:
                 self.started_outside = False
         return distance - self.place
 
-    def resisting(self, beyond: float, speed: float, push: float, stiffness: float, damping: float) -> float:
+    def resisting(self, beyond: float, speed: float, stiffness: float, damping: float) -> float:
         """Size of the force on a part `beyond` its place [N]: spring and damper, which never pull it outwards."""
-        held = max(stiffness * beyond + damping * speed, 0.0) if beyond > 0.0 else max(damping * speed, 0.0)
-        return held + (max(push, 0.0) * min(speed / ENGAGE, 1.0) if speed > 0.0 else 0.0)
+        spring = stiffness * beyond if beyond > 0.0 else 0.0
+        return max(spring + damping * speed, 0.0)
