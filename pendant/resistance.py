@@ -20,8 +20,8 @@ def closeness(distance: float, band: float) -> float:
 def resisting(near: float, speed: float, damping: float) -> float:
     """Size of the resisting force [N]; 0 unless the part moves towards the wall.
 
-    The user's push is not answered in kind: a force that takes a push away as soon as the part moves has a slope of the push over
-    that speed, thousands of N·s/m, and two ticks late that much damping chatters on a part of a few kilograms and gives it energy.
+    The user's push is not answered in kind: a force that took it away as soon as the part moves would have a slope of thousands
+    of N·s/m, and so much damping, two ticks late, chatters on a part of a few kilograms and gives it energy.
 
     Args:
         near: `closeness`.
