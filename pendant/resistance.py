@@ -5,6 +5,7 @@ wall takes energy from it and gives none. Beyond the border a spring and a dampe
 has been at since it went out: motion further out meets them, the way back is free.
 """
 
+
 def closeness(distance: float, band: float) -> float:
     """0 at the inner edge of the band and before it, 1 at the wall and beyond.
 
