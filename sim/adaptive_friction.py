@@ -90,6 +90,11 @@ class AdaptiveFriction:
         )
         _evaluate(speed, tau_J, self.warmth, self.terms, self.covariance, self.total, self.deviation)
 
+    @property
+    def breakaway(self) -> Array:
+        """What a standing joint may hold by friction (n,) [N·m]."""
+        return self.terms[:, 0] * self.warmth
+
     def at(self, speed: Array, tau_J: Array) -> Array:
         """Friction (n,) [N·m] of both sides at another speed and load, at the last temperature."""
         total, deviation = np.empty_like(speed), np.empty_like(speed)

@@ -44,6 +44,7 @@ class Controller:
         self.free_drive = FreeDriveLaw(dynamics, arm.n)
         self.motor = MotorController(arm, calibration)
         self._law: Law | None = None
+        self._nothing = np.zeros(arm.n)
         self._fed_back = False  # the torque feedback was on in the last tick
 
     def update(
@@ -71,7 +72,8 @@ class Controller:
     def _track(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, use: JointControl) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
-        torque = self.feed_forward.torque(reference, friction if use.friction and references.driven else None, use.feed_forward)
+        helped = use.friction and use.feed_forward and references.driven
+        torque = self.feed_forward.torque(reference, friction if helped else None, use.feed_forward)
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None
@@ -83,5 +85,6 @@ class Controller:
                 self.torque_feedback.start(measured, desired)
             self.torque_feedback.add(measured, desired, torque)
         self._fed_back = feeding_back
-        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start)
+        sticking = friction.breakaway if helped else self._nothing
+        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start, sticking)
         return torque

@@ -15,8 +15,9 @@ from sim.calibration import Calibration
 from sim.chain import Body
 from sim.dynamics import Dynamics
 from sim.frames import skew
+from sim.moves import Reference
 from sim.sensors import Sample
-from sim.transmission_torque import DEFLECTION, DYNAMICS, MOTOR, WAYS, TransmissionTorque
+from sim.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
 
 Array = NDArray[np.float64]
 
@@ -56,15 +57,17 @@ class Estimator:
         slip = (slip_stiffness, np.array(spring.hysteresis_yield))
         self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping), *slip)
         self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
-        self.friction, self.transmission = AdaptiveFriction(arm), TransmissionTorque(arm)
+        self.friction = AdaptiveFriction(arm)
+        self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None
-        self._ways = np.ones(len(WAYS), dtype=bool)
-        self._torques = np.zeros((5, n))
+        self._ways = np.ones((len(WAYS), n), dtype=bool)
+        self._torques, self._deflection = np.zeros((2, n)), np.zeros(n)
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
-        self.tau_m, self.tau_ext = np.zeros((2, n))
+        self.tau_m = np.zeros(n)
         self._started = False
+        self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
         self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
@@ -77,8 +80,12 @@ class Estimator:
         about_flange = load.inertia - load.mass * cross @ cross
         self._load = (load.mass, np.array(load.com), about_flange)
 
-    def update(self, sample: Sample, move_done: int, move_refused: str, use: JointControl = SHIPPED) -> Estimate:
-        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on.
+    def update(
+        self, sample: Sample, move_done: int, move_refused: str, use: JointControl = SHIPPED, answered: Reference | None = None
+    ) -> Estimate:
+        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
+        `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
+        deviation from it, without lag behind a planned acceleration.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -90,16 +97,19 @@ class Estimator:
                 # Also after an outage: the way the arm went in it must not count as speed.
                 theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = sample.theta, sample.q
+                self._wanted = None
             if self._rest is None:
                 self._rest = sample.theta - sample.q
             measured = (sample.theta, sample.q, sample.current)
-            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._torques[4])
+            if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
+                _plan(*self._wanted, *answered, theta, q)
+            self._wanted = answered
+            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._deflection)
             self.q = sample.q
         self._started = sample.joints_valid
         qd = q[1]
-        self._estimate_torques(sample, use)
-        # Accelerations of the slower filter: an external torque that comes a little late serves better than a noisy one.
-        self._external_torque(dynamics.inverse(self.q, qd, q[2]))
+        tau_dyn = dynamics.inverse(self.q, qd, q[2])
+        self._estimate_torques(sample, use, tau_dyn)
         v_elbow = dynamics.elbow_speed()
         p, R, self.jacobian = dynamics.update(self.q)
         F_user, v_F = np.zeros(6), np.empty(6)
@@ -126,7 +136,7 @@ class Estimator:
             theta[1],
             self.tau_m,
             self.transmission.fused,
-            self.tau_ext,
+            self.transmission.external,
             sample.wrench,
             F_user,
             sample.acceleration_flange,
@@ -145,31 +155,21 @@ class Estimator:
             self.transmission.contact,
         )
 
-    def _estimate_torques(self, sample: Sample, use: JointControl) -> None:
+    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
-        # The motor's speed stands for the joint's: it is far less noisy, and differs by the deflection's rate only.
-        tau_dyn = self._dynamics.inverse(self.q, motor[1], motor[2])
-        surplus, model, motor_side, stiction, deflection = self._torques
+        surplus, stiction = self._torques
         if use is not self._use:
             self._use = use
-            self._ways[:] = (use.from_dynamics, use.from_deflection, use.from_motor)
+            self._ways[:] = np.array([[use.from_dynamics], [use.from_deflection], [use.from_motor]])
         _surplus(self.tau_m, self._rotor, motor, tau_dyn, surplus)
         free = sample.joints_valid and use.adaptive and not transmission.contact
         friction.learn(motor[1], surplus, tau_dyn, transmission.fused, sample.temperature, free)
-        share = friction.output_share
-        moving = _sides(
-            motor, tau_dyn, surplus, friction.total, share, friction.terms, friction.warmth, model, motor_side, stiction
-        )
-        transmission.update(model, deflection, motor_side, friction.deviation, stiction, moving, self._ways)
-
-    def _external_torque(self, tau_dyn: Array) -> None:
-        """What the rigid model does not explain; unknown, and then zero, without the model or any other way."""
-        for way in (DEFLECTION, MOTOR):
-            if self._ways[DYNAMICS] and self._ways[way]:
-                np.subtract(tau_dyn, self.transmission.ways[way], out=self.tau_ext)
-                return
-        self.tau_ext[:] = 0.0
+        rubs = (friction.total, friction.terms, friction.warmth)
+        ways = transmission.ways
+        ways[DEFLECTION] = self._deflection
+        moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
+        transmission.update(friction.deviation, stiction, motor[2], moving, self._ways)
 
 
 @numba.njit(cache=True)
@@ -180,16 +180,32 @@ def _surplus(tau_m, rotor, motor, tau_dyn, surplus) -> None:
 
 
 @numba.njit(cache=True)
-def _sides(motor, tau_dyn, surplus, total, share, terms, warmth, model, motor_side, stiction) -> bool:
+def _sides(motor, tau_dyn, surplus, share, total, terms, warmth, ways, stiction) -> bool:
     """Transmission torque seen from the links and from the motor, what stiction may hide, and whether any joint moves."""
     moving = False
-    for i in range(model.size):
-        model[i] = tau_dyn[i] + share * total[i]
-        motor_side[i] = surplus[i] + tau_dyn[i] - (1.0 - share) * total[i]
+    for i in range(stiction.size):
+        ways[0, i] = tau_dyn[i] + share * total[i]
+        ways[2, i] = surplus[i] + tau_dyn[i] - (1.0 - share) * total[i]
         stands = abs(motor[1, i]) < GATE
         stiction[i] = terms[i, 0] * warmth[i] if stands else 0.0
         moving = moving or not stands
     return moving
+
+
+@numba.njit(cache=True)
+def _plan(q_ref, qd_ref, qdd_ref, q_next, qd_next, qdd_next, theta, q) -> None:
+    """Add to both states what the plan does in this tick beyond constant acceleration."""
+    for i in range(q_ref.size):
+        jump = qdd_next[i] - qdd_ref[i]
+        gain = qd_next[i] - qd_ref[i] - TICK * qdd_ref[i]
+        way = q_next[i] - q_ref[i] - TICK * qd_ref[i] - 0.5 * TICK * TICK * qdd_ref[i]
+        # The filters' prediction is to end there: it adds TICK·gain and the like from what is put in here.
+        theta[2, i] += jump
+        theta[1, i] += gain - TICK * jump
+        theta[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
+        q[2, i] += jump
+        q[1, i] += gain - TICK * jump
+        q[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
 
 
 @numba.njit(cache=True)

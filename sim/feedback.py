@@ -14,7 +14,7 @@ from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.moves import Reference
-from sim.sensors import LATENCY
+from sim.references import DELAY
 
 Array = NDArray[np.float64]
 
@@ -24,10 +24,10 @@ INTEGRAL_TIME = 0.1  # of the output-side integral [s]
 """With `sim.torque_feedback.SUPPORT` these keep every mode above 6 Hz inside a circle of 0.993 a tick, for link inertias from
 bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and two ticks of delay, sticking or sliding."""
 
-DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
-DELAY = LATENCY + 1
-"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
+PRESLIDING = 0.4e-3
+"""Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
 
+DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 # The optional terms are gentle: they show their effect without touching the loop's margins.
 OUTPUT_SPEED = 0.05  # of the motor-speed gain
 ACCELERATION = 0.1  # of the rotor's inertia
@@ -44,14 +44,14 @@ class Feedback:
     The integral acts on the output angle: where the arm shall be. It waits inside the dead band, and where the motor's limits
     are reached (AF-6).
 
-    Attributes:
-        integral: (n,) [N·m].
+    At rest a joint's friction may hold anything up to its breakaway torque, and the integral grows against it. That part is let
+    go while the joint slides its first tenths of a milliradian, for there the friction that is fed forward takes its place.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, bandwidth: float = BANDWIDTH) -> None:
         spring = arm.transmissions
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
-        omega = 2.0 * math.pi * BANDWIDTH
+        omega = 2.0 * math.pi * bandwidth
         stiffness = rotor * omega**2
         compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness)
         integral_gain = TICK * stiffness / INTEGRAL_TIME
@@ -63,7 +63,7 @@ class Feedback:
         self._past: deque[tuple[Reference, Array]] = deque()
         self._use: JointControl | None = None
         self._on, self._optional = (True, True, True), False
-        self.integral = np.zeros(arm.n)
+        self._memory = np.zeros((3, arm.n))  # integral, its part won at rest, last tick's load
 
     def add(
         self,
@@ -74,6 +74,7 @@ class Feedback:
         limited: NDArray[np.bool_],
         torque: Array,
         start: Array | None,
+        sticking: Array,
     ) -> None:
         """Add all corrections to `torque` (n,) [N·m].
 
@@ -86,6 +87,7 @@ class Feedback:
             torque: (n,) what the other controllers ask for.
             start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
                 would do at once, so that taking over moves nothing by itself.
+            sticking: (n,) [N·m] the friction that is fed forward as soon as a joint moves, and that it may have at rest.
         """
         if use is not self._use:
             self._use = use
@@ -94,6 +96,7 @@ class Feedback:
         past = self._past
         if start is not None:
             past.clear()
+            self._memory[2] = desired
         past.append((reference, desired))
         then, load = past.popleft() if len(past) > DELAY else past[0]
         if self._optional:
@@ -101,8 +104,8 @@ class Feedback:
         theta, theta_d, q = estimate.theta, estimate.theta_d, estimate.q
         begin = torque if start is None else start
         _correct(
-            then.q, then.qd, load, theta, theta_d, q, self._gains, self._on, self._dead, limited,
-            start is not None, begin, self.integral, torque,
+            then.q, then.qd, load, reference.qd, sticking, theta, theta_d, q, self._gains, self._on, self._dead, limited,
+            start is not None, begin, self._memory, torque,
         )  # fmt: skip
 
     def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
@@ -130,19 +133,28 @@ class Feedback:
 
 
 @numba.njit(cache=True)
-def _correct(q_ref, qd_ref, load, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, integral, torque) -> None:
+def _correct(
+    q_ref, qd_ref, load, qd_now, sticking, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, memory, torque
+) -> None:
     with_theta, with_speed, with_integral = on
     for i in range(torque.size):
         total = torque[i]
         if with_theta:
             total += gains[0, i] * (q_ref[i] + gains[2, i] * load[i] - theta[i])
         if with_speed:
-            total += gains[1, i] * (qd_ref[i] - theta_d[i])
+            bending = gains[2, i] * (load[i] - memory[2, i]) / TICK
+            total += gains[1, i] * (qd_ref[i] + bending - theta_d[i])
+        memory[2, i] = load[i]
         if with_integral:
             if fresh:
-                integral[i] = begin[i] - total
+                memory[0, i], memory[1, i] = begin[i] - total, 0.0
             error = q_ref[i] - q[i]
-            if abs(error) > dead_band and not limited[i]:
-                integral[i] += gains[3, i] * error
-            total += integral[i]
+            step = gains[3, i] * error if abs(error) > dead_band and not limited[i] else 0.0
+            if qd_now[i] == 0.0:
+                memory[1, i] += step
+            else:
+                held = min(max(memory[1, i], -sticking[i]), sticking[i])
+                memory[0, i] += memory[1, i] - held + step
+                memory[1, i] = held * math.exp(-abs(qd_now[i]) * TICK / PRESLIDING)
+            total += memory[0, i] + memory[1, i]
         torque[i] = total

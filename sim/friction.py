@@ -29,9 +29,9 @@ class Friction:
         self._coefficients = np.linalg.solve(np.vander(root), inner.T)  # highest power first, (m, n)
         self._root_low, self._root_high = float(root[0]), float(root[-1])
         self.breakaway: Array = np.array(frictions.breakaway) - self.output_coulomb  # (n,) of the input side at rest [N·m]
-        self._load = np.array(frictions.load)
+        self.load = np.array(frictions.load)  # rise with |tau_J| (n,) [N·m per N·m]
         self._reference = frictions.temperature
-        self._per_kelvin = frictions.per_kelvin
+        self.per_kelvin = frictions.per_kelvin  # relative change a kelvin at the reference
         self.factor = np.ones(arm.n)
         """Wear or grease: a factor a joint, 1 when new."""
 
@@ -48,8 +48,8 @@ class Friction:
             out: (n,).
         """
         roots = (self._root_low, self._root_high)
-        warmth = (self._reference, self._per_kelvin)
-        _input_side(speed, tau_J, temperature, self._coefficients, roots, self.breakaway, warmth, self._load, self.factor, out)
+        warmth = (self._reference, self.per_kelvin)
+        _input_side(speed, tau_J, temperature, self._coefficients, roots, self.breakaway, warmth, self.load, self.factor, out)
 
 
 @numba.njit(cache=True)

@@ -1,5 +1,7 @@
 """Reference generator: the posture, stop or move that the tracking laws follow, chosen by the decision."""
 
+from collections import deque
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,8 +13,12 @@ from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, stop_time
+from sim.sensors import LATENCY
 
 Array = NDArray[np.float64]
+
+DELAY = LATENCY + 1
+"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
 
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
 STANDING = 0.02  # [rad/s]
@@ -41,6 +47,7 @@ class References:
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self._standing = np.zeros(arm.n)
         self.now: Reference | None = None
+        self._past: deque[Reference] = deque(maxlen=DELAY)
         self.fresh = True
         self.driven = False
         self.move_done = 0
@@ -50,6 +57,12 @@ class References:
         """A tick without a reference: free-drive."""
         self._law = Law.FREE
         self.refusal = ""
+        self._past.clear()
+
+    @property
+    def answered(self) -> Reference | None:
+        """The reference that the next tick's measurement answers to; None under free-drive."""
+        return self._past[0] if self._past else None
 
     def step(self, estimate: Estimate, decision: Decision) -> Reference:
         """The reference of this tick."""
@@ -68,6 +81,7 @@ class References:
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
         self.now = self._motion.step()
+        self._past.append(self.now)
         if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
             self.move_done = self._move.id
         self._law = law

@@ -36,18 +36,18 @@ class Simulation:
     def __init__(self, arm: Arm, scenario: Scenario, settings: Settings, step: Step | None = None) -> None:
         self.arm, self.scenario = arm, scenario
         errors, noise = np.random.default_rng(scenario.seed).spawn(2)
-        calibrated = calibration.nominal(arm) if scenario.mismatch == "nominal" else calibration.draw(arm, errors)
+        self.calibration = calibration.nominal(arm) if scenario.mismatch == "nominal" else calibration.draw(arm, errors)
         self.plant = Plant(arm, scenario, step)
-        self.sensors = Sensors(arm, calibrated, noise)
+        self.sensors = Sensors(arm, self.calibration, noise)
         rigid = chain(arm)
-        tcp = np.array(scenario.tool.tcp if scenario.tool is not None else [0.0, 0.0, 0.0])
+        self.tcp = np.array(scenario.tool.tcp if scenario.tool is not None else [0.0, 0.0, 0.0])
         self._carried = plate_body(arm) + tool_body(scenario.tool)
         self.configured = scenario.payload_configured
-        links = calibration.believed(rigid, calibrated)
+        links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
-        self.estimator = Estimator(arm, calibrated, self.dynamics, tcp)
+        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque))
-        self.controller = Controller(arm, calibrated, self.dynamics, tcp)
+        self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
@@ -77,7 +77,7 @@ class Simulation:
             self.apply(change)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
-        estimate = self.estimator.update(sample, references.move_done, references.refusal, use)
+        estimate = self.estimator.update(sample, references.move_done, references.refusal, use, references.answered)
         decision = self.supervisor.step(estimate, wishes.inputs)
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
         self.plant.advance(self._current * self._motor, wishes.touches)

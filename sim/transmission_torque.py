@@ -1,5 +1,7 @@
 """Transmission torque module: what passes through each gear, estimated three ways and fused (AF-3)."""
 
+import math
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +17,15 @@ WAYS = ("dynamics", "deflection", "motor")
 
 DYNAMICS, DEFLECTION, MOTOR = range(3)
 
-MODEL_FLOOR = 0.008  # what the rigid model misses at least, relative to the torque limit: centres of mass, output friction
+MODEL_FLOOR = 0.004  # what the rigid model misses at least, relative to the torque limit: centres of mass, output friction
+ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/s²]
+ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
+LATELY = math.exp(-TICK / 0.3)
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
+RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
 CORRELATED = 100.0  # ticks over which the deflection's error stays alike
-CONTACT = 2.5  # deviations between deflection and dynamics that count as a contact
+CONTACT = 2.5  # deviations between two ways that count as a contact
 CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
 SETTLE_TICKS = 100  # after a contact, before its end is believed
 
@@ -30,89 +36,104 @@ class TransmissionTorque:
     The rigid model is right up to masses and centres while nothing is touched, and wrong by the external torque in contact.
     The deflection feels contacts, but its stiffness is known to a fifth and the output encoder's ripple counts in full: the
     stiffness error and an offset are learned from the rigid model while nothing is touched. The motor's way is uncertain by
-    the friction estimate, and by the whole stiction while the joint stands. A contact is where deflection and model differ
-    by more than both allow.
+    the friction estimate, and by the whole stiction while the joint stands. A contact is where the rigid model differs from
+    the deflection, or without it from the motor's way, by more than both allow.
+
+    Attributes:
+        ways, deviations: each way (3, n), and its standard deviation.
+        fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
+        external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
+        contact: some joint feels a contact.
     """
 
-    def __init__(self, arm: Arm) -> None:
+    def __init__(self, arm: Arm, inertia: Array) -> None:
+        """`inertia` (n,) is what a joint usually has to move [kg·m²]."""
         n, spring = arm.n, arm.transmissions
         limit = np.array(arm.limits.torque)
         stiffness = np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)
-        self._floor = MODEL_FLOOR * limit
-        self._ripple = ENCODER_RIPPLE * stiffness
-        self._least = CONTACT_FLOOR * limit
+        ripple = ENCODER_RIPPLE * stiffness
+        self._constants = np.stack([MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia])
+        self._swing = np.zeros(1)  # the largest acceleration lately [rad/s²]
         self.correction = np.zeros((n, 2))  # stiffness error, offset [N·m]
         self._covariance = np.zeros((n, 2, 2))
         self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
-        self._covariance[:, 1, 1] = self._ripple**2
-        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * self._ripple]) ** 2 * TICK
+        self._covariance[:, 1, 1] = ripple**2
+        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.ways, self.deviations = np.zeros((2, 3, n))
-        self.fused, self.deviation = np.zeros((2, n))
-        self.difference = np.zeros(n)  # model minus corrected deflection: the external torque [N·m]
+        self.fused, self.deviation, self.external = np.zeros((3, n))
+        self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
         self.contact = False
         self._quiet = SETTLE_TICKS
 
     def update(
-        self,
-        dynamics: Array,
-        deflection: Array,
-        motor: Array,
-        friction_deviation: Array,
-        stiction: Array,
-        moving: bool,
-        use: Array,
+        self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]
     ) -> None:
-        """One tick.
+        """One tick, on the raw values that the caller has put into `ways`.
+
+        These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
+        tau_m - J theta_dd - friction of the input side.
 
         Args:
-            dynamics: torque of the rigid model and of the output side's friction (n,) [N·m].
-            deflection: stiffness as believed times the deflection (n,) [N·m].
-            motor: tau_m - J theta_dd - friction of the input side (n,) [N·m].
             friction_deviation: of that friction (n,) [N·m].
             stiction: what a standing joint may hold besides (n,) [N·m], 0 for one that moves.
+            acceleration: of the motors (n,) [rad/s²].
             moving: some joint moves; at rest nothing is learned, for a wrong payload would pass for a soft spring.
-            use: which of `WAYS` may be used (3,), bool.
+            use: which of `WAYS` may be used, of which joint (3, n).
         """
+        rubbing = (friction_deviation, stiction)
+        learned = (self.correction, self._covariance, self._walk)
         touched = _compare(
-            dynamics, deflection, self._floor, self._ripple, self._least, self.correction, self._covariance, self._walk, use,
-            moving and self._quiet >= SETTLE_TICKS, self.difference,
+            self.ways, self.deviations, rubbing, acceleration, self._constants, self._swing, learned, use,
+            moving and self._quiet >= SETTLE_TICKS, self._model, self.external,
         )  # fmt: skip
         self._quiet = 0 if touched else self._quiet + 1
         self.contact = self._quiet < SETTLE_TICKS
-        _fuse(
-            dynamics, deflection, motor, friction_deviation, stiction, use, self.contact, self._floor, self._ripple,
-            self.correction, self._covariance, self.difference, self.ways, self.deviations, self.fused, self.deviation,
-        )  # fmt: skip
+        _fuse(self.ways, self.deviations, self._model, self.external, self.contact, use, self.fused, self.deviation)
 
 
 @numba.njit(cache=True)
-def _compare(dynamics, deflection, floor, ripple, least, correction, covariance, walk, use, learn, difference) -> bool:
-    """Difference of model and corrected deflection; learn the correction unless touched. Returns whether it looks touched."""
-    if not (use[0] and use[1]):
-        difference[:] = 0.0
-        return False
+def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external) -> bool:
+    """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
+    correction, covariance, walk = learned
+    friction_deviation, stiction = rubbing
+    n = external.size
+    swing[0] *= LATELY
+    for i in range(n):
+        swing[0] = max(swing[0], abs(acceleration[i]))
+    shaking = ACCELERATION_FLOOR + ACCELERATION_SHARE * swing[0]
     touched = False
-    for i in range(difference.size):
-        P = covariance[i]
-        x = deflection[i]
-        difference[i] = dynamics[i] - x * (1.0 + correction[i, 0]) - correction[i, 1]
-        known = x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1]
-        model = (LINK_MASS * dynamics[i]) ** 2 + floor[i] ** 2
-        if abs(difference[i]) > max(CONTACT * np.sqrt(known + model + 0.25 * ripple[i] ** 2), least[i]):
+    for i in range(n):
+        floor, ripple, least, inertia = constants[0, i], constants[1, i], constants[2, i], constants[3, i]
+        P, x, dynamics = covariance[i], ways[1, i], ways[0, i]
+        ways[1, i] += x * correction[i, 0] + correction[i, 1]
+        model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
+        known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
+        deviations[1, i] = np.sqrt(known + (RIPPLE_LEFT * ripple) ** 2 + (0.3 * floor) ** 2)
+        rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
+        deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
+        external[i] = 0.0
+        if not use[0, i] or not (use[1, i] or use[2, i]):
+            continue
+        other = 1 if use[1, i] else 2
+        external[i] = dynamics - ways[other, i]
+        allowed = known + (0.5 * ripple) ** 2 if other == 1 else deviations[2, i] ** 2
+        if abs(external[i]) > max(CONTACT * np.sqrt(allowed + model[i] ** 2), least):
             touched = True
     if touched or not learn:
         return touched
-    for i in range(difference.size):
-        P = covariance[i]
-        x = deflection[i]
+    for i in range(n):
+        if not (use[0, i] and use[1, i]):
+            continue
+        P, ripple = covariance[i], constants[1, i]
+        x = (ways[1, i] - correction[i, 1]) / (1.0 + correction[i, 0])
         P[0, 0] += walk[i, 0]
-        P[1, 1] = min(P[1, 1] + walk[i, 1], ripple[i] ** 2)
+        P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
-        spread = g0 * x + g1 + (0.5 * ripple[i]) ** 2 * CORRELATED
-        correction[i, 0] += g0 * difference[i] / spread
-        correction[i, 1] += g1 * difference[i] / spread
+        spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
+        correction[i, 0] += g0 * external[i] / spread
+        correction[i, 1] += g1 * external[i] / spread
         correction[i, 0] = min(max(correction[i, 0], -STIFFNESS), STIFFNESS)
-        correction[i, 1] = min(max(correction[i, 1], -ripple[i]), ripple[i])
+        correction[i, 1] = min(max(correction[i, 1], -ripple), ripple)
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
@@ -121,24 +142,13 @@ def _compare(dynamics, deflection, floor, ripple, least, correction, covariance,
 
 
 @numba.njit(cache=True)
-def _fuse(
-    dynamics, deflection, motor, friction_deviation, stiction, use, contact, floor, ripple,
-    correction, covariance, difference, ways, deviations, fused, deviation,
-) -> None:  # fmt: skip
+def _fuse(ways, deviations, model, external, contact, use, fused, deviation) -> None:
     for i in range(fused.size):
-        P, x = covariance[i], deflection[i]
-        ways[0, i] = dynamics[i]
-        ways[1, i] = x * (1.0 + correction[i, 0]) + correction[i, 1]
-        ways[2, i] = motor[i]
-        outside = difference[i] ** 2 if contact else 0.0
-        deviations[0, i] = np.sqrt((LINK_MASS * dynamics[i]) ** 2 + floor[i] ** 2 + outside)
-        known = x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1]
-        deviations[1, i] = np.sqrt(known + 0.25 * ripple[i] ** 2 + (0.3 * floor[i]) ** 2)
-        rubbing = friction_deviation[i] ** 2 + stiction[i] ** 2
-        deviations[2, i] = np.sqrt((MOTOR_CONSTANT * motor[i]) ** 2 + rubbing + floor[i] ** 2)
+        outside = external[i] if contact else 0.0
+        deviations[0, i] = np.sqrt(model[i] ** 2 + outside**2)
         weight, total = 0.0, 0.0
         for k in range(3):
-            if use[k]:
+            if use[k, i]:
                 w = 1.0 / deviations[k, i] ** 2
                 weight += w
                 total += w * ways[k, i]

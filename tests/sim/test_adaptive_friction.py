@@ -11,7 +11,6 @@ from sim.desk import Wishes
 from sim.scenario import Scenario
 from sim.simulation import Simulation
 from sim.touch import Push
-from sim.transmission_torque import TransmissionTorque
 from tests.sim.arms import UR5E
 
 IDLE = Wishes(NOTHING, (), ())
@@ -113,29 +112,3 @@ def test_the_prior_is_the_filed_curve_and_falls_with_temperature() -> None:
     assert np.allclose(friction.total / cold, 1.0 + 10.0 * UR5E.frictions.per_kelvin)
     friction.learn(np.full(6, -0.5), still, still, still, np.full(6, 54.0), False)
     assert (friction.total < 0.0).all()
-
-
-def test_fused_torque_leans_on_what_is_certain() -> None:
-    transmission = TransmissionTorque(UR5E)
-    calm, use = np.zeros(6), np.ones(3, dtype=bool)
-    transmission.update(np.full(6, 1.0), np.full(6, 1.1), np.full(6, 9.0), np.full(6, 50.0), calm, False, use)
-    assert (transmission.fused < 1.2).all(), "a motor side of which nothing is known does not count"
-    assert (transmission.deviation <= transmission.deviations.min(axis=0)).all()
-    transmission.update(np.full(6, 1.0), np.full(6, 1.1), np.full(6, 9.0), calm, calm, False, np.array([False, False, True]))
-    assert np.allclose(transmission.fused, 9.0), "alone it is all there is"
-
-
-def test_a_sudden_external_torque_is_a_contact_until_it_has_been_gone_for_a_while() -> None:
-    transmission, calm, use = TransmissionTorque(UR5E), np.zeros(6), np.ones(3, dtype=bool)
-    load = np.full(6, 5.0)
-    for _ in range(200):
-        transmission.update(load, load, load, calm, calm, True, use)
-    assert not transmission.contact
-    pushed = load + np.array([0.0, 0.0, 15.0, 0.0, 0.0, 0.0])
-    transmission.update(load, pushed, load, calm, calm, True, use)
-    assert transmission.contact
-    corrected = transmission.correction.copy()
-    for tick in range(120):
-        transmission.update(load, load, load, calm, calm, True, use)
-        assert transmission.contact == (tick < 99)
-    assert np.abs(transmission.correction - corrected).max() < 0.05

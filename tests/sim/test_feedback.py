@@ -8,8 +8,9 @@ import pytest
 
 from pendant.estimate import Estimate
 from pendant.settings import JointControl
-from sim.feedback import DELAY, Feedback
+from sim.feedback import Feedback
 from sim.moves import Reference
+from sim.references import DELAY
 from tests.sim.arms import UR5E
 from tests.sim.control import EXACT, N, dynamics, estimate
 
@@ -38,7 +39,7 @@ STANDING = resting(ZERO)
 def correction(use: JointControl, seen: Estimate, reference: Reference = STANDING, load: np.ndarray = ZERO) -> np.ndarray:
     """What a fresh feedback adds to nothing."""
     torque = np.zeros(N)
-    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, torque, None)
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, torque, None, ZERO)
     return torque
 
 
@@ -71,7 +72,7 @@ def test_output_speed_and_acceleration() -> None:
 def test_motor_torque_against_what_was_asked_for() -> None:
     torque = np.full(N, 5.0)
     seen = estimate(tau_m=np.linspace(0.0, 10.0, N))
-    Feedback(UR5E, EXACT, dynamics(), TCP).add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, torque, None)
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, torque, None, ZERO)
     np.testing.assert_allclose(torque, 5.0 + 0.1 * (5.0 - np.linspace(0.0, 10.0, N)))
 
 
@@ -97,7 +98,7 @@ def test_each_measurement_is_compared_with_its_own_reference() -> None:
         late = max(k - DELAY, 0)
         torque = np.zeros(N)
         seen = estimate(theta=np.full(N, 0.01 * late), q=np.full(N, 0.01 * late))
-        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, torque, None)
+        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, torque, None, ZERO)
         assert np.abs(torque).max() < 1e-9
 
 
@@ -107,11 +108,38 @@ def test_the_integral_grows_with_the_output_error_and_waits_in_the_dead_band() -
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     for _ in range(10):
         torque = np.zeros(N)
-        module.add(resting(error), ZERO, estimate(), only("q"), FREE, torque, None)
+        module.add(resting(error), ZERO, estimate(), only("q"), FREE, torque, None, ZERO)
     expected = 10 * 0.002 * ROTOR * OMEGA**2 / 0.1 * error
     expected[:3] = 0.0
     np.testing.assert_allclose(torque, expected)
-    np.testing.assert_allclose(module.integral, expected)
+
+
+def moving(q: np.ndarray, speed: float) -> Reference:
+    return Reference(q, np.full(N, speed), ZERO)
+
+
+def test_what_the_integral_won_against_stiction_goes_over_to_the_friction_fed_forward() -> None:
+    """After 2 mrad of sliding only what friction could not have held is left."""
+    module, sticking = Feedback(UR5E, EXACT, dynamics(), TCP), np.full(N, 2.0)
+    torque = np.zeros(N)
+    while torque.min() < 5.0:
+        torque = np.zeros(N)
+        module.add(resting(np.full(N, 0.002)), ZERO, estimate(), only("q"), FREE, torque, None, sticking)
+    won = torque.copy()
+    there = estimate(q=np.full(N, 0.002))
+    for _ in range(50):
+        torque = np.zeros(N)
+        module.add(moving(np.full(N, 0.002), 0.02), ZERO, there, only("q"), FREE, torque, None, sticking)
+    np.testing.assert_allclose(torque, won - 2.0, atol=0.05)
+
+
+def test_a_load_that_comes_bends_the_spring_at_a_speed() -> None:
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    module.add(resting(ZERO), ZERO, estimate(), only("theta_speed"), FREE, np.zeros(N), ZERO, ZERO)
+    for load in (10.0, 20.0, 30.0, 40.0):
+        torque = np.zeros(N)
+        module.add(resting(ZERO), np.full(N, load), estimate(), only("theta_speed"), FREE, torque, None, ZERO)
+    np.testing.assert_allclose(torque, 2 * 1.25 * ROTOR * OMEGA * COMPLIANCE * 10.0 / 0.002)
 
 
 def test_the_integral_waits_where_the_motor_is_at_its_limit() -> None:
@@ -119,9 +147,10 @@ def test_the_integral_waits_where_the_motor_is_at_its_limit() -> None:
     limited = np.array([True, False, True, False, True, False])
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     for _ in range(100):
-        module.add(resting(np.full(N, 0.1)), ZERO, estimate(), only("q"), limited, np.zeros(N), None)
-    assert (module.integral[limited] == 0.0).all()
-    assert (module.integral[~limited] > 1.0).all()
+        torque = np.zeros(N)
+        module.add(resting(np.full(N, 0.1)), ZERO, estimate(), only("q"), limited, torque, None, ZERO)
+    assert (torque[limited] == 0.0).all()
+    assert (torque[~limited] > 1.0).all()
 
 
 def test_taking_over_asks_for_the_feed_forward_alone() -> None:
@@ -129,7 +158,7 @@ def test_taking_over_asks_for_the_feed_forward_alone() -> None:
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     seen = estimate(theta=np.linspace(-0.01, 0.01, N), theta_d=np.full(N, 0.3))
     torque, fed = np.linspace(1.0, 9.0, N), np.linspace(2.0, -4.0, N)
-    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, torque, fed)
+    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, torque, fed, ZERO)
     np.testing.assert_allclose(torque, fed)
 
 
@@ -139,7 +168,7 @@ def test_switches_may_change_from_tick_to_tick() -> None:
     sums = []
     for use in (only("theta"), only(), only("theta")):
         torque = np.zeros(N)
-        module.add(resting(ZERO), ZERO, seen, use, FREE, torque, None)
+        module.add(resting(ZERO), ZERO, seen, use, FREE, torque, None, ZERO)
         sums.append(float(torque.sum()))
     assert sums[0] == sums[2] > 0.0
     assert sums[1] == 0.0

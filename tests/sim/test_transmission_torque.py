@@ -1,0 +1,133 @@
+"""Transmission torque: the fusion by uncertainties, what is learned of the deflection, what counts as a contact."""
+
+import numpy as np
+
+from sim.transmission_torque import SETTLE_TICKS, TransmissionTorque
+from tests.sim.arms import UR5E
+
+N = UR5E.n
+CALM = np.zeros(N)
+ALL = np.ones((3, N), dtype=bool)
+INERTIA = np.array([2.0, 2.0, 1.0, 0.1, 0.1, 0.02])
+
+
+def only(*ways: int) -> np.ndarray:
+    """These ways, of every joint."""
+    use = np.zeros((3, N), dtype=bool)
+    use[list(ways)] = True
+    return use
+
+
+class Gears:
+    """The module, fed with the three raw torques."""
+
+    def __init__(self) -> None:
+        self.module = TransmissionTorque(UR5E, INERTIA)
+
+    def tick(
+        self,
+        dynamics: np.ndarray | float,
+        deflection: np.ndarray | float,
+        motor: np.ndarray | float,
+        friction_deviation: float = 0.0,
+        acceleration: float = 0.0,
+        moving: bool = False,
+        use: np.ndarray = ALL,
+    ) -> TransmissionTorque:
+        for row, value in zip(self.module.ways, (dynamics, deflection, motor), strict=True):
+            row[:] = value
+        self.module.update(np.full(N, friction_deviation), CALM, np.full(N, acceleration), moving, use)
+        return self.module
+
+
+def test_fused_torque_leans_on_what_is_certain() -> None:
+    gears = Gears()
+    module = gears.tick(1.0, 1.1, 9.0, friction_deviation=50.0)
+    assert (module.fused < 1.2).all(), "a motor side of which nothing is known does not count"
+    assert (module.deviation <= module.deviations.min(axis=0)).all()
+
+
+def test_the_fusion_weighs_by_inverse_variances() -> None:
+    module = Gears().tick(10.0, 11.0, 12.0, friction_deviation=0.5)
+    weights = module.deviations**-2.0
+    np.testing.assert_allclose(module.fused, (weights * module.ways).sum(axis=0) / weights.sum(axis=0))
+    np.testing.assert_allclose(module.deviation, weights.sum(axis=0) ** -0.5)
+
+
+def test_each_way_alone_is_all_there_is() -> None:
+    for way, value in enumerate((1.0, 2.0, 3.0)):
+        np.testing.assert_allclose(Gears().tick(1.0, 2.0, 3.0, use=only(way)).fused, value)
+
+
+def test_without_any_way_the_last_torque_stands() -> None:
+    gears = Gears()
+    last = gears.tick(4.0, 4.0, 4.0).fused.copy()
+    np.testing.assert_array_equal(gears.tick(9.0, 9.0, 9.0, use=only()).fused, last)
+
+
+def test_ways_may_differ_from_joint_to_joint() -> None:
+    use = ALL.copy()
+    use[1, 2] = False
+    use[0, 4] = use[2, 4] = False
+    module = Gears().tick(1.0, 2.0, 3.0, use=use)
+    assert module.fused[4] == 2.0
+    assert module.fused[2] == np.average([1.0, 3.0], weights=module.deviations[[0, 2], 2] ** -2.0)
+
+
+def test_the_rigid_model_counts_less_while_the_arm_shakes() -> None:
+    gears = Gears()
+    still = gears.tick(1.0, 2.0, 2.0).deviations[0].copy()
+    shaken = gears.tick(1.0, 2.0, 2.0, acceleration=10.0).deviations[0].copy()
+    assert (shaken > 1.2 * still)[:4].all()
+    for _ in range(1500):
+        gears.tick(1.0, 2.0, 2.0)
+    np.testing.assert_allclose(gears.module.deviations[0], still, rtol=0.02)
+
+
+def test_the_external_torque_is_what_the_model_does_not_explain() -> None:
+    np.testing.assert_allclose(Gears().tick(5.0, 3.0, 4.0).external, 2.0)
+    np.testing.assert_allclose(Gears().tick(5.0, 3.0, 4.0, use=only(0, 2)).external, 1.0)
+    for use in (only(0), only(1, 2)):
+        assert (Gears().tick(5.0, 3.0, 4.0, use=use).external == 0.0).all()
+
+
+def test_a_wrong_stiffness_is_learned_while_moving_and_not_at_rest() -> None:
+    """15 % too soft a spring, under loads to and fro."""
+    errors = []
+    for moving in (True, False):
+        gears = Gears()
+        for k in range(10000):
+            load = 0.3 * np.array(UR5E.limits.torque) * np.sin(0.004 * k)
+            gears.tick(load, load / 1.15, load, moving=moving)
+        module = gears.tick(10.0, 10.0 / 1.15, 10.0, moving=moving)
+        errors.append(np.abs(module.ways[1] - 10.0).max())
+    assert errors[0] < 0.3
+    assert errors[1] > 1.0
+
+
+def test_a_sudden_external_torque_is_a_contact_until_it_has_been_gone_for_a_while() -> None:
+    gears, load = Gears(), np.full(N, 5.0)
+    for _ in range(200):
+        gears.tick(load, load, load, moving=True)
+    assert not gears.module.contact
+    pushed = load + np.array([0.0, 0.0, 15.0, 0.0, 0.0, 0.0])
+    gears.tick(load, pushed, load, moving=True)
+    assert gears.module.contact
+    corrected = gears.module.correction.copy()
+    for tick in range(120):
+        gears.tick(load, load, load, moving=True)
+        assert gears.module.contact == (tick < SETTLE_TICKS - 1)
+    assert np.abs(gears.module.correction - corrected).max() < 0.05
+
+
+def test_in_contact_the_rigid_model_is_trusted_less() -> None:
+    gears = Gears()
+    pushed = gears.tick(5.0, 25.0, 25.0)
+    assert pushed.contact
+    assert np.abs(pushed.fused - 25.0).max() < 0.5
+
+
+def test_without_the_deflection_a_contact_shows_on_the_motor_side() -> None:
+    gears = Gears()
+    assert not gears.tick(5.0, 0.0, 6.0, friction_deviation=1.0, use=only(0, 2)).contact
+    assert gears.tick(5.0, 0.0, 25.0, friction_deviation=1.0, use=only(0, 2)).contact
