@@ -1,11 +1,13 @@
 """The paced loop: ticks a simulation in a thread of its own, in step with the clock, and never chases a debt."""
 
 import gc
+import os
 import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 
 from pendant.events import Event, Kind
 from pendant.modes import TICK, TICK_RATE
@@ -22,6 +24,7 @@ DEBT = 0.05
 RATE_TICKS = TICK_RATE // 2  # the actual rate is a mean over this many ticks
 QUIET_TICKS = TICK_RATE  # dropped debt is told at most once a second
 SWITCH_INTERVAL = 5e-4  # [s] Python's default of 5 ms would let a busy web thread hold up two ticks
+DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must leave the others some of the processor
 PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
 
 
@@ -111,6 +114,7 @@ class Loop:
             time.sleep(PAUSE_NAP)
 
     def _run(self) -> None:
+        _ask_for_real_time()
         try:
             self._pace()
         except BaseException as error:
@@ -146,6 +150,7 @@ class Loop:
                 if quiet <= 0:
                     quiet = QUIET_TICKS
                     self._tell(Event(Kind.OVERRUN, self.simulation.plant.tick, {"late": round(1000.0 * late, 1)}))
+                time.sleep(DEBT_NAP)
             quiet -= 1
             self._do_tick()
             ticks += 1
@@ -156,3 +161,10 @@ class Loop:
 
     def _tell(self, event: Event) -> None:
         self._events.append(event)
+
+
+def _ask_for_real_time() -> None:
+    """Let this thread run before others as soon as its tick is due, where the system allows that; elsewhere it takes its turn."""
+    if hasattr(os, "sched_setscheduler"):
+        with suppress(PermissionError):
+            os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(1))

@@ -1,5 +1,7 @@
 """The paced loop: in step with the clock, slower, paused, reset, late, broken. A clock of its own where it counts ticks."""
 
+import os
+import threading
 import time
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
@@ -22,6 +24,16 @@ from tests.sim.arms import UR5E
 from tests.sim.bench import push
 
 QUIET = Decision(Mode.TEACH, Safety.NORMAL, Phase.OFF, Law.HOLD, None, 0.0, 50.0, (0.0,) * 6, (), ())
+
+
+@pytest.fixture(autouse=True)
+def _ordinary_user(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A loop with a clock that never waits would take a whole core as a real-time thread."""
+
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
 
 
 class Ticker:
@@ -278,3 +290,18 @@ def test_stop_ends_the_thread(running: Callable[..., Loop]) -> None:
     time.sleep(0.05)
     assert loop.simulation.plant.tick == stood
     loop.stop()
+
+
+def test_it_asks_for_real_time_and_goes_on_where_that_is_refused(
+    running: Callable[..., Loop], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def refuse(pid: int, policy: int, parameters: os.sched_param) -> None:
+        asked.append((pid, policy & ~os.SCHED_RESET_ON_FORK, threading.current_thread().name))
+        raise PermissionError
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse)
+    loop = running()
+    until(lambda: loop.simulation.plant.tick > 10)
+    assert asked == [(0, os.SCHED_RR, "simulation")]
