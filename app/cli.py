@@ -104,6 +104,26 @@ def run(
         raise typer.Exit(1)
 
 
+@app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))
+def claims(
+    out: Annotated[Path, typer.Option(help="Folder for claims.md, claims.json and the runs.")] = Path("out/claims"),
+) -> None:
+    """Show every claim: run each session that names some with its switch on and off. Exit code 1 when a row is not shown."""
+    from app.coverage import cover, totals, write
+    from app.summary import counting
+
+    with counting("claims") as told:
+        rows = cover(out, told)
+    write(rows, out)
+    for row in rows:
+        if row.session is not None and not row.shown:
+            Console().print(f"[red]{row.claim.name}[/red] {escape(f'{row.session}: {row.state} {row.why}')}")
+    counts = ", ".join(f"{number} {state}" for state, number in totals(rows).items())
+    Console().print(f"{len(rows)} rows: {counts}; see {escape(str(out / 'claims.md'))}")
+    if not all(row.shown for row in rows):
+        raise typer.Exit(1)
+
+
 @app.command(epilog=example("pendant check my.yaml", "pendant check cell.yaml", "pendant check my-arm.yaml"))
 def check(file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")]) -> None:
     """Check a file without running it: a session, a configuration or a robot."""

@@ -4,16 +4,19 @@ import math
 import re
 from typing import Literal, NamedTuple
 
+import msgspec
+
 from app.actions import Action, Effort, Laboratory, Program
 from app.actions import Settings as SettingsAction
 from app.bodies import check_load, check_world
 from app.checked import ABSENT, BadInput, load
+from app.claims import CLAIMS
 from app.expectations import Displacement, Expectation, Value
 from app.library import load_arm, load_tool
 from app.session import Session, Setup, World, bundled, folder
 from pendant.program import Program as Steps
 from pendant.program import misfit
-from pendant.settings import SettingError, Settings, apply
+from pendant.settings import SettingError, Settings, apply, describe
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
 from sim.scenario import Scenario
@@ -25,8 +28,20 @@ MOUNTINGS: dict[str, list[float]] = {
 }
 """Named mountings: roll, pitch, yaw of B in W [rad]. On a wall, z of B is horizontal, along x of W."""
 
-FEATURES: dict[str, str] = {}
-"""Requirement id -> the dotted name of the switch that turns it on and off. Features without a switch are not in it."""
+FEATURES: dict[str, dict[str, float | bool]] = {
+    "FD-3": {"free_drive.gain": 0.0},
+    "FD-7": {"activation.period": 0.0},
+    "FD-9": {"sequence.on": False},
+    "FD-14": {"free_drive.period": 30.0},  # longer than a session: nothing ends by itself
+    "FD-15": {"free_drive.restart_period": 30.0},
+    "AF-2": {"joint_control.adaptive": False},
+    "AF-4": {"joint_control.feed_forward": False},
+    "AF-7": {"joint_control.friction": False},
+}
+"""Requirement id -> the settings, by dotted name, that turn it off. Features without a switch are not in it."""
+
+SWITCHES = [row.name for row in describe() if row.low is None]
+"""Settings that are true or false, by dotted name."""
 
 LAST_OF = {"FD": 25, "VW": 10, "HF": 2, "CD": 18, "AF": 9}
 """The highest number of each group of requirements."""
@@ -58,7 +73,11 @@ def prepare(setup: Setup, where: str) -> Prepared:
     program = setup.program if isinstance(setup, Session) else None
     if program is not None and (why := misfit(program, arm.n)) is not None:
         raise BadInput(where, "program", ABSENT, why)
-    prepared = Prepared(arm, _scenario(setup, arm, where), _applied(Settings(), setup.settings, where, "settings"), program)
+    settings = _applied(Settings(), setup.settings, where, "settings")
+    for ident, state in setup.features.items():
+        if state == "off":
+            settings = apply(settings, dict(FEATURES[ident]))
+    prepared = Prepared(arm, _scenario(setup, arm, where), settings, program)
     if isinstance(setup, Session):
         _check_session(setup, prepared, where)
     return prepared
@@ -110,7 +129,28 @@ def _applied(settings: Settings, changes: dict[str, float | bool | str], where: 
         raise BadInput(where, f"{field}.{error.name}", value, error.allowed) from None
 
 
+def without(session: Session) -> Session:
+    """The session with its switch off; `prepare` has checked that it names one."""
+    switch = session.switch or ""
+    if switch in FEATURES:
+        return msgspec.structs.replace(session, features={**session.features, switch: "off"})
+    return msgspec.structs.replace(session, settings={**session.settings, switch: False})
+
+
+def _check_claims(session: Session, where: str) -> None:
+    for i, name in enumerate(session.claims):
+        if name not in CLAIMS:
+            allowed = "a row of `pendant claims`, such as A 3, B 22, B fig 3h falling, C 1 or FD-13"
+            raise BadInput(where, f"claims[{i}]", name, allowed)
+    if session.claims and session.switch is None:
+        raise BadInput(where, "switch", ABSENT, "missing: the feature, such as FD-7, without which the claims do not hold")
+    if session.switch is not None and session.switch not in {*FEATURES, *SWITCHES}:
+        allowed = f"one of {', '.join(FEATURES)}, or a setting that is true or false, such as sequence.on"
+        raise BadInput(where, "switch", session.switch, allowed)
+
+
 def _check_session(session: Session, prepared: Prepared, where: str) -> None:
+    _check_claims(session, where)
     parts = ["foot", *prepared.arm.chain.joints, "flange", "tool"]
     for i, action in enumerate(session.timeline):
         _check_action(action, f"timeline[{i}]", session, prepared, parts, where)

@@ -35,6 +35,8 @@ class Session(Setup, frozen=True, kw_only=True):
 
     title: str
     duration: Annotated[float, Meta(gt=0, le=3600)]  # [s]
+    claims: list[str] = []  # rows of `pendant claims` that this session shows (app/claims.py)
+    switch: str | None = None  # the feature, or setting that is true or false, without which it must fail
     program: Program | None = None  # loaded at the start
     timeline: list[AnyAction] = []
     expectations: list[AnyExpectation] = []

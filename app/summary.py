@@ -25,6 +25,20 @@ def progress(session: Session) -> Iterator[Callable[[float], None]]:
         yield lambda seconds: bar.update(task, completed=seconds)
 
 
+@contextmanager
+def counting(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar over runs done, on a terminal only; gives the function to tell it how many are done, of how many."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed} of {task.total}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, of: bar.update(task, completed=done, total=of)
+
+
 def show(session: Session, outcome: Outcome, out: Path) -> None:
     """Print what became of a session."""
     console = Console()

@@ -18,7 +18,7 @@ def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return code
 
 
-@pytest.mark.parametrize("command", ["serve", "run", "check", "robots"])
+@pytest.mark.parametrize("command", ["serve", "run", "check", "claims", "robots"])
 def test_every_command_has_help_with_examples(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -29,9 +29,8 @@ def test_every_command_has_help_with_examples(
 def test_help_lists_only_what_works(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert pendant(monkeypatch) == 0
     shown = capsys.readouterr().out
-    assert all(command in shown for command in ("serve", "run", "check", "robots"))
+    assert all(command in shown for command in ("serve", "run", "check", "claims", "robots"))
     assert "replay" not in shown
-    assert "claims" not in shown
 
 
 def test_robots_shows_the_arms(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -140,6 +139,13 @@ def test_a_setting_is_a_name_and_a_value(text: str, value: object) -> None:
             cli.setting(text)
     else:
         assert cli.setting(text) == (text.partition("=")[0], value)
+
+
+def test_claims_says_what_is_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    monkeypatch.setattr("app.coverage.claiming", dict)
+    assert pendant(monkeypatch, "claims", "--out", str(tmp_path)) == 1
+    assert "115 rows: 0 shown, 0 fails, 0 holds without its switch, 115 missing" in capsys.readouterr().out
+    assert (tmp_path / "claims.md").is_file()
 
 
 def test_the_command_runs_as_a_process_of_its_own() -> None:

@@ -62,7 +62,7 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         ({"posture": [0.0, 9.0, 0.0, 0.0, 0.0, 0.0]}, "posture[1] = 9.0: -6.28319 .. 6.28319 rad (shoulder of ur5e)"),
         ({"settings": {"free_drive.periode": 1}}, "settings.free_drive.periode"),
         ({"settings": {"free_drive.period": 99}}, "settings.free_drive.period = 99.0: a number from 0.5 to 30 s"),
-        ({"features": {"FD-9": "off"}}, "features.FD-9: FD-9: not available yet (planned)"),
+        ({"features": {"FD-13": "off"}}, "features.FD-13: FD-13: not available yet (planned)"),
         ({"features": {"FD-99": "off"}}, "features = FD-99: the id of a requirement"),
         ({"features": {"XX-1": "on"}}, "features = XX-1: the id of a requirement"),
         ({"world": "kitchen"}, "world = kitchen: a list of objects, or one of table, workshop"),
@@ -162,7 +162,7 @@ def test_what_the_schema_forbids_is_refused_in_one_line(fields: dict[str, Any], 
 def test_every_bundled_session_is_valid_and_can_fail(name: str) -> None:
     session = load(find(name), Session)
     prepare(session, name)
-    assert 6.0 <= session.duration <= 12.0
+    assert session.duration <= 12.0
     assert session.expectations
 
 

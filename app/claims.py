@@ -1,0 +1,117 @@
+"""Every claim and situation that a session must show: the rows of `pendant claims`. The method is that of the cited documents."""
+
+from typing import NamedTuple
+
+
+class Claim(NamedTuple):
+    """One row: a claim, a situation, or a requirement that stands for the summary."""
+
+    name: str  # as a session's `claims` spells it
+    text: str  # what to show
+    ids: str  # requirements that do it
+
+
+_A = (
+    ((1, 21), "signal, monitored sequence, entry only within every limit; static under gravity, yields to a push", "FD-2 FD-9"),
+    ((2,), "wrong payload or a bump in the sequence: stays in the first mode", "FD-10"),
+    ((3, 22), "a signal shorter than the activation period does nothing", "FD-7"),
+    ((4, 23), "stays for the free-drive period", "FD-14"),
+    ((5, 24), "restart period begins when static", "FD-15"),
+    ((6, 25), "left after a static free-drive period, and after a static restart period", "FD-14 FD-15"),
+    ((7,), "remainders of all periods are presented", "FD-20"),
+    ((8, 26), "deactivation signal", "FD-17"),
+    (
+        (9, 19, 31),
+        "speed, acceleration, torque, motor torque, force, position; angular position, velocity, acceleration as parameters",
+        "FD-9",
+    ),
+    ((10,), "two parameters, two limits", "FD-12a"),
+    (
+        (11, 20, 32),
+        "activation limit from a shape around a part; from a shape that depends on posture",
+        "VW-1 VW-2 VW-6 VW-8",
+    ),
+    ((12, 13), "feedback, then a confirmation; given by pushing the arm, also with no force/torque sensor", "FD-8"),
+    ((14,), "signal given at a joint sensor, no force/torque sensor", "FD-5e FD-5g"),
+    (
+        (15, 16, 17, 28, 29, 30),
+        "signal by force, by twist; in a direction; at a position on the arm; with torque below a limit",
+        "FD-5c FD-5d FD-6",
+    ),
+    ((18,), "the whole arm: joints with output flange, motor, sensors", "AF-1 FD-3"),
+    ((27,), "deactivation by an exceeded operation limit", "FD-18"),
+)
+_B = (
+    ((1, 12), "opposite directions, in 3-D", "CD-0"),
+    ((2, 18), "force above, acceleration below threshold", "CD-3"),
+    ((3, 4, 21, 22), "buffers, and a decision from them", "CD-4 CD-6"),
+    ((5,), "thresholds from the buffer", "CD-6"),
+    ((6, 9), "thresholds, and the ratio threshold, from the payload mass", "CD-5 CD-11"),
+    ((7, 19), "differences", "CD-4"),
+    ((8, 20), "relationship of values, and of differences", "CD-5"),
+    ((10, 15), "pose at contact", "CD-14"),
+    ((11, 13, 14), "sensors at the contact part and elsewhere", "CD-2"),
+    ((16, 17), "each action on contact", "CD-15"),
+)
+_C = (
+    ((1, 12, 21), "control from friction torque and transmission torque", "AF-2 AF-3 AF-5"),
+    ((2,), "each optional input used, by its switch", "AF-5"),
+    ((3, 13), "friction from the deflection", "AF-2"),
+    ((4, 5, 14), "two encoders", "AF-1 AF-2"),
+    ((6,), "transmission torque with the friction estimate", "AF-3"),
+    ((7, 16), "desired transmission torque", "AF-4"),
+    ((8, 17), "transmission-torque error correction", "AF-5"),
+    ((9, 18), "feed-forward", "AF-5"),
+    ((10, 19), "each kind of state error correction", "AF-5"),
+    ((11, 20), "resulting torque from each term alone and from all, as a current", "AF-5 AF-6"),
+    ((15,), "motor torque sensor", "AF-1"),
+)
+_SUMMARY = {
+    "FD-13": "manipulation by hand is recognised",
+    "FD-14": "free-drive period",
+    "FD-15": "restart period",
+    "FD-16": "restart period asked for",
+    "FD-17": "deactivation signal",
+    "FD-20": "remainders are published",
+    "FD-21": "feedback on the remainder",
+    "FD-22": "root cause and guidance",
+    "FD-24": "sequence, maintain periods and walls on or off independently",
+    "VW-1": "shapes around a part",
+    "VW-2": "references of walls",
+    "VW-3": "stepwise anchors",
+    "VW-4": "anchors at an average",
+    "VW-5": "anchors moved by the user",
+    "VW-6": "activation and operation shapes",
+    "VW-7": "resistance inside a wall",
+    "VW-8": "size by posture",
+    "HF-1": "patterns of feedback",
+}
+
+
+def _claims() -> list[Claim]:
+    numbered = [
+        (group, number, Claim(f"{group} {number}", text, ids))
+        for group, table in (("A", _A), ("B", _B), ("C", _C))
+        for numbers, text, ids in table
+        for number in numbers
+    ]
+    return [claim for _, _, claim in sorted(numbered)]
+
+
+def _situations() -> list[Claim]:
+    """Figures 3a to 3i and 4a to 4i; h and i each with friction falling and rising: twenty-two."""
+    rows: list[Claim] = []
+    for figure in "34":
+        for letter in "abcdefghi":
+            free = ", which never reports contact" if letter in "ab" else ""
+            for friction in (" falling", " rising") if letter in "hi" else ("",):
+                text = f"situation of figure {figure}{letter}" + (f", friction{friction}" if friction else "") + free
+                rows.append(Claim(f"B fig {figure}{letter}{friction}", text, "CD-17"))
+    return rows
+
+
+CLAIMS: dict[str, Claim] = {
+    claim.name: claim for claim in [*_claims(), *_situations(), *(Claim(ident, text, ident) for ident, text in _SUMMARY.items())]
+}
+"""All rows by name, in the order of `pendant claims`: `A 1` .. `A 32`, `B 1` .. `B 22`, `C 1` .. `C 21`, `B fig 3a` ..
+`B fig 4i rising`, and the requirements that stand for the summary."""
