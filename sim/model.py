@@ -16,6 +16,7 @@ SUBSTEPS = 8
 """Physics steps a control tick: 0.25 ms. The series springs need less than 0.7 ms (facts/contact-and-joints.md 3.2)."""
 
 PASSIVE = 16  # mjINPUT_NONE: an actuator without an input
+WEIGHTLESS = 1e-9  # [kg] of the body that carries rotors: MuJoCo takes no zero
 STRIBECK = 0.1  # [rad/s]; without effect, for breakaway and Coulomb torque are set alike, once a tick
 BRISTLE_RATIO = 0.7
 """Damping of a stuck rotor on its bristles: without any, a stuck joint rings for seconds and creeps."""
@@ -46,10 +47,11 @@ class Step:
 def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False) -> mujoco.MjSpec:
     """The model of `arm` as `scenario` puts it up.
 
-    A joint is two hinges: the rotor `theta/<joint>`, alone in the world with the reflected inertia, and the link
+    A joint is two: the rotor `theta/<joint>`, alone in the world with the reflected inertia, and the hinge of the link
     `q/<joint>` in the chain; a fixed tendon theta - q is the transmission (Spong's model: the same equations as a rotor in
-    the chain, with a mass matrix of two blocks). Beyond the last link sits the flange sensor: three stiff slides carry the
-    body `flange`, on which tool and payload are welded.
+    the chain, with a mass matrix of two blocks). A rotor is an inertia and an angle, which MuJoCo gets as the armature and
+    the coordinate of a slide: three of them share a massless body, as their axes are orthogonal, and nothing turns. Beyond
+    the last link sits the flange sensor: three stiff slides carry the body `flange`, on which tool and payload are welded.
 
     Args:
         arm: the arm's numbers.
@@ -65,16 +67,15 @@ def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False
     rigid, friction = chain(arm), Friction(arm)
 
     base = spec.worldbody.add_body(name="foot", quat=quaternion_from_matrix(rotation_from_rpy(scenario.mounting)))
+    carriers = [spec.worldbody.add_body(name=f"rotors/{k}") for k in range(0, arm.n, 3)]
+    for carrier in carriers:
+        _set_body(carrier, Body(WEIGHTLESS, np.zeros(3), np.eye(3)))
     parent = base
     for i, name in enumerate(arm.chain.joints):
         link = parent.add_body(name=name, pos=rigid.p[i], quat=quaternion_from_matrix(rigid.R[i]))
         _set_body(link, rigid.links[i])
         link.add_joint(name=f"q/{name}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
-        rotor = spec.worldbody.add_body(name=f"rotor/{name}")
-        _set_body(rotor, Body(1e-3, np.zeros(3), np.eye(3) * 1e-6))
-        rotor.add_joint(
-            name=f"theta/{name}", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1], armature=arm.motors.rotor_inertia[i] - 1e-6
-        )
+        _add_rotor(carriers[i // 3], arm, i)
         _add_transmission(spec, arm, i)
         _add_friction(spec, arm, friction, i)
         parent = link
@@ -96,7 +97,8 @@ def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False
     for kind in ("force", "torque"):
         _add_sensor(spec, kind, _TYPES[kind], "tool", step)
 
-    _add_shapes(spec, arm, scenario)
+    if scenario.world:
+        _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
     pair_geoms(spec, arm.chain.joints[0], scenario.world)
@@ -110,6 +112,11 @@ def _set_body(body: mujoco.MjsBody, values: Body) -> None:
     body.fullinertia = values.inertia[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] if values.mass else [np.nan] * 6
     if not values.mass:
         body.inertia = [0.0, 0.0, 0.0]
+
+
+def _add_rotor(carrier: mujoco.MjsBody, arm: Arm, i: int) -> None:
+    name, axis = f"theta/{arm.chain.joints[i]}", np.eye(3)[i % 3]
+    carrier.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis, armature=arm.motors.rotor_inertia[i])
 
 
 def _add_transmission(spec: mujoco.MjSpec, arm: Arm, i: int) -> None:

@@ -60,7 +60,7 @@ class Plant:
         self._parts["tool"] = self._parts["flange"]
         self._payload = model.body("payload").id
         self._objects = np.array([model.body(f"object/{item.name}").id for item in scenario.world], dtype=int)
-        self._tip = model.geom("shape/tool").id
+        self._tip = model.geom("shape/tool").id if scenario.world else -1
         self._pairs = [[model.pair(f"shape/tool {item.name}").id] for item in scenario.world]
         self._history = self._history_indices()
         self.flange = np.zeros(3 * len(SENSORS))
