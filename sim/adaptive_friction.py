@@ -55,13 +55,13 @@ class AdaptiveFriction:
         deviation = np.column_stack([PRIOR * size, np.full(n, GAIN_PRIOR), BIAS_PRIOR * limit])
         walk = np.column_stack([WALK * size, np.full(n, GAIN_WALK), BIAS_WALK * limit])
         self.covariance = np.stack([np.diag(row**2) for row in deviation])
-        self._ceiling = deviation**2
-        self._walk = walk**2 * TICK
-        self._noise = (NOISE * limit) ** 2 * CORRELATED
+        noise = np.tile((NOISE * limit) ** 2 * CORRELATED, (TERMS, 1)).T
+        self._spreads = np.stack([walk**2 * TICK, deviation**2, noise])
         self.output_share = filed.output_share
-        self._reference, self._per_kelvin = filed.temperature, filed.per_kelvin
-        self.total, self.deviation = np.zeros((2, n))
-        self.warmth = np.ones(n)
+        self._heat = (filed.temperature, filed.per_kelvin)
+        self._outcome = np.zeros((3, n))
+        self.total, self.deviation, self.warmth = self._outcome
+        self.warmth[:] = 1.0
 
     def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, temperature: Array, free: bool) -> None:
         """One tick.
@@ -74,21 +74,20 @@ class AdaptiveFriction:
             temperature: measured (n,) [°C].
             free: no contact, so that the surplus is friction.
         """
-        _warm(temperature, self._reference, self._per_kelvin, self.warmth)
-        _learn(
+        # One kernel and few arrays: each array argument costs as much as the arithmetic of a joint.
+        _step(
             speed,
             surplus,
             tau_dyn,
             tau_J,
-            self.warmth,
+            temperature,
             free,
+            self._heat,
+            self._spreads,
             self.terms,
             self.covariance,
-            self._walk,
-            self._ceiling,
-            self._noise,
+            self._outcome,
         )
-        _evaluate(speed, tau_J, self.warmth, self.terms, self.covariance, self.total, self.deviation)
 
     @property
     def breakaway(self) -> Array:
@@ -103,9 +102,13 @@ class AdaptiveFriction:
 
 
 @numba.njit(cache=True)
-def _warm(temperature, reference, per_kelvin, out) -> None:
-    for i in range(out.size):
-        out[i] = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
+def _step(speed, surplus, tau_dyn, tau_J, temperature, free, heat, spreads, terms, covariance, outcome) -> None:
+    total, deviation, warmth = outcome[0], outcome[1], outcome[2]
+    reference, per_kelvin = heat
+    for i in range(speed.size):
+        warmth[i] = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
+    _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, spreads[0], spreads[1], spreads[2])
+    _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation)
 
 
 @numba.njit(cache=True)
@@ -131,7 +134,7 @@ def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk
         _friction_terms(speed[i], tau_J[i], warmth[i], row)
         row[4] = tau_dyn[i]
         row[5] = 1.0
-        spread, predicted = noise[i], 0.0
+        spread, predicted = noise[i, 0], 0.0
         for k in range(TERMS):
             gain[k] = 0.0
             for m in range(TERMS):

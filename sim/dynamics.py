@@ -1,13 +1,12 @@
 """The controller's rigid-body model: Pinocchio, with the links as believed and the payload as configured."""
 
-import math
-
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
 from sim.chain import Body, Chain
 from sim.frames import rotation_from_rpy
+from sim.newton_euler import NewtonEuler
 from sim.scenario import Vector
 
 Array = NDArray[np.float64]
@@ -24,6 +23,9 @@ class Dynamics:
         load: everything beyond the flange, in F.
         mounting: roll, pitch, yaw of B in W [rad].
         elbow: index of the joint whose origin is the elbow.
+
+    Attributes:
+        recursion: the same model, compiled for what every tick needs.
     """
 
     def __init__(self, chain: Chain, links: tuple[Body, ...], load: Body, mounting: Vector, elbow: int) -> None:
@@ -38,15 +40,17 @@ class Dynamics:
         self._flange = model.addFrame(frame)
         model.gravity = pin.Motion(rotation_from_rpy(mounting).T @ [0.0, 0.0, -GRAVITY], np.zeros(3))
         self.model, self.data = model, model.createData()
-        self._last, self._elbow = parent, elbow + 1
+        self._last = parent
         self._bare = model.inertias[parent].copy()
         self.gravity_B = np.array(model.gravity.linear)
+        self.recursion = NewtonEuler(model, self._flange_placement, elbow)
         self.set_load(load)
 
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
         self.load = load
         self.model.inertias[self._last] = self._bare + self._flange_placement.act(pin.Inertia(load.mass, load.com, load.inertia))
+        self.recursion.set_load()
 
     def update(self, q: Array) -> tuple[Array, Array, Array]:
         """Flange position (3,), orientation (3, 3) in B and Jacobian (6, n), linear first, axes of B, at the flange origin."""
@@ -55,11 +59,6 @@ class Dynamics:
         placement = pin.updateFramePlacement(model, data, self._flange)
         jacobian = pin.getFrameJacobian(model, data, self._flange, pin.LOCAL_WORLD_ALIGNED)
         return placement.translation, placement.rotation, jacobian
-
-    def elbow_speed(self) -> float:
-        """Speed of the elbow [m/s] in the motion that `inverse` was last given."""
-        x, y, z = self.data.v[self._elbow].linear.tolist()
-        return math.sqrt(x * x + y * y + z * z)
 
     def gravity(self, q: Array) -> Array:
         """Gravity torque (n,) [N·m]."""

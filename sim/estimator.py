@@ -108,12 +108,11 @@ class Estimator:
             self.q = sample.q
         self._started = sample.joints_valid
         qd = q[1]
-        tau_dyn = dynamics.inverse(self.q, qd, q[2])
-        self._estimate_torques(sample, use, tau_dyn)
-        v_elbow = dynamics.elbow_speed()
-        p, R, self.jacobian = dynamics.update(self.q)
-        F_user, v_F = np.zeros(6), np.empty(6)
-        v_tcp = _tcp_speed(self.jacobian, qd, R, self._tcp, v_F)
+        rigid = dynamics.recursion
+        v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
+        p, R, v_F, self.jacobian = rigid.p, rigid.R, rigid.v_F, rigid.jacobian
+        self._estimate_torques(sample, use, rigid.torque)
+        F_user = np.zeros(6)
         if sample.acceleration_valid:
             _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
         if sample.wrench_valid:
@@ -236,23 +235,6 @@ def _follow(measured, gains, constants, state, tau_m, tau_J) -> None:
         rest[i] = min(max(rest[i], x - slip_yield[i]), x + slip_yield[i])
         slip = slip_stiffness[i] * (x - rest[i])
         tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i]) + slip
-
-
-@numba.njit(cache=True)
-def _tcp_speed(jacobian, qd, R, tcp, v_F) -> float:
-    """Fill the flange velocity (6,) and return the speed of the tool centre point [m/s]."""
-    for j in range(6):
-        total = 0.0
-        for i in range(qd.size):
-            total += jacobian[j, i] * qd[i]
-        v_F[j] = total
-    x = R[0, 0] * tcp[0] + R[0, 1] * tcp[1] + R[0, 2] * tcp[2]
-    y = R[1, 0] * tcp[0] + R[1, 1] * tcp[1] + R[1, 2] * tcp[2]
-    z = R[2, 0] * tcp[0] + R[2, 1] * tcp[1] + R[2, 2] * tcp[2]
-    vx = v_F[0] + v_F[4] * z - v_F[5] * y
-    vy = v_F[1] + v_F[5] * x - v_F[3] * z
-    vz = v_F[2] + v_F[3] * y - v_F[4] * x
-    return np.sqrt(vx * vx + vy * vy + vz * vz)
 
 
 @numba.njit(cache=True)

@@ -62,14 +62,6 @@ def test_flange_pose_and_jacobian(arm: Arm) -> None:
         assert np.allclose(jacobian[3:, i], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=1e-8)
 
 
-def test_elbow_speed_is_that_of_the_elbow_joint() -> None:
-    _, dynamics = both(UR5E, loaded=False)
-    q, qd = np.array([0.3, -1.0, 1.2, -0.5, 0.7, 0.1]), np.array([0.5, -0.4, 0.3, 1.0, 1.0, 1.0])
-    dynamics.inverse(q, qd, np.zeros(6))
-    ahead, behind = (joint_frames(UR5E, q + sign * 1e-6 * qd)[2][:3, 3] for sign in (1.0, -1.0))
-    assert dynamics.elbow_speed() == pytest.approx(np.linalg.norm(ahead - behind) / 2e-6, rel=1e-6)
-
-
 def test_specific_force_at_rest_points_up_with_g() -> None:
     _, dynamics = both(UR5E, loaded=True)
     q = np.array([0.3, -1.0, 1.2, -0.5, 0.7, 0.1])
