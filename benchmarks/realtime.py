@@ -217,7 +217,7 @@ def _measure(report: Report, loop: Loop, served: Served, ledger: Ledger, seconds
     end = start + seconds
 
     def task(role: Any, begin: float) -> Task:
-        button, slider = served.panel.free_drive._impl.uuid, served.panel.force._impl.uuid
+        button, slider = served.panel.free_drive._impl.uuid, served.lab.force._impl.uuid
         act = now + BEFORE / 2.0 + (ENTRY if role == "meddler" else 0.0)  # whoever acts first becomes the operator
         return Task(url, role, begin, act, end, end + AFTER, f"/arm/{PART}", (x, y, z), button, slider)
 

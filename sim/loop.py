@@ -11,6 +11,7 @@ from contextlib import suppress
 
 from pendant.events import Event, Kind
 from pendant.modes import TICK, TICK_RATE
+from pendant.settings import Settings
 from sim.desk import Desk
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
@@ -56,6 +57,11 @@ class Loop:
     def seed(self) -> int:
         """Seed of the running scenario."""
         return self.simulation.scenario.seed
+
+    @property
+    def settings(self) -> Settings:
+        """The pendant's settings as they are now."""
+        return self.simulation.settings
 
     def start(self) -> None:
         """Start the thread; returns once the first tick is done."""

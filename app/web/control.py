@@ -7,7 +7,7 @@ import viser
 
 from app.web import style, svg
 from app.web.guard import Guard
-from app.web.panel import Html
+from app.web.html import Html
 from app.web.svg import Colour
 
 TAKE = "Take"

@@ -273,11 +273,18 @@ def _fits(control: Any, value: Any) -> bool:
         return isinstance(value, bool)
     if isinstance(control, viser.GuiSliderHandle):
         return type(value) in (int, float) and control.min <= value <= control.max
+    if isinstance(control, viser.GuiNumberHandle):
+        return type(value) in (int, float) and _between(control.min, value, control.max)
     if isinstance(control, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
         return isinstance(value, str) and value in control.options
     if isinstance(control, viser.GuiTextHandle):
         return isinstance(value, str) and len(value) <= MAX_TEXT
     return False
+
+
+def _between(low: float | None, value: float, high: float | None) -> bool:
+    """Whether `value` is in a range whose ends may be open."""
+    return (low is None or low <= value) and (high is None or value <= high)
 
 
 def _sole(headers: Headers, name: str) -> str | None:

@@ -13,10 +13,11 @@ import viser
 from app.bad_input import BadInput
 from app.library import mesh_path
 from app.web.control import Control
+from app.web.docks import Docks
 from app.web.guard import LOOPBACK, Guard
 from app.web.hand import Hand
 from app.web.operator import Operator
-from app.web.panel import Panel, Running
+from app.web.running import Running
 from app.web.scene import Scene, frames_of
 from sim.arm import Arm
 from sim.scenario import Scenario
@@ -42,7 +43,8 @@ class Served:
         )
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
         self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
-        self.panel = Panel(self.server, self.guard, loop, self.hand, f"pendant · {arm.title}")
+        self.docks = Docks(self.server, self.guard, loop, self.hand, f"pendant · {arm.title}")
+        self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
@@ -81,7 +83,7 @@ class Served:
                 self.scene.show(snapshot)
                 shown = snapshot.tick
             if frame % FRAMES_A_PANEL == 0:
-                self.panel.show(snapshot)
+                self.docks.show(snapshot)
                 self.server.get_event_loop().call_soon_threadsafe(self.control.show)
             frame += 1
 

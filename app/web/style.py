@@ -6,18 +6,16 @@ QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(13
 """How a button looks that needs no eye."""
 
 
-def sheet(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str:
-    """The style sheet of the pendant; the arguments are the ids of its controls, `quiet` those of the buttons that need no eye.
+def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
+    """The style sheet of the page; the arguments are the ids of its controls, `quiet` those of the buttons that need no eye.
 
     The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
     gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
     """
-    main, low, left = f':has([id="{free_drive}"])', f':has([id="{stop}"])', f':has([id="{restart}"])'
+    main, low = f':has([id="{free_drive}"])', f':has([id="{stop}"])'
     plain = ",".join(f'[id="{button}"]' for button in quiet)
     return f"""<style>
 {main}>{low}:not({main}){{flex:0 0 170px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
-:has(.pd-events)>{left}:not(:has(.pd-events)){{flex:0 0 262px!important}}
-{left}>:has(.pd-events):not({left}){{flex:1 1 0!important}}
 [style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
 .pd-light{{display:flex;align-items:center;gap:12px;margin:2px 12px 10px;padding:12px 14px;border-radius:8px;
   background:color-mix(in srgb,var(--c) 9%,transparent);border:1px solid color-mix(in srgb,var(--c) 35%,transparent)}}
@@ -28,7 +26,7 @@ def sheet(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str
 .pd-light span{{font-size:12.5px;color:var(--c);font-weight:600}}
 .pd-light em{{font-style:normal;font-size:10.5px;text-align:right;opacity:.75;text-transform:uppercase;letter-spacing:.06em}}
 .pd-light strong{{display:block;font-size:12px;letter-spacing:0}}
-.pd-rings{{display:flex;gap:10px;justify-content:center;align-items:center;min-height:92px;margin:2px 12px 6px}}
+.pd-rings{{display:flex;gap:10px;justify-content:center;align-items:center;min-height:86px;margin:0 12px 6px}}
 .pd-rings figure{{margin:0;text-align:center}} .pd-rings svg{{display:block;margin:0 auto}}
 .pd-rings figcaption{{font-size:11.5px;margin-top:3px;opacity:.8}}
 .pd-rings p{{margin:0;font-size:12px;opacity:.5}}
@@ -37,6 +35,13 @@ def sheet(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str
 .pd-note{{margin:2px 12px 10px;padding:8px 12px;border-left:3px solid var(--c);border-radius:0 6px 6px 0;
   background:color-mix(in srgb,var(--c) 7%,transparent);font-size:12.5px;line-height:1.4}}
 .pd-note b{{display:block}} .pd-note span{{opacity:.8}}
+.pd-note ul{{margin:5px 0 0;padding:0;list-style:none;font-size:11.5px;font-variant-numeric:tabular-nums;opacity:.8}}
+.pd-bars{{margin:4px 14px 8px;font-size:11.5px;line-height:1.3}}
+.pd-bars div{{display:grid;grid-template-columns:1fr auto;gap:1px 8px;margin-bottom:4px}}
+.pd-bars em{{font-style:normal;font-variant-numeric:tabular-nums}}
+.pd-bars i{{grid-column:1/3;height:4px;border-radius:2px;
+  background:linear-gradient(90deg,var(--c) var(--s),rgba(134,142,150,.2) 0)}}
+.pd-bars p{{margin:2px 0 0;opacity:.55}}
 .pd-facts{{display:grid;grid-template-columns:1fr auto;gap:3px 12px;margin:4px 14px 10px;font-size:12.5px}}
 .pd-facts dt{{opacity:.65}} .pd-facts dd{{margin:0;text-align:right;font-variant-numeric:tabular-nums;font-weight:500}}
 .pd-log{{padding:4px 4px 8px;font-size:12.5px}}
@@ -45,6 +50,7 @@ def sheet(stop: str, free_drive: str, restart: str, quiet: Iterable[str]) -> str
 .pd-log td:nth-child(1){{width:8px;padding-right:0}}
 .pd-log td:nth-child(2){{font-variant-numeric:tabular-nums;opacity:.6;white-space:nowrap;width:1%}}
 .pd-log i{{display:block;width:7px;height:7px;border-radius:50%;background:var(--c);margin-top:5px}}
+.pd-fine{{margin:-2px 12px 8px;font-size:11px;line-height:1.3;opacity:.6}}
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 .mantine-Button-section{{margin-inline-end:8px!important}}

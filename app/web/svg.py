@@ -1,9 +1,10 @@
 """Small pictures for the pendant: mode light, countdown rings, tables. Every text that comes from elsewhere is escaped here."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from enum import StrEnum
 from html import escape
+from typing import NamedTuple
 
 
 class Colour(StrEnum):
@@ -14,6 +15,21 @@ class Colour(StrEnum):
     AMBER = "#e67700"  # about to end
     RED = "#c92a2a"  # stopped
     GREY = "#868e96"  # watching, waiting
+
+
+class Bar(NamedTuple):
+    """A value against its limit."""
+
+    name: str
+    part: str
+    value: float
+    limit: float
+    unit: str
+
+    @property
+    def share(self) -> float:
+        """Of the limit; 1 is at it."""
+        return abs(self.value) / self.limit if self.limit > 0.0 else 0.0
 
 
 RADIUS = 26.0
@@ -33,10 +49,10 @@ def ring(name: str, left: float, share: float, colour: Colour) -> str:
     arc = _AROUND * min(max(share, 0.0), 1.0)
     return (
         '<figure><svg viewBox="0 0 64 64" width="64" height="64" role="img">'
-        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="#e9ecef" stroke-width="6"/>'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-opacity=".12" stroke-width="6"/>'
         f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="{colour.value}" stroke-width="6" stroke-linecap="round" '
         f'stroke-dasharray="{arc:.1f} {_AROUND:.1f}" transform="rotate(-90 32 32)"/>'
-        f'<text x="32" y="37" text-anchor="middle" font-size="15" font-weight="600" fill="#343a40">{left:.1f}</text></svg>'
+        f'<text x="32" y="37" text-anchor="middle" font-size="15" font-weight="600" fill="currentColor">{left:.1f}</text></svg>'
         f"<figcaption>{escape(name)}</figcaption></figure>"
     )
 
@@ -47,11 +63,29 @@ def rings(pictures: Iterable[str]) -> str:
     return f'<div class="pd-rings">{inside}</div>'
 
 
-def note(headline: str, text: str, colour: Colour) -> str:
-    """A short message: a headline and what to do."""
+def note(headline: str, text: str, colour: Colour, reasons: Sequence[str] = ()) -> str:
+    """A short message: a headline, what to do, and the numbers that led to it."""
+    lines = "".join(f"<li>{escape(reason)}</li>" for reason in reasons)
     return (
         f'<div class="pd-note" style="--c:{colour.value}"><b>{escape(headline)}</b>'
-        f"{f'<span>{escape(text)}</span>' if text else ''}</div>"
+        f"{f'<span>{escape(text)}</span>' if text else ''}{f'<ul>{lines}</ul>' if lines else ''}</div>"
+    )
+
+
+def bars(rows: Sequence[Bar], count: int) -> str:
+    """Monitored values against their limits; `count` is how many there are in all."""
+    lines = "".join(_bar(row) for row in rows)
+    rest = count - len(rows)
+    more = f"<p>and {rest} more, further from their limits</p>" if rest > 0 else ""
+    return f'<div class="pd-bars">{lines}{more}</div>'
+
+
+def _bar(row: Bar) -> str:
+    colour = Colour.RED if row.share > 1.0 else Colour.AMBER if row.share > 0.7 else Colour.GREEN
+    mark = "! " if row.share > 1.0 else ""
+    return (
+        f'<div style="--c:{colour.value};--s:{100.0 * min(row.share, 1.0):.0f}%"><span>{escape(row.name)}</span>'
+        f"<em>{mark}{row.value:.2g} / {row.limit:.2g} {escape(row.unit)}</em><i></i></div>"
     )
 
 
@@ -64,6 +98,11 @@ def facts(pairs: Iterable[tuple[str, str]]) -> str:
     """Names and values in two columns."""
     rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in pairs)
     return f'<dl class="pd-facts">{rows}</dl>'
+
+
+def fine_print(text: str) -> str:
+    """A line in small letters."""
+    return f'<p class="pd-fine">{escape(text)}</p>'
 
 
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:

@@ -9,7 +9,9 @@ from app.library import load_arm
 from pendant.decision import Decision, Remaining
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
+from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
+from pendant.settings import Settings
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
 from sim.snapshot import Snapshot
@@ -61,11 +63,15 @@ class FakeLoop:
         self.paused = False
         self.actual_rate = 1.0
         self.seed = 7
+        self.settings = Settings()
         self.tick = 0
         self.mode = Mode.TEACH
         self.safety = Safety.NORMAL
         self.phase = Phase.OFF
         self.periods: tuple[Remaining, ...] = ()
+        self.monitored: tuple[Monitored, ...] = ()
+        self.configured = 0.0
+        self.payload = 0.0
         self.q = HOME.copy()
         self.touches: tuple[Any, ...] = ()
         self.log: list[Event] = []
@@ -82,11 +88,28 @@ class FakeLoop:
         """Log an event."""
         self.log.append(Event(kind, self.tick, dict(values)))
 
+    def refuse(self) -> None:
+        """Refuse a changed setting."""
+        self.note(Kind.SETTING_REFUSED, name="x", value=0.0, reason="locked")
+
     def latest(self) -> Snapshot:
         """The newest snapshot."""
-        decision = Decision(self.mode, self.safety, self.phase, Law.HOLD, None, 1.0, 50.0, (0.0,) * 6, self.periods, ())
+        decision = Decision(
+            self.mode,
+            self.safety,
+            self.phase,
+            Law.HOLD,
+            None,
+            1.0,
+            50.0,
+            (0.0,) * 6,
+            self.periods,
+            (),
+            monitored=self.monitored,
+        )
         seen = estimate(self.q)
-        return Snapshot(self.tick, decision, seen, links(self.q), np.zeros((0, 7)), None, 0.0, 0.0, self.touches)
+        poses, nothing = links(self.q), np.zeros((0, 7))
+        return Snapshot(self.tick, decision, seen, poses, nothing, None, self.payload, self.configured, self.touches)
 
     def events(self, since: int) -> list[Event]:
         """Events from index `since` on."""

@@ -85,10 +85,10 @@ def test_a_viser_of_another_version_is_not_served(monkeypatch: pytest.MonkeyPatc
 
 def test_the_operator_sets_a_value(served: Served, join: Join) -> None:
     client, watcher = join(), join()
-    client.set(served.panel.force._impl.uuid, value=80)
+    client.set(served.lab.force._impl.uuid, value=80)
     until(lambda: served.hand.cap == 80.0, "the cap of the hand")
-    told = [m for m in heard(served, watcher) if m["type"] == "GuiUpdateMessage" and m["uuid"] == served.panel.force._impl.uuid]
-    assert told == [{"type": "GuiUpdateMessage", "uuid": served.panel.force._impl.uuid, "updates": {"value": 80.0}}]
+    told = [m for m in heard(served, watcher) if m["type"] == "GuiUpdateMessage" and m["uuid"] == served.lab.force._impl.uuid]
+    assert told == [{"type": "GuiUpdateMessage", "uuid": served.lab.force._impl.uuid, "updates": {"value": 80.0}}]
 
 
 def bad_updates() -> list[tuple[str, dict[str, Any], str]]:
@@ -128,7 +128,7 @@ def test_a_bad_update_of_the_operator_changes_nothing(
     client, watcher = join(), join()
     client.set(served.panel.free_drive._impl.uuid, value=True)
     until(lambda: served.guard.operator.holder == 0, "client 0 has control")
-    control = getattr(served.panel, name)
+    control = getattr(served.lab if name == "force" else served.panel, name)
     state = (control.value, control.disabled, control.visible, list(control._impl.update_cb), vars(control._impl.props).copy())
     client.set(control._impl.uuid, **update)
     refused(served, reason)
@@ -142,7 +142,7 @@ def test_a_bad_update_of_the_operator_changes_nothing(
 
 def test_a_refused_page_is_set_back(served: Served, join: Join) -> None:
     client = join()
-    uuid = served.panel.force._impl.uuid
+    uuid = served.lab.force._impl.uuid
     client.set(uuid, value=1000.0)
     back = client.messages_until(lambda m: m["type"] == "GuiUpdateMessage" and m["uuid"] == uuid)[-1]
     assert back["updates"] == {"value": 50.0}
@@ -160,7 +160,7 @@ def test_a_disabled_button_cannot_be_held(served: Served, join: Join, loop: Fake
 @pytest.mark.parametrize(("name", "frequency"), [("free_drive", 1000.0), ("leave_enabled", 30.0), ("force", 30.0)])
 def test_only_the_hold_button_at_its_rate_is_held(served: Served, join: Join, name: str, frequency: float) -> None:
     client = join()
-    control = served.panel.restart if name == "leave_enabled" else getattr(served.panel, name)
+    control = {"leave_enabled": served.lab.restart, "force": served.lab.force, "free_drive": served.panel.free_drive}[name]
     client.hold(control._impl.uuid, frequency)
     refused(served, "not a hold button")
 
@@ -198,20 +198,20 @@ def test_what_is_no_message_is_refused(served: Served, join: Join) -> None:
     for raw in bad:
         client.socket.send(raw)
     refused(served, "not understood", len(bad))
-    client.set(served.panel.force._impl.uuid, value=60.0)
+    client.set(served.lab.force._impl.uuid, value=60.0)
     until(lambda: served.hand.cap == 60.0, "the connection still works")
 
 
 def test_a_watcher_changes_nothing(served: Served, join: Join, loop: FakeLoop) -> None:
     operator, watcher = join(), join()
-    operator.set(served.panel.force._impl.uuid, value=40.0)
+    operator.set(served.lab.force._impl.uuid, value=40.0)
     until(lambda: served.guard.operator.holder == 0, "client 0 has control")
     panel = served.panel
-    watcher.set(panel.force._impl.uuid, value=90.0)
+    watcher.set(served.lab.force._impl.uuid, value=90.0)
     watcher.set(panel.mode._impl.uuid, value="NORMAL")
-    watcher.set(panel.clock._impl.uuid, value="Pause")
-    watcher.set(panel.speed._impl.uuid, value=0.5)
-    watcher.set(panel.restart._impl.uuid, value=True)
+    watcher.set(served.lab.clock._impl.uuid, value="Pause")
+    watcher.set(served.lab.speed._impl.uuid, value=0.5)
+    watcher.set(served.lab.restart._impl.uuid, value=True)
     watcher.set(panel.free_drive._impl.uuid, value=True)
     watcher.hold(panel.free_drive._impl.uuid)
     watcher.drag("start")
@@ -219,7 +219,7 @@ def test_a_watcher_changes_nothing(served: Served, join: Join, loop: FakeLoop) -
     refused(served, "not the operator", 9)
     loop.advance()
     assert (loop.wishes[-1].inputs.held, loop.wishes[-1].inputs.commands, loop.wishes[-1].touches) == (frozenset(), (), ())
-    assert (served.hand.cap, panel.mode.value, panel.speed.value) == (40.0, "TEACH", 1.0)
+    assert (served.hand.cap, panel.mode.value, served.lab.speed.value) == (40.0, "TEACH", 1.0)
     assert (loop.paused, loop.speed, loop.resets) == (False, 1.0, 0)
     told = [m["updates"] for m in heard(served, operator) if m["type"] == "GuiUpdateMessage" and "value" in m["updates"]]
     assert told == []
@@ -227,7 +227,7 @@ def test_a_watcher_changes_nothing(served: Served, join: Join, loop: FakeLoop) -
 
 def test_the_emergency_stop_of_a_watcher_works(served: Served, join: Join, loop: FakeLoop) -> None:
     operator, watcher = join(), join()
-    operator.set(served.panel.force._impl.uuid, value=40.0)
+    operator.set(served.lab.force._impl.uuid, value=40.0)
     until(lambda: served.guard.operator.holder == 0, "client 0 has control")
     watcher.set(served.panel.stop._impl.uuid, value=True)
     until(lambda: loop.advance() is None and Command.EMERGENCY_STOP in loop.wishes[-1].inputs.commands, "the stop")
@@ -252,7 +252,7 @@ def test_a_closed_connection_releases_at_once(served: Served, join: Join, loop: 
     client.close()
     until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release", seconds=1.0)
     assert loop.desk.take().touches == ()
-    other.set(served.panel.force._impl.uuid, value=60.0)
+    other.set(served.lab.force._impl.uuid, value=60.0)
     until(lambda: served.guard.operator.holder == 1, "control is free")
 
 
@@ -268,7 +268,7 @@ def test_a_network_that_stalls_lets_go(served: Served, join: Join, loop: FakeLoo
     until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release", seconds=2.0)
     assert loop.desk.take().touches == ()
     client.drag("update", to=(0.3, 0.2, 0.1))
-    client.set(served.panel.force._impl.uuid, value=60.0)
+    client.set(served.lab.force._impl.uuid, value=60.0)
     until(lambda: served.hand.cap == 60.0, "it is heard again")
     assert loop.desk.take().touches == ()
 
@@ -297,9 +297,9 @@ def test_a_bad_drag_is_refused(served: Served, join: Join, loop: FakeLoop, chang
 def test_nothing_counts_before_the_camera(served: Served, loop: FakeLoop) -> None:
     client = RawClient(served.url, camera=False)
     client.set(served.panel.stop._impl.uuid, value=True)
-    client.set(served.panel.force._impl.uuid, value=90.0)
+    client.set(served.lab.force._impl.uuid, value=90.0)
     refused(served, "not connected", 2)
-    assert served.panel.force.value == 50.0
+    assert served.lab.force.value == 50.0
     client.close()
 
 
@@ -388,5 +388,5 @@ def test_a_flood_is_read_slowly(served: Served, join: Join, monkeypatch: pytest.
         client.send(type="ShareUrlRequest")
     until(lambda: served.guard.refused["too fast"] > 0, "the flood is seen")
     assert served.guard.refused["not understood"] < 100
-    other.set(served.panel.force._impl.uuid, value=70.0)
+    other.set(served.lab.force._impl.uuid, value=70.0)
     until(lambda: served.hand.cap == 70.0, "the others are served", seconds=1.0)

@@ -9,7 +9,9 @@ from app.web.svg import Colour
 from pendant.decision import Remaining
 from pendant.events import Kind
 from pendant.inputs import Button, Command
+from pendant.limits import Monitored
 from pendant.modes import Mode, Phase, Safety
+from pendant.settings import Settings, apply, digest
 from sim.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -52,7 +54,7 @@ def test_the_light_and_the_rings_say_what_holds(
     colour: Colour,
 ) -> None:
     loop.mode, loop.safety, loop.phase, loop.periods = mode, safety, phase, periods
-    still.panel.show(loop.latest())
+    still.docks.show(loop.latest())
     shown = still.panel.light.shown + still.panel.rings.shown
     for word in words:
         assert word in shown
@@ -62,35 +64,85 @@ def test_the_light_and_the_rings_say_what_holds(
 def test_every_mode_and_safety_mode_has_words(loop: FakeLoop, still: Served) -> None:
     for loop.mode in Mode:
         for loop.safety in Safety:
-            still.panel.show(loop.latest())
+            still.docks.show(loop.latest())
             assert loop.mode.replace("_", "-") in still.panel.light.shown
 
 
 def test_what_does_not_change_is_not_sent(loop: FakeLoop, still: Served) -> None:
-    still.panel.show(loop.latest())
-    assert not still.panel.show(loop.latest())
+    still.docks.show(loop.latest())
+    assert not still.docks.show(loop.latest())
     loop.note(Kind.RESET)
-    assert still.panel.show(loop.latest())
-    assert not still.panel.show(loop.latest())
+    assert still.docks.show(loop.latest())
+    assert not still.docks.show(loop.latest())
 
 
 def test_a_refusal_shows_its_reason_and_guidance_until_something_else_does(loop: FakeLoop, still: Served) -> None:
     loop.note(Kind.REFUSED_MODE, mode="RUN", allowed="TEACH")
     loop.note(Kind.RESET)
-    still.panel.show(loop.latest())
+    still.docks.show(loop.latest())
     assert "Free-drive refused: mode is RUN" in still.panel.note.shown
     assert "Allowed in: TEACH." in still.panel.note.shown
     loop.note(Kind.LEFT_PERIOD, limit=3.0)
-    still.panel.show(loop.latest())
+    still.docks.show(loop.latest())
     assert "nobody moved the arm" in still.panel.note.shown
+
+
+def test_a_refusal_names_every_parameter_that_prevented_entry(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.SEQUENCE_STARTED, period=1.0)
+    for parameter, value, limit, unit in (("flange speed", 0.031, 0.02, "m/s"), ("joint torque", 7.25, 5.0, "N·m")):
+        loop.note(Kind.ENTRY_PREVENTED, parameter=parameter, part="wrist_1", value=value, limit=limit, unit=unit, time=0.1)
+    loop.note(Kind.REFUSED_PAYLOAD, mass=1.9, force=18.0, way="down", parameter="flange speed")
+    loop.note(Kind.OVERRUN, late=80.0)
+    still.docks.show(loop.latest())
+    shown = still.panel.note.shown
+    assert "Consistent with +1.9 kg at the flange, or with a steady 18 N push down" in shown
+    assert "<li>wrist_1 flange speed: 0.031 m/s, limit 0.02</li>" in shown
+    assert "<li>wrist_1 joint torque: 7.2 N·m, limit 5</li>" in shown
+    loop.note(Kind.ACTIVATION_STARTED, period=1.0)
+    loop.note(Kind.REFUSED_MODE, mode="RUN", allowed="TEACH")
+    still.docks.show(loop.latest())
+    assert "<li>" not in still.panel.note.shown
+
+
+def test_a_stop_that_was_reset_has_nothing_more_to_say(loop: FakeLoop, still: Served) -> None:
+    loop.mode = Mode.STOP
+    loop.note(Kind.EMERGENCY_STOP, mode="TEACH")
+    still.docks.show(loop.latest())
+    assert "Make sure that nobody is in danger" in still.panel.note.shown
+    loop.mode = Mode.TEACH
+    still.docks.show(loop.latest())
+    assert "danger" not in still.panel.note.shown
+
+
+def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: FakeLoop, still: Served) -> None:
+    loop.phase = Phase.SEQUENCE
+    shares = (0.2, 1.5, 0.9, 0.05, 0.4, 0.3, 0.0)
+    loop.monitored = tuple(Monitored(f"value {i}", "flange", 2.0 * share, 2.0, "N") for i, share in enumerate(shares))
+    still.docks.show(loop.latest())
+    shown = still.panel.numbers.shown
+    names = [name for name in (f"value {i}" for i in (1, 2, 4, 5, 0)) if name in shown]
+    assert names == sorted(names, key=shown.index)
+    assert len(names) == 5
+    assert "! 3 / 2 N" in shown
+    assert "1.8 / 2 N" in shown
+    assert "and 2 more" in shown
+    assert not still.panel.leave.disabled
+
+
+def test_the_checksum_of_the_limits_is_shown(loop: FakeLoop, still: Served) -> None:
+    still.docks.show(loop.latest())
+    assert digest(Settings()) in still.panel.numbers.shown
+    loop.settings = apply(Settings(), {"free_drive.gain": 2.0})
+    still.docks.show(loop.latest())
+    assert digest(loop.settings) in still.panel.numbers.shown
 
 
 def test_the_log_is_newest_first_and_escaped(loop: FakeLoop, still: Served) -> None:
     loop.note(Kind.PROGRAM_STARTED, name="<b>evil</b>")
     loop.tick = 1000
     loop.note(Kind.RESET)
-    still.panel.show(loop.latest())
-    shown = still.panel.events.shown
+    still.docks.show(loop.latest())
+    shown = still.docks.journal.table.shown
     assert shown.index("Reset to TEACH") < shown.index("&lt;b&gt;evil&lt;/b&gt;")
     assert "<b>evil" not in shown
     assert "2.00 s" in shown
@@ -99,7 +151,7 @@ def test_the_log_is_newest_first_and_escaped(loop: FakeLoop, still: Served) -> N
 def test_leave_and_reset_are_there_when_they_can_do_something(loop: FakeLoop, still: Served) -> None:
     for mode, leave, reset in ((Mode.TEACH, False, False), (Mode.FREE_DRIVE, True, False), (Mode.STOP, False, True)):
         loop.mode = mode
-        still.panel.show(loop.latest())
+        still.docks.show(loop.latest())
         assert (not still.panel.leave.disabled, not still.panel.reset.disabled) == (leave, reset)
         assert not still.panel.stop.disabled
 
@@ -142,16 +194,15 @@ def test_a_press_is_a_command(
 
 def test_the_clock_is_paused_stepped_slowed_and_set_back(served: Served, join: Join, loop: FakeLoop) -> None:
     client = join()
-    panel = served.panel
-    client.set(panel.clock._impl.uuid, value="Step")
+    client.set(served.lab.clock._impl.uuid, value="Step")
     until(lambda: loop.paused and loop.steps == 1, "a step")
-    client.set(panel.clock._impl.uuid, value="Run")
+    client.set(served.lab.clock._impl.uuid, value="Run")
     until(lambda: not loop.paused, "running")
-    client.set(panel.clock._impl.uuid, value="Pause")
+    client.set(served.lab.clock._impl.uuid, value="Pause")
     until(lambda: loop.paused, "paused")
-    client.set(panel.speed._impl.uuid, value=0.3)
+    client.set(served.lab.speed._impl.uuid, value=0.3)
     until(lambda: loop.speed == 0.3, "slower")
-    client.set(panel.restart._impl.uuid, value=True)
+    client.set(served.lab.restart._impl.uuid, value=True)
     until(lambda: loop.resets == 1, "set back")
 
 

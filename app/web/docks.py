@@ -1,0 +1,55 @@
+"""The page: the pendant on the right, two docks on the left, and what is shown of a snapshot in each of them."""
+
+import viser
+
+from app.web import style
+from app.web.guard import Guard
+from app.web.hand import Hand
+from app.web.journal import Journal
+from app.web.lab import Lab
+from app.web.panel import Panel
+from app.web.running import Running
+from app.web.settings_tab import SettingsTab
+from pendant.events import Event
+from sim.snapshot import Snapshot
+
+LEFT = 264
+"""Width of the left docks [pixels]."""
+
+
+class Docks:
+    """All panels."""
+
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, title: str) -> None:
+        self._loop = loop
+        self._read = 0
+        gui = server.gui
+        sheet = gui.add_html("")
+        self.panel = Panel(server, guard, loop, title)
+        self._upper = gui.add_panel()
+        with self._upper.add_tab("Lab"):
+            self.lab = Lab(gui, loop, hand)
+        with self._upper.add_tab("Settings") as tab:
+            self.settings = SettingsTab(gui, tab, loop)
+        self._lower = gui.add_panel()
+        with self._lower.add_tab("Events"):
+            self.journal = Journal(gui)
+        self._upper.dock_left()
+        self._upper.set_width(LEFT)
+        self._lower.dock_below(self._upper)
+        quiet = (self.panel.leave, self.panel.reset, self.lab.restart)
+        sheet.content = style.sheet(
+            self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
+        )
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show a snapshot and the events since the last call; True if anything changed."""
+        fresh: list[Event] = self._loop.events(self._read)
+        self._read += len(fresh)
+        changed = [
+            self.panel.show(snapshot, fresh),
+            self.journal.show(fresh),
+            self.lab.show(snapshot),
+            self.settings.show(snapshot, fresh),
+        ]
+        return any(changed)

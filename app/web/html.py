@@ -1,0 +1,27 @@
+"""Pieces of the page that are sent only when they differ from what is shown."""
+
+import viser
+
+
+class Html:
+    """A piece of HTML."""
+
+    def __init__(self, gui: viser.GuiApi, content: str = "", order: float | None = None) -> None:
+        self.shown = content
+        self._handle = gui.add_html(content, order=order)
+
+    def show(self, content: str) -> bool:
+        """Show `content`; True if that changed anything."""
+        if content == self.shown:
+            return False
+        self.shown = content
+        self._handle.content = content
+        return True
+
+
+def enable(control: viser.GuiButtonHandle, enabled: bool) -> bool:
+    """Let a control be used, or not; True if that changed anything."""
+    if control.disabled == (not enabled):
+        return False
+    control.disabled = not enabled
+    return True

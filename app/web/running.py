@@ -1,0 +1,47 @@
+"""What the page needs of the loop, sim.loop.Loop."""
+
+from typing import Protocol
+
+from pendant.events import Event
+from pendant.settings import Settings
+from sim.desk import Desk
+from sim.snapshot import Snapshot
+
+
+class Running(Protocol):
+    """The running simulation."""
+
+    desk: Desk
+    speed: float
+    paused: bool
+
+    @property
+    def actual_rate(self) -> float:
+        """Simulated over real time, as it was lately."""
+        ...
+
+    @property
+    def seed(self) -> int:
+        """Seed of the scenario."""
+        ...
+
+    @property
+    def settings(self) -> Settings:
+        """The pendant's settings as they are now."""
+        ...
+
+    def latest(self) -> Snapshot:
+        """The newest snapshot; RuntimeError when the simulation has ended."""
+        ...
+
+    def events(self, since: int) -> list[Event]:
+        """Events from index `since` on."""
+        ...
+
+    def step_once(self) -> None:
+        """While paused: one tick."""
+        ...
+
+    def reset(self) -> None:
+        """Back to the scenario's start."""
+        ...

@@ -1,0 +1,38 @@
+"""The words and colours of the pendant's states."""
+
+from app.web.svg import Colour
+from pendant.modes import Mode, Safety
+from pendant.table import Severity
+
+WORDS = {
+    Mode.NORMAL: ("Holding still", Colour.GREEN),
+    Mode.TEACH: ("Ready", Colour.GREEN),
+    Mode.REMOTE: ("Remote control", Colour.GREY),
+    Mode.RUN: ("Program runs", Colour.GREEN),
+    Mode.FREE_DRIVE: ("Guide it by hand", Colour.BLUE),
+    Mode.STOP: ("Stopped", Colour.RED),
+}
+SAFETY_WORDS = {
+    Safety.NORMAL: "Normal",
+    Safety.REDUCED: "Reduced",
+    Safety.PROTECTIVE_STOP: "Protective stop",
+    Safety.EMERGENCY_STOP: "Emergency stop",
+}
+SEVERITY_COLOURS = {
+    Severity.INFO: Colour.GREY,
+    Severity.NOTICE: Colour.BLUE,
+    Severity.WARNING: Colour.AMBER,
+    Severity.STOP: Colour.RED,
+}
+PERIOD_COLOURS = {
+    "activation": Colour.BLUE,
+    "sequence": Colour.BLUE,
+    "confirmation": Colour.AMBER,
+    "feedback": Colour.GREY,
+    "cool-down": Colour.GREY,
+    "safety": Colour.GREY,
+}
+"""Of countdown rings; a period that is not named here has the colour of the mode light."""
+
+LEAVING_PERIODS = ("free-drive", "restart")
+"""Periods whose end ends free-drive."""
