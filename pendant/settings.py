@@ -192,6 +192,23 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     from_motor: Annotated[bool, _switch("AF-3", "transmission torque from the motor angle and torque")] = True
 
 
+class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
+
+    on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True
+    tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True
+    activation_radius: Annotated[float, _number(0.001, 0.1, "m", "VW-6", "of the tether in the activation sequence")] = 0.005
+    operation_radius: Annotated[float, _number(0.005, 1.0, "m", "VW-6", "of the tether in free-drive; the arm stops at it")] = (
+        0.02
+    )
+    band: Annotated[float, _number(0.0, 0.5, "m", "VW-7", "before the tether, where it resists")] = 0.005
+    averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", "the tether lies round the flange's mean place")] = 0.02
+    safety_period: Annotated[float, _number(0.1, 10.0, "s", "VW-3", "the tether follows a hand that was felt so long ago")] = 0.5
+    push_back: Annotated[float, _number(2.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 4.0
+    leave: Annotated[bool, _switch("VW-6", "beyond the tether, free-drive is left")] = False
+    stop: Annotated[bool, _switch("VW-6", "beyond the tether is STOP")] = False
+
+
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
@@ -201,6 +218,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hold: Hold = Hold()
     button: ButtonUse = ButtonUse()
     limits: Limits = Limits()
+    walls: Walls = Walls()
     static: Static = Static()
     joint_control: JointControl = JointControl()
 

@@ -53,6 +53,10 @@ class Row(NamedTuple):
     cool_down: bool = False  # starts the cool-down (FD-12c)
 
 
+WALL = ("wall", "part", "distance", "way")
+"""Values of an event of a wall: its name, the part, how far out [mm], the way back."""
+
+
 def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
     return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
 
@@ -107,6 +111,11 @@ TABLE: dict[Kind, Row] = {
         "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
         ("mass", "force", "way", "parameter"),
     ),
+    Kind.REFUSED_WALL: _refused(
+        "Free-drive refused: {part} beyond {wall}",
+        "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
+        WALL,
+    ),
     Kind.SEQUENCE_STOPPED: Row(
         Effect.PROTECTIVE_STOP,
         Severity.STOP,
@@ -146,6 +155,13 @@ TABLE: dict[Kind, Row] = {
         ("parameter", "part", "value", "limit", "unit"),
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
+    Kind.WALL_REACHED: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "{part} held at {wall}",
+        "{distance:.1f} mm out. Push it back, {way} of the base.",
+        WALL,
+    ),
     Kind.WRENCH_LOST: Row(
         Effect.INFO,
         Severity.WARNING,
@@ -170,6 +186,18 @@ TABLE: dict[Kind, Row] = {
         "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
     ),
     Kind.LEFT_RELEASE: _left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
+    Kind.LEFT_WALL: _left(
+        "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
+    ),
+    Kind.STOPPED_WALL: Row(
+        Effect.LEAVE_TO_STOP,
+        Severity.STOP,
+        "Stopped: {part} beyond {wall}",
+        "{distance:.1f} mm out. Reset; back is {way} of the base.",
+        WALL,
+        Clears.RESET,
+        cool_down=True,
+    ),
     Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     Kind.SENSORS_LOST: Row(
         Effect.LEAVE_TO_STOP,

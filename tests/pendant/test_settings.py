@@ -25,6 +25,16 @@ EXPECTED = {
     "hold.silence": (0.5, 0.1, 1.0, "s", "FD-23", True),
     "button.short_press": (0.4, 0.1, 2.0, "s", "FD-8a", True),
     "button.hold_to_run": (False, None, None, "", "FD-8a", True),
+    "walls.on": (True, None, None, "", "FD-24", True),
+    "walls.tether": (True, None, None, "", "VW-4", True),
+    "walls.activation_radius": (0.005, 0.001, 0.1, "m", "VW-6", True),
+    "walls.operation_radius": (0.02, 0.005, 1.0, "m", "VW-6", True),
+    "walls.band": (0.005, 0.0, 0.5, "m", "VW-7", True),
+    "walls.averaging": (0.02, 0.02, 10.0, "s", "VW-4", True),
+    "walls.safety_period": (0.5, 0.1, 10.0, "s", "VW-3", True),
+    "walls.push_back": (4.0, 2.0, 50.0, "N", "VW-5", True),
+    "walls.leave": (False, None, None, "", "VW-6", True),
+    "walls.stop": (False, None, None, "", "VW-6", True),
     "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
     "static.time": (0.1, 0.02, 2.0, "s", "static", True),
 }
@@ -167,7 +177,7 @@ def test_the_error_is_one_line_with_name_value_and_what_is_allowed() -> None:
 
 
 def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
-    for bad in ({"walls": {}}, {"hold": {"silence": 3.0}}, {"hold": {"silense": 0.2}}):
+    for bad in ({"wall": {}}, {"hold": {"silence": 3.0}}, {"hold": {"silense": 0.2}}):
         with pytest.raises(msgspec.ValidationError):
             msgspec.convert(bad, Settings)
 

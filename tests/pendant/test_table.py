@@ -34,7 +34,9 @@ EXAMPLE: Values = {
     "to": "TEACH",
     "unit": "rad/s",
     "value": 12.345,
-    "way": "down",
+    "wall": "step down",
+    "way": "+x -y -z",
+    "distance": 12.34,
 }
 
 EFFECTS = {
@@ -42,6 +44,7 @@ EFFECTS = {
     Kind.ENTERED: Effect.ENTER,
     Kind.REFUSED_LIMIT: Effect.NO_ENTRY,
     Kind.REFUSED_PAYLOAD: Effect.NO_ENTRY,
+    Kind.REFUSED_WALL: Effect.NO_ENTRY,
     Kind.SEQUENCE_STOPPED: Effect.PROTECTIVE_STOP,
     Kind.REFUSED_MODE: Effect.NO_ENTRY,
     Kind.REFUSED_SENSORS: Effect.NO_ENTRY,
@@ -50,6 +53,8 @@ EFFECTS = {
     Kind.LEFT_RESTART: Effect.LEAVE,
     Kind.LEFT_PRESS: Effect.LEAVE,
     Kind.LEFT_RELEASE: Effect.LEAVE,
+    Kind.LEFT_WALL: Effect.LEAVE,
+    Kind.STOPPED_WALL: Effect.LEAVE_TO_STOP,
     Kind.DEACTIVATED: Effect.LEAVE,
     Kind.SENSORS_LOST: Effect.LEAVE_TO_STOP,
     Kind.RUN_SENSORS_LOST: Effect.PROTECTIVE_STOP,
