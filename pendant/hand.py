@@ -20,10 +20,13 @@ SWING = 0.05
 OFFSET = 4.0
 """Largest offset of the flange sensor [N]; what is beyond along gravity is a payload's, which does not turn with the flange."""
 
+DOUBT = 0.5
+"""Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia, and is nobody's."""
+
 JOINTS_SWING = 0.1
 """Time constant that takes an arm's own swinging off what the joints feel [s]."""
 
-FELT_BY_JOINTS = 15.0
+FELT_BY_JOINTS = 10.0
 """A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
 
 _SLOW, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, SWING, JOINTS_SWING))
@@ -36,6 +39,7 @@ class Hand:
         "_baseline",
         "_by_joints",
         "_by_sensor",
+        "_doubt",
         "_felt",
         "_payload",
         "_residual",
@@ -56,6 +60,7 @@ class Hand:
         force: Vector = (baseline[0], baseline[1], baseline[2])
         self._residual = _dot(force, self._up)
         self._payload = self._residual - min(max(self._residual, -OFFSET), OFFSET)
+        self._doubt = DOUBT * abs(self._payload)
         offset = _less(force, self._payload, self._up)
         self._baseline = turned_back(_matrix(estimate), offset)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
@@ -88,7 +93,7 @@ class Hand:
             residual = self._residual + self._slow
             if user is ORIGIN or _size(self._by_sensor) >= FELT_BY_JOINTS:
                 user = self._by_sensor
-        self.user = user
+        self.user = user if _size(user) >= self._doubt else ORIGIN
         self.payload = (residual * up[0], residual * up[1], residual * up[2])
 
 

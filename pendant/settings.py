@@ -199,12 +199,12 @@ class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True
     activation_radius: Annotated[float, _number(0.001, 0.1, "m", "VW-6", "of the tether in the activation sequence")] = 0.005
     operation_radius: Annotated[float, _number(0.005, 1.0, "m", "VW-6", "of the tether in free-drive; the arm stops at it")] = (
-        0.02
+        0.03
     )
     band: Annotated[float, _number(0.0, 0.5, "m", "VW-7", "before the tether, where it resists")] = 0.005
     averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", "the tether lies round the flange's mean place")] = 0.02
-    safety_period: Annotated[float, _number(0.1, 10.0, "s", "VW-3", "the tether follows a hand that was felt so long ago")] = 0.5
-    push_back: Annotated[float, _number(2.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 4.0
+    safety_period: Annotated[float, _number(0.1, 10.0, "s", "VW-3", "the tether follows a hand that was felt so long ago")] = 1.0
+    push_back: Annotated[float, _number(2.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 2.0
     leave: Annotated[bool, _switch("VW-6", "beyond the tether, free-drive is left")] = False
     stop: Annotated[bool, _switch("VW-6", "beyond the tether is STOP")] = False
 

@@ -139,20 +139,20 @@ def test_invalid_joints_in_the_activation_period_are_left_to_its_end() -> None:
 
 def test_the_arm_stops_at_the_wall_and_goes_free_when_pushed_back() -> None:
     bench = Bench().entered()
-    decision = bench.step(NOTHING, at(0.018, speed=0.1))
+    decision = bench.step(NOTHING, at(0.028, speed=0.1))
     (wall,) = decision.walls
     assert decision.law is Law.FREE
     assert wall.force == (pytest.approx(-0.6 * 200.0 * 0.1), 0.0, 0.0)
-    decision = bench.step(NOTHING, at(0.0205, speed=0.1))
+    decision = bench.step(NOTHING, at(0.0305, speed=0.1))
     assert (decision.mode, decision.law) == (Mode.FREE_DRIVE, Law.HOLD)
     assert bench.events[-1] == Event(
         Kind.WALL_REACHED, bench.tick, {"wall": "tether", "part": "flange", "distance": pytest.approx(0.5), "way": "-x"}
     )
-    bench.run(20, NOTHING, at(0.0205))
+    bench.run(20, NOTHING, at(0.0305))
     assert bench.kinds().count(Kind.WALL_REACHED) == 1
-    assert bench.run(60, NOTHING, at(0.0205, force=20.0)).law is Law.HOLD
-    assert bench.run(60, NOTHING, at(0.0205, force=-20.0)).law is Law.FREE
-    assert bench.run(60, NOTHING, at(0.0205)).law is Law.HOLD  # let go, still outside
+    assert bench.run(60, NOTHING, at(0.0305, force=20.0)).law is Law.HOLD
+    assert bench.run(60, NOTHING, at(0.0305, force=-20.0)).law is Law.FREE
+    assert bench.run(150, NOTHING, at(0.0305)).law is Law.HOLD  # let go, still outside
 
 
 def test_the_tether_follows_a_hand_and_no_payload() -> None:
@@ -176,7 +176,7 @@ def test_the_tether_follows_a_hand_and_no_payload() -> None:
 )
 def test_the_tether_leaves_or_stops_instead(changes: dict[str, bool], kind: Kind, mode: Mode) -> None:
     bench = Bench(**changes).entered()
-    decision = bench.step(NOTHING, at(0.0, 0.03))
+    decision = bench.step(NOTHING, at(0.0, 0.04))
     assert (decision.mode, decision.phase) == (mode, Phase.OFF)
     assert decision.law is not Law.FREE
     assert bench.events[-1].kind is kind

@@ -79,3 +79,9 @@ def test_equal_histories_are_equal() -> None:
     assert one.memory == two.memory
     one.step(estimate(force=1.0), True)
     assert one.memory != two.memory
+
+
+def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
+    hand = Hand(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
+    assert after(hand, 1.0, estimate(force=[9.0, 0.0, -OFFSET - 20.0])) == (0.0, 0.0, 0.0)
+    assert after(hand, 1.0, estimate(force=[11.0, 0.0, -OFFSET - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
