@@ -5,15 +5,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.signal import Signal
+
 Array = NDArray[np.float64]
 
 
 def _no_joints() -> Array:
     return np.zeros(0)
-
-
-def _nowhere() -> Array:
-    return np.zeros(6)
 
 
 GRAVITY = 9.81
@@ -55,10 +53,8 @@ class Estimate:
     friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
     tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
     touched: bool = False  # the joints feel a contact, so that nothing is learned
-    tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
-    elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
-    F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
-    load_mass: float = 0.0  # configured: payload and tool [kg]
+    p_BT: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tool centre point [m]
+    signals: tuple[Signal | None, ...] = ()  # for the contact detectors, as pendant.contact_monitor.SOURCES; None: not valid
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -91,8 +87,6 @@ class Estimate:
             self.friction_deviation.copy(),
             self.tau_ways.copy(),
             self.touched,
-            self.tcp.copy(),
-            self.elbow.copy(),
-            self.F_joints.copy(),
-            self.load_mass,
+            self.p_BT,
+            self.signals,
         )

@@ -1,8 +1,9 @@
 """The supervisor: robot mode, safety mode, program and free-drive, one tick at a time (FD-1)."""
 
-from collections.abc import Mapping
+import math
 
-from pendant.containment import Containment
+from pendant.contact import Change, Contact
+from pendant.contact_monitor import ContactMonitor
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
@@ -11,12 +12,10 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
-from pendant.pose import Pose
 from pendant.program import Program, ProgramState, Sequencer, misfit
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, ticks
 from pendant.table import TABLE, Effect
-from pendant.walls import AnyBorder
 from pendant.watch import Stillness, WrenchMean, joints_ok
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
@@ -29,6 +28,35 @@ STOPPING = {
 }
 
 
+TOLD = {
+    Change.GAINED: Kind.CONTACT_GAINED,
+    Change.LOST: Kind.CONTACT_LOST,
+    Change.RESISTANCE: Kind.CONTACT_RESISTANCE,
+    Change.CLAMPING: Kind.CONTACT_CLAMPING,
+}
+
+
+def told(contact: Contact, action: str) -> Values:
+    """The values of a contact's event (CD-16)."""
+    (fx, fy, fz), (x, y, z) = contact.force, contact.pose.p_BT
+    return {
+        "part": contact.part,
+        "source": contact.source,
+        "rule": contact.rule,
+        "force": math.hypot(fx, fy, fz),
+        "fx": fx,
+        "fy": fy,
+        "fz": fz,
+        "acceleration": math.hypot(*contact.acceleration),
+        "ratio": contact.ratio,
+        "steps": contact.steps,
+        "x": x,
+        "y": y,
+        "z": z,
+        "action": action,
+    }
+
+
 class Supervisor:
     """Decides every tick from the estimate and the inputs; keeps all of its memory in `state`."""
 
@@ -38,8 +66,6 @@ class Supervisor:
         n_joints: int,
         joints: tuple[str, ...] | None = None,
         rated: tuple[float, ...] | None = None,
-        borders: tuple[AnyBorder, ...] = (),
-        frames: Mapping[str, Pose] | None = None,
     ) -> None:
         """
         Args:
@@ -47,8 +73,6 @@ class Supervisor:
             n_joints: number of joints of the arm, as in every estimate.
             joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
-            borders: walls and areas; `pendant.walls.problem` has found nothing.
-            frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
         """
         self.settings = settings
         self._n = n_joints
@@ -64,7 +88,9 @@ class Supervisor:
         self._still = Stillness()
         self._mean = WrenchMean()
         self._sequencer = Sequencer()
-        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints, Containment(borders, frames or {}))
+        self._monitor = ContactMonitor()
+        self._contacts: tuple[Contact, ...] = ()  # of this tick
+        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints)
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -76,7 +102,10 @@ class Supervisor:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """All that the next decision depends on, besides its arguments; equal states decide equally."""
+        """All that the next decision depends on, besides its arguments and the buffers of the contact detectors.
+
+        Equal states decide equally.
+        """
         button = (self._button.held, self._button.silent)
         still = (self._still.count, self._still.joint, self._still.speed)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
@@ -86,17 +115,21 @@ class Supervisor:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
+        self._feel(estimate, events)
         if inputs.commands:
             self._safety_commands(estimate, inputs.commands, events)
             self._mode_commands(estimate, inputs.commands, events)
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
-        if inputs.settings:
+        wanted = inputs.settings
+        if Command.DETECTION in inputs.commands:
+            wanted = {**wanted, "contact.on": not self.settings.contact.on}
+        if wanted:
             trying = self._free.phase is Phase.SEQUENCE
-            self.settings, changed = change(self.settings, inputs.settings, self._mode, trying, estimate.tick)
+            self.settings, changed = change(self.settings, wanted, self._mode, trying, estimate.tick)
             events += changed
             self._refresh()
-        return self._publish(estimate, events)
+        return self._publish(events)
 
     def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
         button = Button.FREE_DRIVE
@@ -107,6 +140,17 @@ class Supervisor:
         self._still.step(estimate, self._slow)
         self._static = self._still.count >= self._static_ticks
         return self._mean.step(estimate)
+
+    def _feel(self, estimate: Estimate, events: list[Event]) -> None:
+        """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
+        sequencer, use = self._sequencer, self.settings.contact
+        self._contacts = self._monitor.step(estimate, use, self._mode, use.on or sequencer.until is not None)
+        for contact in self._contacts:
+            until = sequencer.until
+            taken = self._mode is Mode.RUN and until is not None and sequencer.touch(contact)
+            if taken:
+                self._braking = True
+            events.append(Event(TOLD[contact.change], estimate.tick, told(contact, until.then if taken and until else "none")))
 
     def _safety_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         stop = Command.EMERGENCY_STOP in commands
@@ -156,17 +200,32 @@ class Supervisor:
                     self._refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate, events)
-        if move is None or sequencer.move is not move:
+        braked = sequencer.contact is not None
+        if not braked and (move is None or sequencer.move is not move):
             return
+        tool_on = sequencer.tool_on
         if not joints_ok(estimate):
             self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED}), events)
+        elif braked:
+            if self._static and sequencer.rest(self._monitor.now):
+                self._finish(estimate.tick, events)
         elif estimate.move_refused:
-            values: Values = {"name": self._name, "step": sequencer.index + 1, "reason": estimate.move_refused}
-            events.append(Event(Kind.PROGRAM_FAILED, estimate.tick, values))
-            self._end_program()
-        elif sequencer.step(estimate.move_done):
-            self._mode = self._origin
-            events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": self._name}))
+            self._fail(estimate.move_refused, estimate.tick, events)
+        elif sequencer.missed(estimate.move_done):
+            self._fail("it ended without a contact", estimate.tick, events)
+        elif sequencer.step(estimate.move_done, self._monitor.now):
+            self._finish(estimate.tick, events)
+        if sequencer.tool_on is not tool_on:
+            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+
+    def _finish(self, tick: int, events: list[Event]) -> None:
+        self._mode = self._origin
+        events.append(Event(Kind.PROGRAM_FINISHED, tick, {"name": self._name}))
+
+    def _fail(self, reason: str, tick: int, events: list[Event]) -> None:
+        values: Values = {"name": self._name, "step": self._sequencer.index + 1, "reason": reason}
+        events.append(Event(Kind.PROGRAM_FAILED, tick, values))
+        self._end_program()
 
     def _load(self, program: Program, estimate: Estimate, events: list[Event]) -> None:
         reason = misfit(program, self._n)
@@ -276,7 +335,7 @@ class Supervisor:
     def _law(self) -> Law:
         if self._mode is Mode.FREE_DRIVE or self._free.phase is Phase.SEQUENCE:
             self._freed = True
-            return Law.HOLD if self._free.caught else Law.FREE
+            return Law.FREE
         if self._freed:
             self._freed, self._braking = False, True
         if self._mode is Mode.STOP:
@@ -288,18 +347,17 @@ class Supervisor:
             self._braking = False
         return Law.BRAKE if self._braking else Law.HOLD
 
-    def _publish(self, estimate: Estimate, events: list[Event]) -> Decision:
+    def _publish(self, events: list[Event]) -> Decision:
         """The decision; the last one again when nothing is different."""
         free = self._free
         sequencer = self._sequencer
         law = self._law()
         key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
+        key += (sequencer.tool_on,)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.use_wrench and not (trying and not self.settings.sequence.amplified) else 0.0
-        walls = () if free.phase is Phase.OFF else free.walls(estimate)
-        changing = events or periods or walls
-        if self._decision is not None and not changing and key == self._key:
+        if self._decision is not None and not events and not periods and key == self._key:
             return self._decision
         active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
         decision = Decision(
@@ -316,8 +374,9 @@ class Supervisor:
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
             monitored=free.monitored() if trying else (),
-            walls=walls,
+            contacts=self._contacts,
+            tool_on=sequencer.tool_on,
         )
         self._key = key
-        self._decision = None if changing else decision
+        self._decision = None if events or periods else decision
         return decision

@@ -53,10 +53,6 @@ class Row(NamedTuple):
     cool_down: bool = False  # starts the cool-down (FD-12c)
 
 
-WALL = ("wall", "part", "distance", "way")
-"""Values of an event of a wall: its name, the part, how far out [mm], the way back."""
-
-
 def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
     return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
 
@@ -71,6 +67,18 @@ def _left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Se
 
 def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
     return Row(Effect.INFO, Severity.WARNING, headline, guidance, keys)
+
+
+def _touched(headline: str) -> Row:
+    """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
+    keys = ("part", "source", "rule", "force", "fx", "fy", "fz", "acceleration", "ratio", "steps", "x", "y", "z", "action")
+    return Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        headline,
+        "{force:.1f} N more or less; rule {rule}, {steps} ticks after it began. Action: {action}.",
+        keys,
+    )
 
 
 TABLE: dict[Kind, Row] = {
@@ -111,11 +119,6 @@ TABLE: dict[Kind, Row] = {
         "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
         ("mass", "force", "way", "parameter"),
     ),
-    Kind.REFUSED_WALL: _refused(
-        "Free-drive refused: {part} beyond {wall}",
-        "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
-        WALL,
-    ),
     Kind.SEQUENCE_STOPPED: Row(
         Effect.PROTECTIVE_STOP,
         Severity.STOP,
@@ -155,13 +158,6 @@ TABLE: dict[Kind, Row] = {
         ("parameter", "part", "value", "limit", "unit"),
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
-    Kind.WALL_REACHED: Row(
-        Effect.INFO,
-        Severity.NOTICE,
-        "{part} held at {wall}",
-        "{distance:.1f} mm out. Push it back, {way} of the base.",
-        WALL,
-    ),
     Kind.WRENCH_LOST: Row(
         Effect.INFO,
         Severity.WARNING,
@@ -186,18 +182,6 @@ TABLE: dict[Kind, Row] = {
         "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
     ),
     Kind.LEFT_RELEASE: _left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
-    Kind.LEFT_WALL: _left(
-        "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
-    ),
-    Kind.STOPPED_WALL: Row(
-        Effect.LEAVE_TO_STOP,
-        Severity.STOP,
-        "Stopped: {part} beyond {wall}",
-        "{distance:.1f} mm out. Reset; back is {way} of the base.",
-        WALL,
-        Clears.RESET,
-        cool_down=True,
-    ),
     Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     Kind.SENSORS_LOST: Row(
         Effect.LEAVE_TO_STOP,
@@ -246,6 +230,12 @@ TABLE: dict[Kind, Row] = {
     Kind.PROGRAM_STOPPED: _info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: _info("Program {name} finished", "", ("name",)),
     Kind.PROGRAM_FAILED: _denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
+    Kind.TOOL_SWITCHED: _info("Tool {state}", "", ("state",)),
+    # Change in contact (CD-13, CD-16)
+    Kind.CONTACT_GAINED: _touched("Contact gained: {part}"),
+    Kind.CONTACT_LOST: _touched("Contact lost: {part}"),
+    Kind.CONTACT_RESISTANCE: _touched("Resistance changed: {part}"),
+    Kind.CONTACT_CLAMPING: _touched("Clamping: {part}"),
     # Settings
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),

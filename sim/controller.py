@@ -41,7 +41,7 @@ class Controller:
         self.feed_forward = FeedForward(arm, calibration, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
         self.feedback = Feedback(arm, calibration, dynamics, tcp)
-        self.free_drive = FreeDriveLaw(dynamics, arm.n, arm.chain.elbow)
+        self.free_drive = FreeDriveLaw(dynamics, arm.n)
         self.motor = MotorController(arm, calibration)
         self._law: Law | None = None
         self._nothing = np.zeros(arm.n)

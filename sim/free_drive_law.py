@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
-from pendant.pose import ORIGIN
 from sim.adaptive_friction import AdaptiveFriction
 from sim.dynamics import Dynamics
 
@@ -28,21 +27,11 @@ class FreeDriveLaw:
     estimate neither drives it nor makes it hum.
     """
 
-    def __init__(self, dynamics: Dynamics, n: int, elbow: int) -> None:
-        """
-        Args:
-            dynamics: the controller's rigid model.
-            n: number of joints.
-            elbow: index of the joint whose origin is the elbow.
-        """
-        self._dynamics, self._elbow = dynamics, elbow
+    def __init__(self, dynamics: Dynamics, n: int) -> None:
+        self._dynamics = dynamics
         self._asked = np.zeros(n)
         self._felt_before = np.zeros(n)
         self._turned = np.eye(3)
-
-    def _moving(self, part: str) -> int:
-        """How many joints move a part."""
-        return self._elbow if part == "elbow" else self._asked.size
 
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
@@ -62,9 +51,6 @@ class FreeDriveLaw:
             with_friction: take friction off the hand.
         """
         torque = self._dynamics.gravity(estimate.q)
-        for wall in decision.walls:
-            if wall.force != ORIGIN:
-                _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
         if decision.gain <= 0.0:
             return torque
         asked = self._asked
@@ -75,17 +61,6 @@ class FreeDriveLaw:
         if with_friction:
             _take_off(asked, estimate.tau_ext, self._felt_before, estimate.friction, friction.terms, friction.warmth, torque)
         return torque
-
-
-@numba.njit(cache=True)
-def _push(jacobian, p_BF, p, force, moving, torque) -> None:
-    """Add J^T of a force at the point p of a part that the first `moving` joints move."""
-    x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
-    fx, fy, fz = force
-    tx, ty, tz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
-    for i in range(moving):
-        torque[i] += jacobian[0, i] * fx + jacobian[1, i] * fy + jacobian[2, i] * fz
-        torque[i] += jacobian[3, i] * tx + jacobian[4, i] * ty + jacobian[5, i] * tz
 
 
 @numba.njit(cache=True)

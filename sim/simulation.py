@@ -4,18 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.pose import Pose
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from sim import calibration
 from sim.arm import Arm
 from sim.chain import Body, chain, load_body, plate_body, tool_body
 from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.contact_sources import ContactSources
 from sim.controller import Controller
 from sim.desk import Wishes
 from sim.dynamics import Dynamics
 from sim.estimator import Estimator
-from sim.frames import rotation_from_rpy
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario
@@ -23,19 +22,6 @@ from sim.sensors import Sensors
 from sim.snapshot import Snapshot
 
 Array = NDArray[np.float64]
-
-
-def known_frames(scenario: Scenario) -> dict[str, Pose]:
-    """Poses in B of the world and of its objects, as they are when the robot is set up: what walls can lie in (VW-2)."""
-    R_BW = rotation_from_rpy(scenario.mounting).T
-    frames = {"world": (np.zeros(3), np.eye(3))}
-    frames |= {thing.name: (np.array(thing.position), rotation_from_rpy(thing.rpy)) for thing in scenario.world}
-    poses: dict[str, Pose] = {}
-    for name, (p, R) in frames.items():
-        x, y, z = (R_BW @ p).tolist()
-        a, b, c, d, e, f, g, h, i = (R_BW @ R).ravel().tolist()
-        poses[name] = Pose((x, y, z), (a, b, c, d, e, f, g, h, i))
-    return poses
 
 
 class Simulation:
@@ -61,8 +47,8 @@ class Simulation:
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
-        joints, rated = tuple(arm.chain.joints), tuple(arm.limits.torque)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario))
+        self.contact_sources = ContactSources(self.dynamics, self.tcp, arm.chain.elbow)
+        self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque))
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
@@ -94,6 +80,7 @@ class Simulation:
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         estimate = self.estimator.update(sample, references.move_done, references.refusal, use, references.answered)
+        self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
         decision = self.supervisor.step(estimate, wishes.inputs)
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
         self.plant.advance(self._current * self._motor, wishes.touches)
@@ -106,6 +93,7 @@ class Simulation:
         body = self._load()
         self.dynamics.set_load(body)
         self.estimator.set_load(body)
+        self.contact_sources.set_load(body)
 
     def apply(self, change: AnyChange) -> None:
         """Change the true arm or world, as a laboratory does.

@@ -26,10 +26,6 @@ def estimate(
     v_elbow: float = 0.0,
     move_done: int = 0,
     move_refused: str = "",
-    tcp: list[float] | None = None,
-    elbow: list[float] | None = None,
-    felt: float | list[float] = 0.0,
-    load_mass: float = 0.0,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component."""
 
@@ -59,8 +55,4 @@ def estimate(
         v_elbow=v_elbow,
         move_done=move_done,
         move_refused=move_refused,
-        tcp=np.array(tcp or [0.0] * 6),
-        elbow=np.array(elbow or [0.0] * 6),
-        F_joints=np.array(vector(felt, 3)),
-        load_mass=load_mass,
     )
