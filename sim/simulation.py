@@ -77,6 +77,8 @@ class Simulation:
         """
         for change in wishes.changes:
             self.apply(change)
+        if wishes.configured is not None:
+            self.configure_payload(wishes.configured)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         estimate = self.estimator.update(sample, references.move_done, references.refusal, use, references.answered)
@@ -144,4 +146,5 @@ class Simulation:
             plant.sliding_friction(),
             plant.tau_J.copy(),
             plant.temperature.copy(),
+            self.scenario,
         )
