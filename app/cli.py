@@ -40,7 +40,7 @@ Port = Annotated[
     int | None, typer.Option(help=f"Port; 0 for any free one. Without it {PORT}, or any free one.", min=0, max=65535)
 ]
 SessionName = Annotated[str, typer.Argument(metavar="SESSION", help="A session file, or the name of a bundled session.")]
-Out = Annotated[Path, typer.Option(help="Folder for the results: events.jsonl.")]
+Out = Annotated[Path, typer.Option(help="Folder for the results: events.jsonl, log.mcap.")]
 Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
 
@@ -86,8 +86,7 @@ def run(
     set_: Set = None,
 ) -> None:
     """Run a session without a window, as fast as it goes. Exit code 1 when an expectation is not met."""
-    from app.runner import run as run_session
-    from app.runner import simulate
+    from app.runner import record
     from app.summary import progress, show
 
     path = find(session)
@@ -98,7 +97,7 @@ def run(
     )
     prepared = prepare(content, path.name)
     with progress(content) as advance:
-        outcome = run_session(content, prepared, simulate(prepared), out, realtime, advance)
+        outcome = record(content, prepared, out, realtime, advance)
     show(content, outcome, out)
     if not outcome.passed:
         raise typer.Exit(1)

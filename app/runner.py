@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.events_file import EventsFile
+from app.log.recorder import Recorder
 from app.measures import watch
 from app.prepare import Prepared
 from app.session import Session
@@ -20,6 +21,12 @@ from pendant.settings import ticks
 from sim.desk import Wishes
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
+
+Progress = Callable[[float], None]
+
+
+def silent(seconds: float) -> None:
+    """Tell nobody how far a run is."""
 
 
 class Simulated(Protocol):
@@ -55,13 +62,25 @@ def simulate(prepared: Prepared) -> Simulation:
     return Simulation(prepared.arm, prepared.scenario, prepared.settings)
 
 
+def record(session: Session, prepared: Prepared, out: Path, realtime: bool = False, progress: Progress = silent) -> Outcome:
+    """Run a session as `run`, and record it into `out`/log.mcap.
+
+    Raises:
+        BadInput: a file cannot be written.
+    """
+    simulation = simulate(prepared)
+    with Recorder(out / "log.mcap", simulation, session.title) as recorder:
+        return run(session, prepared, simulation, out, realtime, progress, lambda now: recorder.see(simulation, now))
+
+
 def run(
     session: Session,
     prepared: Prepared,
     simulation: Simulated,
     out: Path,
     realtime: bool = False,
-    progress: Callable[[float], None] = lambda seconds: None,
+    progress: Progress = silent,
+    see: Callable[[Decision], None] = lambda decision: None,
 ) -> Outcome:
     """Run a session to its end and write `out`/events.jsonl.
 
@@ -72,6 +91,7 @@ def run(
         out: folder for the results; made when missing.
         realtime: keep the pace of the wall clock.
         progress: told the simulated seconds done, ten times a simulated second.
+        see: shown the decision of every tick that was done; a recorder, for example.
 
     Raises:
         BadInput: the file cannot be written.
@@ -88,6 +108,7 @@ def run(
             snapshot = functools.cache(simulation.snapshot)  # one copy a tick, and none where nobody looks
             for each in watches:
                 each.see(tick, decision, snapshot)
+            see(decision)
             file.write(tick, decision.events)
             outcome.events += decision.events
             if not outcome.modes or outcome.modes[-1][1] != decision.mode:

@@ -56,4 +56,4 @@ def show(session: Session, outcome: Outcome, out: Path) -> None:
         console.print(table)
     failed = sum(not verdict.passed for verdict in outcome.verdicts)
     console.print(f"{len(outcome.verdicts) - failed} expectations met, {failed} not")
-    console.print(f"{len(outcome.events)} events in {escape(str(out / 'events.jsonl'))}")
+    console.print(f"{len(outcome.events)} events; all is in {escape(str(out))}")

@@ -281,6 +281,11 @@ class Plant:
         """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
         return _poses(self.data.xpos, self.data.xquat, self._links)
 
+    @property
+    def flange_body(self) -> int:
+        """MuJoCo's number of the tool-side face of the flange sensor."""
+        return self._parts["flange"]
+
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
         return _poses(self.data.xpos, self.data.xquat, self._objects)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
+from pendant.estimate import Estimate
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from sim import calibration
@@ -54,7 +55,7 @@ class Simulation:
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
-        self._estimate = None
+        self._estimate: Estimate | None = None
 
     def _load(self) -> Body:
         return self._carried + load_body(self.configured)
@@ -68,6 +69,17 @@ class Simulation:
     def settings(self) -> Settings:
         """The pendant's settings as they are now."""
         return self.supervisor.settings
+
+    @property
+    def estimate(self) -> Estimate:
+        """What the controller knew in the tick done last; its arrays change with the next.
+
+        Raises:
+            RuntimeError: no tick has been done yet.
+        """
+        if self._estimate is None:
+            raise RuntimeError("an estimate needs at least one tick")
+        return self._estimate
 
     def tick(self, wishes: Wishes) -> Decision:
         """One control tick; the only path that data takes (docs/architecture.md).
