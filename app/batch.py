@@ -7,8 +7,10 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import NamedTuple
 
+from app.log.reader import read
 from app.prepare import prepare
-from app.runner import Outcome, run, simulate
+from app.report.files import write_report
+from app.runner import Outcome, Progress, record, run, silent, simulate
 from app.session import Session
 
 
@@ -19,12 +21,17 @@ class Job(NamedTuple):
     session: Session
     out: Path  # folder for the results
     realtime: bool = False
+    recorded: bool = True  # with log.mcap, summary.json and report.html; otherwise events.jsonl alone
 
 
-def work(job: Job) -> Outcome:
+def work(job: Job, progress: Progress = silent) -> Outcome:
     """Run one job in this process. Raises BadInput: what the session says cannot be used."""
     prepared = prepare(job.session, job.name)
-    return run(job.session, prepared, simulate(prepared), job.out, job.realtime)
+    if not job.recorded:
+        return run(job.session, prepared, simulate(prepared), job.out, job.realtime, progress)
+    outcome = record(job.session, prepared, job.out, job.realtime, progress)
+    write_report(read(job.out / "log.mcap"), job.out, outcome.verdicts)
+    return outcome
 
 
 def run_all(jobs: Iterable[Job]) -> Iterator[tuple[int, Outcome]]:

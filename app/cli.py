@@ -13,7 +13,7 @@ from rich.table import Table
 from app.checked import ABSENT, BadInput, load
 from app.library import load_arm, robots
 from app.prepare import prepare
-from app.session import Session, Setup, find
+from app.session import Session, Setup, find, find_all
 from pendant.settings import SettingError
 from pendant.settings import find as find_setting
 from sim.arm import Arm
@@ -39,8 +39,12 @@ Host = Annotated[str, typer.Option(help="Address to listen on.")]
 Port = Annotated[
     int | None, typer.Option(help=f"Port; 0 for any free one. Without it {PORT}, or any free one.", min=0, max=65535)
 ]
-SessionName = Annotated[str, typer.Argument(metavar="SESSION", help="A session file, or the name of a bundled session.")]
-Out = Annotated[Path, typer.Option(help="Folder for the results: events.jsonl, log.mcap.")]
+SessionNames = Annotated[
+    list[str], typer.Argument(metavar="SESSION...", help="Session files, folders of them, or names of bundled sessions.")
+]
+Out = Annotated[
+    Path, typer.Option(help="Folder for events.jsonl, log.mcap, summary.json, report.html; of several sessions, a folder each.")
+]
 Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
 
@@ -75,32 +79,61 @@ def serve(
     epilog=example(
         "pendant run free-drive",
         "pendant run my.yaml --out results --seed 7 --set free_drive.period=5",
+        "pendant run sessions/ more.yaml --junit results/junit.xml",
         "pendant run hold --realtime",
     )
 )
 def run(
-    session: SessionName,
+    sessions: SessionNames,
     out: Out = Path("out"),
     seed: Seed = None,
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
     set_: Set = None,
+    junit: Annotated[Path | None, typer.Option(help="Write the expectations as JUnit XML.", show_default=False)] = None,
 ) -> None:
-    """Run a session without a window, as fast as it goes. Exit code 1 when an expectation is not met."""
-    from app.runner import record
-    from app.summary import progress, show
+    """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
+    from app.batch import Job, run_all, work
+    from app.junit import write as write_junit
+    from app.summary import counting, progress, show, show_all
 
-    path = find(session)
-    content = load(path, Session)
     changes = dict(setting(text) for text in set_ or [])
-    content = msgspec.structs.replace(
-        content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
-    )
-    prepared = prepare(content, path.name)
-    with progress(content) as advance:
-        outcome = record(content, prepared, out, realtime, advance)
-    show(content, outcome, out)
-    if not outcome.passed:
+    jobs: list[Job] = []
+    paths = [path for name in sessions for path in find_all(name)]
+    for path in paths:
+        content = load(path, Session)
+        content = msgspec.structs.replace(
+            content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
+        )
+        prepare(content, path.name)
+        jobs.append(Job(path.name, content, out if len(paths) == 1 else out / path.stem, realtime))
+    if len({job.out for job in jobs}) < len(jobs):
+        raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
+    if len(jobs) == 1:
+        with progress(jobs[0].session) as advance:
+            outcomes = [work(jobs[0], advance)]
+        show(jobs[0].session, outcomes[0], out)
+    else:
+        with counting("sessions") as told:
+            found = {}
+            for place, outcome in run_all(jobs):
+                found[place] = outcome
+                told(len(found), len(jobs))
+        outcomes = [found[place] for place in range(len(jobs))]
+        show_all([job.out.name for job in jobs], outcomes, out)
+    if junit is not None:
+        write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
+    if not all(outcome.passed for outcome in outcomes):
         raise typer.Exit(1)
+
+
+@app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))
+def schema(kind: Annotated[str, typer.Argument(help="session, configuration, robot or tool.")] = "session") -> None:
+    """Print the JSON schema of a kind of file, with which an editor completes and checks it."""
+    from app.schema import KINDS, schema_of
+
+    if kind not in KINDS:
+        raise BadInput("schema", "KIND", kind, f"one of {', '.join(KINDS)}")
+    sys.stdout.write(schema_of(kind))
 
 
 @app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))

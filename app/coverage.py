@@ -68,8 +68,8 @@ def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -
     sessions = claiming()
     jobs: list[Job] = []
     for name, session in sessions.items():
-        jobs.append(Job(f"{name}.yaml", session, out / name / "on"))
-        jobs.append(Job(f"{name}.yaml", without(session), out / name / "off"))
+        jobs.append(Job(f"{name}.yaml", session, out / name / "on", recorded=False))
+        jobs.append(Job(f"{name}.yaml", without(session), out / name / "off", recorded=False))
     outcomes: dict[int, Outcome] = {}
     for place, outcome in run_all(jobs):
         outcomes[place] = outcome

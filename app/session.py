@@ -71,3 +71,18 @@ def find(name: str) -> Path:
     if name in bundled("sessions"):
         return folder("sessions") / f"{name}.yaml"
     raise BadInput(name, "", ABSENT, f"no such file; bundled sessions: {', '.join(bundled('sessions'))}")
+
+
+def find_all(name: str) -> list[Path]:
+    """The files that `name` means: those of a folder, sorted, or what `find` finds.
+
+    Raises:
+        BadInput: nothing is there.
+    """
+    path = Path(name)
+    if not path.is_dir():
+        return [find(name)]
+    found = sorted([*path.glob("*.yaml"), *path.glob("*.yml")])
+    if not found:
+        raise BadInput(name, "", ABSENT, "no session in this folder; expected files that end in .yaml")
+    return found

@@ -57,3 +57,22 @@ def show(session: Session, outcome: Outcome, out: Path) -> None:
     failed = sum(not verdict.passed for verdict in outcome.verdicts)
     console.print(f"{len(outcome.verdicts) - failed} expectations met, {failed} not")
     console.print(f"{len(outcome.events)} events; all is in {escape(str(out))}")
+
+
+def show_all(names: list[str], outcomes: list[Outcome], out: Path) -> None:
+    """Print what became of several sessions, a line each, and under it what was not met."""
+    table = Table("", "session", "met", "simulated [s]", "took [s]", "events", box=None, pad_edge=False)
+    for column in (2, 3, 4, 5):
+        table.columns[column].justify = "right"
+    for name, outcome in zip(names, outcomes, strict=True):
+        mark = "[green]pass[/green]" if outcome.passed else "[bold red]FAIL[/bold red]"
+        met = sum(verdict.passed for verdict in outcome.verdicts)
+        numbers = (f"{outcome.seconds:g}", f"{outcome.took:.1f}", str(len(outcome.events)))
+        table.add_row(mark, escape(name), f"{met} of {len(outcome.verdicts)}", *numbers)
+        for verdict in outcome.verdicts:
+            if not verdict.passed:
+                table.add_row("", escape(f"  expected {verdict.expected}; seen: {verdict.seen}"))
+    console = Console()
+    console.print(table)
+    failed = sum(not outcome.passed for outcome in outcomes)
+    console.print(f"{len(outcomes) - failed} sessions passed, {failed} not; results in {escape(str(out))}")

@@ -18,7 +18,7 @@ def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return code
 
 
-@pytest.mark.parametrize("command", ["serve", "run", "check", "claims", "robots"])
+@pytest.mark.parametrize("command", ["serve", "run", "check", "claims", "schema", "robots"])
 def test_every_command_has_help_with_examples(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -47,7 +47,7 @@ def test_robots_shows_the_arms(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
     ("arguments", "says"),
     [
         (["bogus"], "No such command 'bogus'"),
-        (["run"], "Missing argument 'SESSION'"),
+        (["run"], "Missing argument 'SESSION...'"),
         (["run", "nowhere.yaml"], "nowhere.yaml"),
         (["run", "hold", "--seed", "x"], "--seed"),
         (["run", "hold", "--seed", "-1"], "--seed"),

@@ -1,0 +1,122 @@
+"""The figures of a report, as SVG: drawn without a screen, with peaks that no thinning takes away."""
+
+import io
+from collections.abc import Sequence
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from app.log.reader import Log
+from app.report.summary import SLOW, Span, Summary
+
+Array = NDArray[np.float64]
+POINTS = 1500
+"""Most points of a line."""
+
+WIDTH = 7.2
+"""Of a figure [inch]."""
+
+COLOURS = {
+    "NORMAL": "#2f9e44",
+    "TEACH": "#69db7c",
+    "RUN": "#15aabf",
+    "REMOTE": "#868e96",
+    "FREE_DRIVE": "#1971c2",
+    "STOP": "#c92a2a",
+    "ACTIVATION": "#ffd43b",
+    "SEQUENCE": "#f59f00",
+    "HELD": "#1864ab",
+    "PERIOD": "#4dabf7",
+    "GUIDED": "#1971c2",
+    "RESTART": "#74c0fc",
+}
+INK = "#212529"
+
+
+def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
+    """Captions and SVG texts."""
+    t = log.t
+    if not len(t):
+        return []
+    force = np.linalg.norm(log.state["F_user"][:, :3], axis=1)
+    torque = np.abs(log.state["tau_ext"])
+    return [
+        ("Modes, and phases of free-drive", _bars(summary.modes, summary.phases, summary)),
+        (
+            "Speed of tool centre point and elbow, against 250 mm/s",
+            _lines(t, [("tcp", 1000 * log.state["v_tcp"]), ("elbow", 1000 * log.state["v_elbow"])], "speed [mm/s]", 1000 * SLOW),
+        ),
+        ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]")),
+        (
+            "External torque of the joints, size",
+            _lines(t, [(name, torque[:, i]) for i, name in enumerate(log.arm.chain.joints)], "torque [N·m]"),
+        ),
+    ]
+
+
+def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, bar: float | None = None) -> str:
+    figure, axes = _axes(2.1)
+    for name, values in series:
+        axes.plot(*thinned(t, values), linewidth=0.9, label=name)
+    if bar is not None:
+        axes.axhline(bar, color="#c92a2a", linewidth=0.9, linestyle="--")
+    axes.set_ylabel(label, fontsize=7.5)
+    axes.set_xlabel("time [s]", fontsize=7.5)
+    axes.set_xlim(0.0, float(t[-1]))
+    axes.set_ylim(bottom=0.0)
+    if len(series) > 1:
+        axes.legend(loc="upper right", ncols=min(len(series), 3), frameon=False, fontsize=7)
+    return _svg(figure)
+
+
+def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> str:
+    figure, axes = _axes(1.5)
+    seen: dict[str, str] = {}
+    for row, spans in ((1.0, modes), (0.0, phases)):
+        for span in spans:
+            colour = COLOURS.get(span.name, "#adb5bd")
+            seen[span.name] = colour
+            axes.barh(row, span.end - span.begin, left=span.begin, height=0.7, color=colour, edgecolor="white", linewidth=0.4)
+            if span.end - span.begin > 0.09 * summary.duration:
+                text = span.name.replace("_", "-").lower()
+                axes.text((span.begin + span.end) / 2, row, text, ha="center", va="center", fontsize=6.5, color=INK)
+    axes.set_yticks([0.0, 1.0], ["phase", "mode"])
+    axes.set_xlim(0.0, summary.duration)
+    axes.set_xlabel("time [s]", fontsize=7.5)
+    handles = [Patch(color=colour, label=name) for name, colour in seen.items()]
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, fontsize=6.5)
+    return _svg(figure)
+
+
+def thinned(t: Array, values: Array) -> tuple[Array, Array]:
+    """At most about POINTS points; of each stretch the largest is kept, at its own time."""
+    step = -(-len(t) // POINTS)
+    if step <= 1:
+        return t, values
+    whole = len(t) // step * step
+    blocks = np.nan_to_num(values[:whole], nan=0.0).reshape(-1, step)
+    at = blocks.argmax(axis=1) + step * np.arange(len(blocks))
+    return np.append(t[at], t[whole:]), np.append(values[at], values[whole:])
+
+
+def _axes(height: float) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    axes = figure.add_subplot()
+    axes.tick_params(labelsize=7)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(True, linewidth=0.3, alpha=0.6)
+    axes.set_axisbelow(True)
+    return figure, axes
+
+
+def _svg(figure: Figure) -> str:
+    """The figure as an <svg> element. Same numbers, same text: no date, no random names."""
+    out = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": "pendant", "svg.fonttype": "none", "font.family": "sans-serif"}):
+        figure.savefig(out, format="svg", metadata={"Date": None})
+    text = out.getvalue()
+    return text[text.index("<svg") :]

@@ -1,0 +1,187 @@
+"""The report's figures against the log's numbers, computed in another way, and its page against what a browser needs."""
+
+import math
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from app.checked import BadInput, convert
+from app.events_file import Line
+from app.log.reader import Log, read
+from app.prepare import prepare
+from app.report.charts import POINTS, charts, thinned
+from app.report.files import write_report
+from app.report.page import page
+from app.report.regions import regions
+from app.report.summary import NOT_A_VALIDATION, Summary, spans, summarise
+from app.runner import record
+from app.session import Session
+from app.watch import Verdict
+
+SESSION: dict[str, Any] = {
+    "title": "A <report> & more",
+    "duration": 2.4,
+    "seed": 3,
+    "settings": {"activation.period": 0.1, "sequence.period": 0.25},
+    "timeline": [
+        {"at": 0.5, "do": "press", "control": "free_drive"},
+        {"after": "mode FREE_DRIVE", "delay": 0.1, "do": "push", "for": 0.6, "force": [0.0, 20.0, 0.0]},
+        {"after": "mode FREE_DRIVE", "delay": 0.5, "do": "tap", "control": "emergency_stop"},
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
+    out = tmp_path_factory.mktemp("run")
+    session = convert(SESSION, Session, "s.yaml")
+    record(session, prepare(session, "s.yaml"), out)
+    return read(out / "log.mcap")
+
+
+@pytest.fixture(scope="module")
+def summary(log: Log) -> Summary:
+    return summarise(log, [Verdict(True, "mode RUN", "at 1 s"), Verdict(False, "mode <STOP>", "never")])
+
+
+def test_the_figures_are_those_of_the_log(log: Log, summary: Summary) -> None:
+    assert summary.duration == pytest.approx(2.4)
+    assert summary.tcp_speed.value == max(log.state["v_tcp"].tolist())
+    assert log.state["v_elbow"][round(summary.elbow_speed.t * 500) - 1] == summary.elbow_speed.value
+    forces = [math.hypot(*row[:3]) for row in log.state["F_user"].tolist()]
+    assert summary.force_peak.value == pytest.approx(max(forces), rel=1e-12)
+    assert summary.force_held.value == pytest.approx(max(min(forces[k : k + 250]) for k in range(len(forces) - 249)), rel=1e-12)
+    assert [span.name for span in summary.modes] == ["TEACH", "FREE_DRIVE", "STOP"]
+    assert [span.name for span in summary.phases] == ["ACTIVATION", "SEQUENCE", "HELD"]
+    assert summary.phases[1].end - summary.phases[1].begin == pytest.approx(0.25)
+    assert [event.kind for event in summary.messages] == ["emergency_stop"]
+    assert not summary.passed
+
+
+def test_margins_are_the_worst_share(log: Log, summary: Summary) -> None:
+    found = {margin.parameter: margin for margin in summary.margins}
+    pairs = zip(log.state["monitored_flange_speed"].tolist(), log.state["limit_flange_speed"].tolist(), strict=True)
+    worst = max(value / limit for value, limit in pairs if limit == limit)
+    assert found["flange speed"].share == pytest.approx(worst)
+    assert [margin.share for margin in summary.margins] == sorted((m.share for m in summary.margins), reverse=True)
+    assert len(summary.margins) >= 8
+
+
+def test_a_stop_is_timed_until_the_arm_stands(log: Log, summary: Summary) -> None:
+    (stop,) = summary.stops
+    assert stop.time is not None
+    begin = round(stop.t * 500) - 1
+    end = begin + round(stop.time * 500)
+    speeds = np.abs(log.truth["qd"]).max(axis=1)
+    assert np.all(speeds[end : end + 50] <= 0.01)
+    assert np.any(speeds[end - 1 : end + 49] > 0.01)
+    way = sum(math.dist(log.truth["flange"][k, :3], log.truth["flange"][k + 1, :3]) for k in range(begin, end))
+    assert stop.distance == pytest.approx(way)
+    assert 0.001 < way < 0.5
+
+
+def test_forces_are_held_against_every_body_region(summary: Summary) -> None:
+    table = {each.region: each for each in regions().regions}
+    assert {each.region for each in summary.forces} == set(table)
+    for each in summary.forces:
+        row = table[each.region]
+        peak = summary.force_peak.value / (row.transient if row.transient is not None else row.quasi_static)
+        assert each.share == pytest.approx(max(peak, summary.force_held.value / row.quasi_static))
+        assert each.within == (each.share <= 1.0)
+        assert each.source
+    skull = next(each for each in summary.forces if each.region.startswith("skull"))
+    assert skull.transient is None
+
+
+def test_the_check_sum_is_of_the_limits_alone(log: Log, summary: Summary) -> None:
+    values = dict(log.settings[0][1])
+    values["free_drive.period"] = 9.0  # no limit: it may be changed in free-drive
+    log.settings.append((9, values))
+    assert summarise(log).limits == summary.limits
+    log.settings.append((9, {**values, "limits.activation.flange_speed.max": 0.03}))
+    assert summarise(log).limits != summary.limits
+    del log.settings[1:]
+
+
+def test_spans_are_runs_of_equal_codes() -> None:
+    t = np.arange(1, 7) * 0.5
+    found = spans(np.array([0, 0, 1, 1, 1, 0]), t, ("A", "B"))
+    assert [(span.name, span.begin, span.end) for span in found] == [("A", 0.5, 1.5), ("B", 1.5, 3.0), ("A", 3.0, 3.0)]
+    assert spans(np.array([], dtype=int), np.array([]), ("A",)) == []
+
+
+def test_thinning_keeps_every_peak() -> None:
+    t = np.linspace(0.0, 1.0, 10 * POINTS + 7)
+    values = np.zeros_like(t)
+    values[[3, 4321, len(t) - 1]] = 7.0
+    few, kept = thinned(t, values)
+    assert len(few) <= POINTS + 20
+    assert np.sum(kept == 7.0) == 3
+    assert np.all(np.diff(few) > 0)
+    assert thinned(t[:5], values[:5])[0].tolist() == t[:5].tolist()
+
+
+class Page(HTMLParser):
+    """Open elements, and whatever would be loaded from elsewhere."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.foreign: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+        self.foreign += [value for name, value in attrs if name in ("src", "href") and value and not value.startswith("#")]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, tmp_path: Path) -> None:
+    contact = Line(
+        tick=500,
+        t=1.0,
+        kind="contact_gained",
+        severity="NOTICE",
+        headline="Contact gained: tool",
+        guidance="",
+        values={"rule": "rise", "steps": 4, "action": "none"},
+    )
+    text = page(msgspec.structs.replace(summary, contacts=[contact]), charts(log, summary))
+    parser = Page()
+    parser.feed(text)
+    assert parser.open == []
+    assert parser.foreign == []
+    assert "http" not in re.sub(r'xmlns(:xlink)?="[^"]*"|<!DOCTYPE[^>]*>|<rdf:RDF.*?</rdf:RDF>', "", text, flags=re.S)
+    assert text.count("<svg") == 4
+    assert "A &lt;report&gt; &amp; more" in text
+    assert NOT_A_VALIDATION.split(":")[0] in text
+    assert "1 of 2 expectations not met" in text
+    assert "mode &lt;STOP&gt;" in text
+    assert "8</td><td>none" in text  # 4 ticks are 8 ms
+    assert f"{1000 * summary.tcp_speed.value:.4g}" in text
+    assert "@media print" in text
+
+
+def test_an_empty_log_gives_a_report_too(log: Log, tmp_path: Path) -> None:
+    none = {name: values[:0] for name, values in log.state.items()}
+    truth = {name: values[:0] for name, values in log.truth.items()}
+    empty = Log(log.path, False, log.run, log.arm, log.scenario, log.ticks[:0], none, truth, [], [], [], [])
+    assert write_report(empty, tmp_path / "new").duration == 0.0
+    assert "No expectations were given" in (tmp_path / "new" / "report.html").read_text()
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BadInput):
+        write_report(empty, tmp_path / "file")
+
+
+def test_the_same_log_gives_the_same_bytes(log: Log, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_report(log, tmp_path / name)
+    for name in ("summary.json", "report.html"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
