@@ -5,8 +5,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.signal import Signal
-
 Array = NDArray[np.float64]
 
 
@@ -52,9 +50,10 @@ class Estimate:
     friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]
     friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
     tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
+    tau_ext_deviation: Array = field(default_factory=_no_joints)  # (n,) standard deviation of tau_ext from the gear [N·m]
+    degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
+    lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned
-    p_BT: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tool centre point [m]
-    signals: tuple[Signal | None, ...] = ()  # for the contact detectors, as pendant.contact_monitor.SOURCES; None: not valid
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -86,7 +85,8 @@ class Estimate:
             self.friction.copy(),
             self.friction_deviation.copy(),
             self.tau_ways.copy(),
+            self.tau_ext_deviation.copy(),
+            self.degraded,
+            self.lost,
             self.touched,
-            self.p_BT,
-            self.signals,
         )

@@ -1,9 +1,5 @@
 """The supervisor: robot mode, safety mode, program and free-drive, one tick at a time (FD-1)."""
 
-import math
-
-from pendant.contact import Change, Contact
-from pendant.contact_monitor import ContactMonitor
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
@@ -13,10 +9,11 @@ from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
 from pendant.program import Program, ProgramState, Sequencer, misfit
+from pendant.sensing import JointSensors
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, ticks
 from pendant.table import TABLE, Effect
-from pendant.watch import Stillness, WrenchMean, joints_ok
+from pendant.watch import Stillness, WrenchMean, joints_ok, motion_ok
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
 RESTING = frozenset(SWITCHABLE.values())
@@ -26,35 +23,6 @@ STOPPING = {
     Effect.PROTECTIVE_STOP: Safety.PROTECTIVE_STOP,
     Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
 }
-
-
-TOLD = {
-    Change.GAINED: Kind.CONTACT_GAINED,
-    Change.LOST: Kind.CONTACT_LOST,
-    Change.RESISTANCE: Kind.CONTACT_RESISTANCE,
-    Change.CLAMPING: Kind.CONTACT_CLAMPING,
-}
-
-
-def told(contact: Contact, action: str) -> Values:
-    """The values of a contact's event (CD-16)."""
-    (fx, fy, fz), (x, y, z) = contact.force, contact.pose.p_BT
-    return {
-        "part": contact.part,
-        "source": contact.source,
-        "rule": contact.rule,
-        "force": math.hypot(fx, fy, fz),
-        "fx": fx,
-        "fy": fy,
-        "fz": fz,
-        "acceleration": math.hypot(*contact.acceleration),
-        "ratio": contact.ratio,
-        "steps": contact.steps,
-        "x": x,
-        "y": y,
-        "z": z,
-        "action": action,
-    }
 
 
 class Supervisor:
@@ -87,9 +55,8 @@ class Supervisor:
         self._button = KeepAlive()
         self._still = Stillness()
         self._mean = WrenchMean()
+        self._sensors = JointSensors()
         self._sequencer = Sequencer()
-        self._monitor = ContactMonitor()
-        self._contacts: tuple[Contact, ...] = ()  # of this tick
         self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints)
         self._refresh()
         self._key: tuple[object, ...] = ()
@@ -102,31 +69,24 @@ class Supervisor:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """All that the next decision depends on, besides its arguments and the buffers of the contact detectors.
-
-        Equal states decide equally.
-        """
+        """All that the next decision depends on, besides its arguments; equal states decide equally."""
         button = (self._button.held, self._button.silent)
         still = (self._still.count, self._still.joint, self._still.speed)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
-        return (self.settings, *own, self._mean.memory, self._sequencer.memory, self._free.memory)
+        return (self.settings, *own, self._mean.memory, self._sensors.lost, self._sequencer.memory, self._free.memory)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
-        self._feel(estimate, events)
         if inputs.commands:
             self._safety_commands(estimate, inputs.commands, events)
             self._mode_commands(estimate, inputs.commands, events)
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
-        wanted = inputs.settings
-        if Command.DETECTION in inputs.commands:
-            wanted = {**wanted, "contact.on": not self.settings.contact.on}
-        if wanted:
+        if inputs.settings:
             trying = self._free.phase is Phase.SEQUENCE
-            self.settings, changed = change(self.settings, wanted, self._mode, trying, estimate.tick)
+            self.settings, changed = change(self.settings, inputs.settings, self._mode, trying, estimate.tick)
             events += changed
             self._refresh()
         return self._publish(events)
@@ -136,21 +96,11 @@ class Supervisor:
         if self._button.step(button in inputs.held, button in inputs.released, self._silence):
             values: Values = {"value": (self._silence + 1) * TICK, "limit": self._silence * TICK}
             events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
+        events += self._sensors.step(estimate, self._joints)
         self._free.sense(self._button.held)
         self._still.step(estimate, self._slow)
         self._static = self._still.count >= self._static_ticks
         return self._mean.step(estimate)
-
-    def _feel(self, estimate: Estimate, events: list[Event]) -> None:
-        """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
-        sequencer, use = self._sequencer, self.settings.contact
-        self._contacts = self._monitor.step(estimate, use, self._mode, use.on or sequencer.until is not None)
-        for contact in self._contacts:
-            until = sequencer.until
-            taken = self._mode is Mode.RUN and until is not None and sequencer.touch(contact)
-            if taken:
-                self._braking = True
-            events.append(Event(TOLD[contact.change], estimate.tick, told(contact, until.then if taken and until else "none")))
 
     def _safety_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         stop = Command.EMERGENCY_STOP in commands
@@ -200,32 +150,17 @@ class Supervisor:
                     self._refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate, events)
-        braked = sequencer.contact is not None
-        if not braked and (move is None or sequencer.move is not move):
+        if move is None or sequencer.move is not move:
             return
-        tool_on = sequencer.tool_on
-        if not joints_ok(estimate):
+        if not motion_ok(estimate):
             self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED}), events)
-        elif braked:
-            if self._static and sequencer.rest(self._monitor.now):
-                self._finish(estimate.tick, events)
         elif estimate.move_refused:
-            self._fail(estimate.move_refused, estimate.tick, events)
-        elif sequencer.missed(estimate.move_done):
-            self._fail("it ended without a contact", estimate.tick, events)
-        elif sequencer.step(estimate.move_done, self._monitor.now):
-            self._finish(estimate.tick, events)
-        if sequencer.tool_on is not tool_on:
-            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
-
-    def _finish(self, tick: int, events: list[Event]) -> None:
-        self._mode = self._origin
-        events.append(Event(Kind.PROGRAM_FINISHED, tick, {"name": self._name}))
-
-    def _fail(self, reason: str, tick: int, events: list[Event]) -> None:
-        values: Values = {"name": self._name, "step": self._sequencer.index + 1, "reason": reason}
-        events.append(Event(Kind.PROGRAM_FAILED, tick, values))
-        self._end_program()
+            values: Values = {"name": self._name, "step": sequencer.index + 1, "reason": estimate.move_refused}
+            events.append(Event(Kind.PROGRAM_FAILED, estimate.tick, values))
+            self._end_program()
+        elif sequencer.step(estimate.move_done):
+            self._mode = self._origin
+            events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": self._name}))
 
     def _load(self, program: Program, estimate: Estimate, events: list[Event]) -> None:
         reason = misfit(program, self._n)
@@ -353,7 +288,6 @@ class Supervisor:
         sequencer = self._sequencer
         law = self._law()
         key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
-        key += (sequencer.tool_on,)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.use_wrench and not (trying and not self.settings.sequence.amplified) else 0.0
@@ -374,8 +308,6 @@ class Supervisor:
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
             monitored=free.monitored() if trying else (),
-            contacts=self._contacts,
-            tool_on=sequencer.tool_on,
         )
         self._key = key
         self._decision = None if events or periods else decision

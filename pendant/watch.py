@@ -14,8 +14,15 @@ WINDOW = ticks(0.1)
 
 def joints_ok(estimate: Estimate) -> bool:
     """Joint values are valid, and finite as well: validity is not taken on trust (FD-12)."""
-    if not estimate.joints_valid:
-        return False
+    return estimate.joints_valid and _finite(estimate)
+
+
+def motion_ok(estimate: Estimate) -> bool:
+    """Enough of the joint sensors is left to go on with a motion that has begun: all of them, or every motor angle."""
+    return (estimate.joints_valid or estimate.degraded) and _finite(estimate)
+
+
+def _finite(estimate: Estimate) -> bool:
     total = sum(estimate.q.tolist()) + sum(estimate.qd.tolist()) + sum(estimate.tau_ext.tolist())
     total += sum(estimate.theta.tolist()) + sum(estimate.theta_d.tolist()) + sum(estimate.tau_J.tolist())
     return math.isfinite(total + sum(estimate.v_F.tolist()))
@@ -38,7 +45,7 @@ class Stillness:
 
     def step(self, estimate: Estimate, limit: float) -> None:
         """One tick; `limit` [rad/s]."""
-        if not estimate.joints_valid:
+        if not (estimate.joints_valid or estimate.degraded):
             self.count = 0
             return
         for joint, value in enumerate(estimate.qd.tolist()):

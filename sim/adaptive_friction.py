@@ -1,5 +1,7 @@
 """Adaptive friction module: friction of each joint, learned while the arm works, with its uncertainty (AF-2)."""
 
+import math
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -68,7 +70,7 @@ class AdaptiveFriction:
 
         Args:
             speed: of the motors (n,) [rad/s].
-            surplus: tau_m - J theta_dd - tau_dyn (n,) [N·m].
+            surplus: tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown.
             tau_dyn: torque of the rigid model (n,) [N·m].
             tau_J: transmission torque (n,) [N·m], for the load term.
             temperature: measured (n,) [°C].
@@ -129,7 +131,7 @@ def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk
         for k in range(TERMS):
             # What nobody measures may drift, but never beyond what was believed at first.
             P[k, k] = min(P[k, k] + walk[i, k], max(ceiling[i, k], P[k, k]))
-        if not free or abs(speed[i]) < GATE:
+        if not free or abs(speed[i]) < GATE or math.isnan(surplus[i]):
             continue
         _friction_terms(speed[i], tau_J[i], warmth[i], row)
         row[4] = tau_dyn[i]

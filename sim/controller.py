@@ -43,8 +43,10 @@ class Controller:
         self.feedback = Feedback(arm, calibration, dynamics, tcp)
         self.free_drive = FreeDriveLaw(dynamics, arm.n)
         self.motor = MotorController(arm, calibration)
+        self._dynamics = dynamics
         self._law: Law | None = None
         self._nothing = np.zeros(arm.n)
+        self._blind = False  # some joint had no motor angle in the last tick
         self._fed_back = False  # the torque feedback was on in the last tick
 
     def update(
@@ -59,6 +61,10 @@ class Controller:
             friction: its estimate.
             use: which terms are on.
         """
+        blind = not (estimate.joints_valid or estimate.degraded)
+        if self._blind and not blind:
+            self.references.skip()  # the arm is not where the reference went on to
+        self._blind = blind
         if decision.law is Law.FREE:
             self.references.skip()
             if self._law is not Law.FREE:
@@ -66,8 +72,22 @@ class Controller:
             torque = self.free_drive.torque(estimate, decision, jacobian, friction, use.friction)
         else:
             torque = self._track(estimate, decision, friction, use)
+        if blind:
+            self._let_blind_joints_rest(estimate, torque)
         self._law = decision.law
         return self.motor.current(torque, estimate.theta_d)
+
+    def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
+        """Without its motor angle a joint gets its static torque alone, and its friction brings it to rest: a loop closed over
+        the spring, or on an old measurement, would drive it. Where a joint has lost both angles, no posture is known, and all
+        joints keep the static torque of the last one.
+        """
+        lost = set(estimate.lost)
+        blind = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"]
+        everywhere = not blind or any(("output_encoder", joint) in lost for joint in blind)
+        static = self._dynamics.gravity(estimate.q)
+        which = slice(None) if everywhere else blind
+        torque[which] = static[which]
 
     def _track(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, use: JointControl) -> Array:
         references = self.references

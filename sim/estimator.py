@@ -21,7 +21,11 @@ from sim.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
 
 Array = NDArray[np.float64]
 
+BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
+
 SHIPPED = JointControl()
+SENSORS = ("motor_encoder", "output_encoder", "current")
+MOTOR_ANGLE, CURRENT = 0, 2
 
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
@@ -66,6 +70,12 @@ class Estimator:
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
         self.tau_m = np.zeros(n)
+        self._compliance = 1.0 / (stiffness + slip_stiffness)
+        self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
+        self._lost: tuple[tuple[str, int], ...] = ()
+        self._smooth_bending = 1.0 - math.exp(-2.0 * math.pi * BENDING_BANDWIDTH * TICK)
+        self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
+        self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
         self._started = False
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
@@ -92,21 +102,23 @@ class Estimator:
         dynamics = self._dynamics
         self.tick += 1
         theta, q = self._theta, self._q
-        if sample.joints_valid:
+        angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
+        if angles is not None:
+            if self._lost and sample.joints_valid:
+                self._back(sample)
             if not self._started:
                 # Also after an outage: the way the arm went in it must not count as speed.
                 theta[:], q[:] = 0.0, 0.0
-                theta[0], q[0] = sample.theta, sample.q
+                theta[0], q[0] = angles[0], angles[1]
                 self._wanted = None
             if self._rest is None:
-                self._rest = sample.theta - sample.q
-            measured = (sample.theta, sample.q, sample.current)
+                self._rest = angles[0] - angles[1]
             if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
                 _plan(*self._wanted, *answered, theta, q)
             self._wanted = answered
-            _follow(measured, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._deflection)
-            self.q = sample.q
-        self._started = sample.joints_valid
+            _follow(angles, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._deflection)
+            self.q = angles[1]
+        self._started = angles is not None
         qd = q[1]
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
@@ -151,6 +163,9 @@ class Estimator:
             self.friction.total,
             self.friction.deviation,
             self.transmission.ways,
+            self.transmission.deviations[DEFLECTION],
+            not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all()),
+            self._lost,
             self.transmission.contact,
         )
 
@@ -160,15 +175,51 @@ class Estimator:
         surplus, stiction = self._torques
         if use is not self._use:
             self._use = use
-            self._ways[:] = np.array([[use.from_dynamics], [use.from_deflection], [use.from_motor]])
+            both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
+            self._ways[:] = [use.from_dynamics | ~both, use.from_deflection & both, use.from_motor & motor_known]
         _surplus(self.tau_m, self._rotor, motor, tau_dyn, surplus)
-        free = sample.joints_valid and use.adaptive and not transmission.contact
+        if self._lost:
+            surplus[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
+        free = self._started and use.adaptive and not transmission.contact
         friction.learn(motor[1], surplus, tau_dyn, transmission.fused, sample.temperature, free)
         rubs = (friction.total, friction.terms, friction.warmth)
         ways = transmission.ways
         ways[DEFLECTION] = self._deflection
         moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
         transmission.update(friction.deviation, stiction, motor[2], moving, self._ways)
+        if self._lost:  # what a way cannot tell says nothing against the others
+            np.copyto(ways, transmission.fused, where=~self._ways)
+
+    def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:
+        """Angles and currents where some are out: each angle from the other, through the spring; None if a joint has neither."""
+        able = np.isfinite(np.stack([sample.theta, sample.q, sample.current]))
+        if not (able[0] | able[1]).all():
+            self._lost = _names(able)
+            return None
+        fused = self.transmission.fused
+        if not (able == self._able).all():
+            self._bending = fused.copy()
+            bent = self._theta[0] - self._q[0] if self._started else np.zeros_like(fused)
+            fresh = (self._able[0] & self._able[1]) & self._started
+            # What the spring's stiffness does not explain now, it will not explain later: no angle jumps.
+            self._bend = np.where(fresh, bent - self._compliance * fused, self._bend)
+            self._able, self._lost, self._use = able, _names(able), None
+        # Slowly: the torque is itself made of these angles.
+        self._bending += self._smooth_bending * (fused - self._bending)
+        deflection = self._bend + self._compliance * self._bending
+        theta = np.where(able[0], sample.theta, sample.q + deflection)
+        q = np.where(able[1], sample.q, sample.theta - deflection)
+        spent = (fused + (1.0 - self.friction.output_share) * self.friction.total) / self._constants[0]
+        return theta, q, np.where(able[2], sample.current, spent)
+
+    def _back(self, sample: Sample) -> None:
+        """All sensors are there again: angles that were made up jump to what is measured, without any speed."""
+        self._theta[0], self._q[0] = sample.theta, sample.q
+        self._able, self._lost, self._use = np.ones_like(self._able), (), None
+
+
+def _names(able: NDArray[np.bool_]) -> tuple[tuple[str, int], ...]:
+    return tuple((SENSORS[k], int(i)) for k, i in zip(*np.nonzero(~able), strict=True))
 
 
 @numba.njit(cache=True)

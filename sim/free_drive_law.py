@@ -8,15 +8,20 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+from pendant.modes import TICK, Phase
 from sim.adaptive_friction import AdaptiveFriction
 from sim.dynamics import Dynamics
 
 Array = NDArray[np.float64]
 
 COMPENSATED = 0.85  # share of the friction estimate that is taken off the hand
-INTENT = 0.25  # of the breakaway torque: a hand that asks for this much is helped in full
-DEAD_ZONE = 0.06  # of the breakaway torque: less than this is sensor drift, no hand
-FELT = 0.8  # of the breakaway torque: a push felt by the joints alone must exceed this change, the stiffness is not well known
+INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
+DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
+HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
+BRAKE, BRAKE_SPEED = 0.5, 0.1  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
+FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
+USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
+FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
 
 
 class FreeDriveLaw:
@@ -24,18 +29,25 @@ class FreeDriveLaw:
 
     Friction is compensated in the direction of what the hand asks of a joint and in proportion to it, never in the
     direction of the motion: without a hand nothing is compensated, the arm's own friction holds it, and even too large an
-    estimate neither drives it nor makes it hum.
+    estimate neither drives it nor makes it hum. A hand on a link is felt by the joints alone: there a torque counts that the
+    flange sensor does not explain, that is larger than its uncertainty, and that has not been there for long.
+
+    Attributes:
+        share: of the friction estimate that is taken off at most.
     """
 
     def __init__(self, dynamics: Dynamics, n: int) -> None:
         self._dynamics = dynamics
-        self._asked = np.zeros(n)
-        self._felt_before = np.zeros(n)
+        self.share = COMPENSATED
+        self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
+        self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
+        self._memory = np.zeros((3, n))  # asked and felt, filtered; what is usual
         self._turned = np.eye(3)
 
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
-        self._felt_before[:] = estimate.tau_ext
+        self._memory[:] = 0.0
+        self._memory[2] = estimate.tau_ext
         self._turned[:] = estimate.R_BF
 
     def torque(
@@ -45,27 +57,30 @@ class FreeDriveLaw:
 
         Args:
             estimate: this tick's estimate.
-            decision: its gain is 0 while the arm is only freed to see whether it stays; then nothing helps the hand.
+            decision: while the arm is only freed to see whether it stays, nothing helps the hand; else gain 0 means that the
+                flange sensor is not to be used, and hands are felt by the joints alone.
             jacobian: of the flange (6, n), linear first, axes of B.
             friction: its estimate.
             with_friction: take friction off the hand.
         """
         torque = self._dynamics.gravity(estimate.q)
-        if decision.gain <= 0.0:
+        if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
-        asked = self._asked
-        asked[:] = 0.0
-        if estimate.wrench_valid:
+        hand = self._hand
+        hand[:] = 0.0
+        if estimate.wrench_valid and decision.gain > 0.0:
             cap, gain = decision.force_cap, decision.gain
-            _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, asked, torque)
+            _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
         if with_friction:
-            _take_off(asked, estimate.tau_ext, self._felt_before, estimate.friction, friction.terms, friction.warmth, torque)
+            felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
+            rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
+            _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, self.share, torque)
         return torque
 
 
 @numba.njit(cache=True)
-def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, asked, torque) -> None:
-    """What the hand asks of each joint, its force capped. The baseline is an offset of the sensor: it turns with the flange."""
+def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> None:
+    """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
     wrench = np.empty(6)
     for k in range(3):
         wrench[k], wrench[3 + k] = F_user[k], F_user[3 + k]
@@ -77,19 +92,28 @@ def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, asked, torque) -> N
     share = cap / size if size > cap else 1.0
     for i in range(torque.size):
         for j in range(6):
-            asked[i] += share * jacobian[j, i] * wrench[j]
-        torque[i] += gain * asked[i]
+            hand[0, i] += jacobian[j, i] * wrench[j]
+        hand[1, i] = share * hand[0, i]
+        torque[i] += gain * hand[1, i]
 
 
 @numba.njit(cache=True)
-def _take_off(asked, tau_ext, felt_before, sliding, terms, warmth, torque) -> None:
+def _take_off(hand, tau_ext, uncertain, memory, rates, sliding, speed, terms, warmth, most, torque) -> None:
+    smooth, forget, keep = rates
     for i in range(torque.size):
         breakaway = terms[i, 0] * warmth[i]
-        ask, felt = asked[i], tau_ext[i] - felt_before[i]
-        over = abs(felt) - FELT * breakaway
+        unexplained = tau_ext[i] - hand[0, i] - memory[2, i]
+        memory[0, i] += smooth * (hand[1, i] - memory[0, i])
+        memory[1, i] += smooth * (unexplained - memory[1, i])
+        ask, felt = memory[0, i], memory[1, i]
+        over = abs(felt) - FELT * breakaway - uncertain[i]
+        usual = memory[2, i] + (keep if over > 0.0 else forget) * unexplained
+        # As the gears' errors are learned, what seemed usual must go as well.
+        memory[2, i] = min(max(usual, -USUAL * uncertain[i]), USUAL * uncertain[i])
         if over > abs(ask):
             ask = math.copysign(over, felt)
-        size = abs(ask) - DEAD_ZONE * breakaway
-        if size > 0.0:
-            share = min(size / (INTENT * breakaway), 1.0) if breakaway > 0.0 else 1.0
-            torque[i] += math.copysign(COMPENSATED * share * max(abs(sliding[i]), breakaway), ask)
+        size = max(abs(ask) - DEAD_ZONE * breakaway, 0.0)
+        share = min(size / (INTENT * breakaway), 1.0) if breakaway > 0.0 else 1.0
+        torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
+        # A joint of which nothing is asked comes to rest sooner than by its friction alone.
+        torque[i] -= (1.0 - share) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)

@@ -44,19 +44,25 @@ def estimate(**values: Any) -> Estimate:
         "move_done": 0,
         "friction": np.zeros(N),
         "friction_deviation": np.zeros(N),
+        "tau_ext_deviation": np.zeros(N),
         "tau_ways": np.zeros((3, N)),
     }
     return Estimate(**{**known, **values})
 
 
 def decision(
-    law: Law, move: Move | None = None, gain: float = 0.0, cap: float = 50.0, baseline: tuple[float, ...] = ()
+    law: Law,
+    move: Move | None = None,
+    gain: float = 0.0,
+    cap: float = 50.0,
+    baseline: tuple[float, ...] = (),
+    phase: Phase = Phase.PERIOD,
 ) -> Decision:
     """A decision for this law, without periods or events."""
     return Decision(
         mode=Mode.TEACH,
         safety=Safety.NORMAL,
-        phase=Phase.OFF,
+        phase=phase,
         law=law,
         move=move,
         gain=gain,

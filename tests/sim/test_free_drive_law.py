@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pendant.modes import Law
+from pendant.modes import Law, Phase
 from sim.adaptive_friction import AdaptiveFriction
 from sim.frames import rotation
 from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
@@ -50,7 +50,9 @@ def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:
 
 
 def test_before_free_drive_is_entered_nothing_helps_the_hand() -> None:
-    assert np.abs(asked(np.array([30.0, 0, 0, 0, 0, 0]), with_friction=True, gain=0.0)).max() < 1e-12
+    seen = estimate(q=Q, R_BF=R, F_user=np.array([30.0, 0, 0, 0, 0, 0]), tau_ext=np.full(N, 50.0))
+    trying = decision(Law.FREE, phase=Phase.SEQUENCE)
+    np.testing.assert_allclose(law().torque(seen, trying, JACOBIAN, AdaptiveFriction(UR5E), True), GRAVITY, atol=1e-9)
 
 
 def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -> None:
