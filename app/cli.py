@@ -136,6 +136,20 @@ def schema(kind: Annotated[str, typer.Argument(help="session, configuration, rob
     sys.stdout.write(schema_of(kind))
 
 
+@app.command(epilog=example("pendant replay out/log.mcap --open"))
+def replay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="A log.mcap; one without its end is repaired.")],
+    host: Host = "127.0.0.1",
+    port: Port = None,
+    open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+) -> None:
+    """Show a recording in the web app, with a time line; nothing is simulated."""
+    from app.serving import replay_until_interrupted
+
+    with replay_until_interrupted(log, host, port, PORT, open_browser) as url:
+        Console().print(f"Showing {escape(str(log))} at {url}  (stop with Ctrl-C)")
+
+
 @app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))
 def claims(
     out: Annotated[Path, typer.Option(help="Folder for claims.md, claims.json and the runs.")] = Path("out/claims"),

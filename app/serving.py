@@ -2,13 +2,19 @@
 
 import signal
 import threading
+import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from app.checked import BadInput
+from app.library import mesh_path
+from app.log.playback import Player
+from app.log.reader import read, repair
 from app.prepare import Prepared
 from app.runner import simulate
-from app.web.server import Served
+from app.web.replay import Replay
+from app.web.server import Served, free_port, served_host
 from app.web.server import serve as serve_web
 from sim.loop import Loop
 
@@ -41,6 +47,31 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
             served.close()
     finally:
         loop.stop()
+
+
+@contextmanager
+def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[str]:
+    """Show a recording, as `serve_until_interrupted` serves a simulation; a log without its end is repaired first.
+
+    Raises:
+        BadInput: the log cannot be read or repaired, or the address cannot be used.
+    """
+    repair(path)
+    player = Player(read(path))
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: ended.set())
+    address = served_host(host)
+    names = ("foot", *player.log.arm.chain.joints)
+    meshes = {part: mesh_path(player.log.arm.name, part).read_bytes() for part in names}
+    shown = Replay(player, meshes, address, free_port(address, port, usual))
+    try:
+        if open_browser:
+            webbrowser.open(shown.url)
+        yield shown.url
+        ended.wait()
+    finally:
+        shown.close()
 
 
 def _serve(loop: Loop, prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool) -> Served:

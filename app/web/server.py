@@ -36,7 +36,7 @@ class Served:
         self._loop = loop
         self._host = f"[{host}]" if ":" in host else host
         self.guard = Guard(Operator())
-        with self.guard.installed(), _quiet():
+        with self.guard.installed(), quiet():
             self.server = viser.ViserServer(host=host, port=port, verbose=False)
         self.server.gui.configure_theme(
             show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194)
@@ -65,7 +65,7 @@ class Served:
         self._closing.set()
         self._painter.join()
         self.server.get_event_loop().call_soon_threadsafe(self.control.close)
-        with _quiet():
+        with quiet():
             self.server.stop()
 
     def _paint(self) -> None:
@@ -127,10 +127,8 @@ def serve(
     Raises:
         BadInput: the host is on a network, or the port is taken.
     """
-    if host not in LOOPBACK:
-        raise BadInput("serve", "--host", host, f"one of {', '.join(LOOPBACK)}: opening it to a network is not available yet")
-    host = "::1" if host == "[::1]" else host
-    _must_be_free(host, port)
+    host = served_host(host)
+    must_be_free(host, port)
     meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
     served = Served(loop, arm, scenario, meshes, host, port)
     if open_browser:
@@ -138,13 +136,31 @@ def serve(
     return served
 
 
-def _quiet() -> redirect_stdout[io.StringIO]:
+def served_host(host: str) -> str:
+    """The address to listen on, for `--host`. Raises BadInput: it is not of this machine alone."""
+    if host not in LOOPBACK:
+        raise BadInput("serve", "--host", host, f"one of {', '.join(LOOPBACK)}: opening it to a network is not available yet")
+    return "::1" if host == "[::1]" else host
+
+
+def free_port(host: str, port: int | None, usual: int) -> int:
+    """`port`; or without one `usual` if it is free, else 0 for any. Raises BadInput: `port` is taken."""
+    try:
+        must_be_free(host, usual if port is None else port)
+    except BadInput:
+        if port is not None:
+            raise
+        return 0
+    return usual if port is None else port
+
+
+def quiet() -> redirect_stdout[io.StringIO]:
     """viser announces itself and its end on the terminal, also when it is told not to."""
     return redirect_stdout(io.StringIO())
 
 
-def _must_be_free(host: str, port: int) -> None:
-    """viser would quietly take another port."""
+def must_be_free(host: str, port: int) -> None:
+    """Raise BadInput when `port` is taken: viser would quietly take another."""
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

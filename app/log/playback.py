@@ -1,0 +1,109 @@
+"""Moving through a recording: a place in time that can run, and the snapshot that belongs to it. No physics."""
+
+import bisect
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.checked import ABSENT, BadInput
+from app.log.layout import WORDS
+from app.log.reader import Log
+from pendant.decision import Decision, Remaining
+from pendant.estimate import Estimate
+from pendant.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
+from sim.snapshot import Snapshot
+
+
+@dataclass(slots=True)
+class Player:
+    """Where in a log we are. Times in s from the start of the run.
+
+    Raises:
+        BadInput: the log has no picture to show.
+    """
+
+    log: Log
+    time: float = 0.0
+    speed: float = 1.0
+    playing: bool = False
+
+    def __post_init__(self) -> None:
+        """Check that there is something to play."""
+        if not self.log.pictures or not len(self.log.ticks):
+            raise BadInput(self.log.path.name, "", ABSENT, "holds no tick to show")
+
+    @property
+    def end(self) -> float:
+        """The last time."""
+        return float(self.log.ticks[-1]) * TICK
+
+    def advance(self, seconds: float) -> None:
+        """Let `seconds` of the clock pass; at the end it pauses."""
+        if self.playing:
+            self.jump(self.time + self.speed * seconds)
+            self.playing = self.time < self.end
+
+    def jump(self, time: float) -> None:
+        """Go to a time, or to the nearest there is."""
+        self.time = min(max(time, 0.0), self.end)
+
+    @property
+    def row(self) -> int:
+        """The tick that is shown, as row of the log's arrays."""
+        return min(max(int(np.searchsorted(self.log.ticks, round(self.time * TICK_RATE))), 0), len(self.log.ticks) - 1)
+
+    @property
+    def picture(self) -> int:
+        """The picture that is shown: the last one that is not after the time."""
+        tick = round(self.time * TICK_RATE)
+        return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each["tick"]) - 1, 0)
+
+
+def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
+    """What was recorded, as the simulation would show it: poses of a picture, numbers of a tick."""
+    said, frames, state = log.pictures[picture], log.frames[picture], log.state
+    names = ["foot", *log.arm.chain.joints, "flange"]
+    payload = frames.get("payload")
+    objects = [frames[f"object {thing.name}"] for thing in log.scenario.world]
+    touches = tuple((t["part"], tuple(t["point"]), tuple(t["force"]), tuple(t["torque"])) for t in said["touches"])
+    valid = int(state["valid"][row])
+    decision = Decision(
+        mode=Mode(WORDS["mode"][state["mode"][row]]),
+        safety=Safety[WORDS["safety"][state["safety"][row]]],
+        phase=Phase(WORDS["phase"][state["phase"][row]]),
+        law=Law.HOLD,
+        move=None,
+        gain=float(state["gain"][row]),
+        force_cap=0.0,
+        baseline=(0.0,) * 6,
+        periods=tuple(Remaining(each["name"], each["ticks"], each["total"]) for each in said["periods"]),
+        events=(),
+        step=int(state["step"][row]),
+    )
+    arrays = [state[name][row] for name in ("q", "qd", "qdd", "theta", "theta_d", "tau_m", "tau_J", "tau_ext")]
+    wrenches = [state[name][row] for name in ("w_sensor", "F_user", "a_F", "p_BF")]
+    estimate = Estimate(
+        int(log.ticks[row]),
+        bool(valid & 1),
+        bool(valid & 2),
+        bool(valid & 4),
+        *arrays,
+        *wrenches,
+        R_BF=np.eye(3),  # not recorded: pictures have the flange's pose
+        v_F=state["v_F"][row],
+        v_tcp=float(state["v_tcp"][row]),
+        v_elbow=float(state["v_elbow"][row]),
+        move_done=0,
+        friction=state["friction"][row],
+    )
+    return Snapshot(
+        said["tick"],
+        decision,
+        estimate,
+        np.array([frames[name] for name in names]),
+        np.array(objects).reshape(-1, 7),
+        None if payload is None else np.array(payload),
+        float(log.truth["payload_mass"][row]),
+        float(state["configured_mass"][row]),
+        touches,
+    )

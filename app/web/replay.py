@@ -1,0 +1,201 @@
+"""The web app showing a recording: time line, speed, contact log and plots; nothing is simulated."""
+
+import threading
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from app.events_file import Line
+from app.log.playback import Player, snapshot_at
+from app.web import style, svg
+from app.web.guard import Guard
+from app.web.html import Html
+from app.web.operator import Operator
+from app.web.scene import Scene
+from app.web.server import FRAME, quiet
+from app.web.svg import Colour
+from app.web.words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from pendant.table import Severity
+from sim.snapshot import Snapshot
+
+POINTS = 600
+"""Of a plot's line."""
+
+FRAMES_A_PLOT = 15
+"""The mark of the time in the plots is moved with every so many pictures."""
+
+SPEEDS = ("0.1 ×", "0.5 ×", "1 ×", "2 ×", "5 ×")
+SECONDS = {"x": uplot.Scale(time=False)}
+NOWHERE = "Jump to ..."
+
+
+class Replay:
+    """A web app that shows one log.
+
+    Args:
+        player: of the log.
+        meshes: a GLB file for each part that has a shape.
+        host, port: where to listen.
+    """
+
+    def __init__(self, player: Player, meshes: Mapping[str, bytes], host: str, port: int) -> None:
+        self.player = player
+        self._host = f"[{host}]" if ":" in host else host
+        self._set = -1.0  # where we have put the slider ourselves
+        log = player.log
+        self.guard = Guard(Operator())
+        with self.guard.installed(), quiet():
+            self.server = viser.ViserServer(host=host, port=port, verbose=False)
+        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+        self.scene = Scene(self.server, log.arm, log.scenario, meshes, snapshot_at(log, 0, 0))
+        self._controls()
+        self._plots()
+        for control in (self.play, self.line, self.speed, self.goto):
+            self.guard.for_anyone(control)
+        self.guard.open(self.server, frozenset(), lambda client: None)
+        self._closing = threading.Event()
+        self._painter = threading.Thread(target=self._paint, name="replay-painter", daemon=True)
+        self._painter.start()
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://{self._host}:{self.server.get_port()}"
+
+    def close(self) -> None:
+        """Stop serving."""
+        self._closing.set()
+        self._painter.join()
+        with quiet():
+            self.server.stop()
+
+    def show(self) -> None:
+        """Bring picture, time line and numbers to the player's time."""
+        player = self.player
+        snapshot = snapshot_at(player.log, player.picture, player.row)
+        self.scene.show(snapshot)
+        decision = snapshot.decision
+        word, colour = WORDS[decision.mode]
+        self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour))
+        self.facts.show(svg.facts(_numbers(player, snapshot)))
+        at = round(player.time, 2)
+        if self.line.value != at:
+            self._set = at
+            self.line.value = at
+        label = "Pause" if player.playing else "Play"
+        if self.play.label != label:
+            self.play.label = label
+
+    def _controls(self) -> None:
+        gui, player = self.server.gui, self.player
+        log = player.log
+        Html(gui, style.sheet("none", "none", ["none"]))  # no stop and no free-drive here
+        gui.set_panel_label(f"replay · {log.run.get('title', log.path.name)}")
+        self.light = Html(gui)
+        self.play = gui.add_button("Play")
+        self.line = gui.add_slider("Time [s]", min=0.0, max=max(round(player.end, 2), 0.01), step=0.01, initial_value=0.0)
+        self.speed = gui.add_button_group("Speed", SPEEDS)
+        self.speed.value = "1 ×"
+        places = {f"{event.t:.2f} s {event.headline}": event.t for event in log.events}
+        self.goto = gui.add_dropdown("Event", (NOWHERE, *places))
+        self.facts = Html(gui)
+        if not log.whole:
+            Html(gui, svg.note("Cut", "This recording lacks its end: the process was ended while it wrote.", Colour.AMBER))
+        gui.main_panel.dock_right()
+        gui.main_panel.set_width(304)
+
+        @self.play.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            if not player.playing and player.time >= player.end:
+                player.jump(0.0)
+            player.playing = not player.playing
+
+        @self.line.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            if self.line.value != self._set:
+                player.jump(float(self.line.value))
+
+        @self.speed.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            player.speed = float(self.speed.value.split()[0])
+
+        @self.goto.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            if self.goto.value in places:
+                player.jump(places[self.goto.value])
+
+    def _plots(self) -> None:
+        gui, log = self.server.gui, self.player.log
+        panel = gui.add_panel()
+        contacts = [event for event in log.events if event.kind.startswith("contact_")]
+        with panel.add_tab("Events"):
+            Html(gui, svg.table(_line(event) for event in reversed(log.events)))
+        with panel.add_tab("Contacts"):
+            Html(gui, svg.table(_line(event) for event in reversed(contacts)))
+        force = np.linalg.norm(log.state["F_user"][:, :3], axis=1)
+        acceleration = np.linalg.norm(log.state["a_F"], axis=1)
+        step = max(1, len(log.ticks) // POINTS)
+        self._stretch = step
+        self._series: list[tuple[viser.GuiUplotHandle, tuple[np.ndarray[Any, Any], ...]]] = []
+        with panel.add_tab("Plots"):
+            for title, lines in (
+                ("Speed [m/s]", {"tcp": log.state["v_tcp"], "elbow": log.state["v_elbow"]}),
+                ("Force at the flange [N]", {"force": force}),
+                ("Acceleration [m/s²]", {"at the flange": acceleration}),
+                (
+                    "Friction of the shoulder [N·m]",
+                    {"true": log.truth["friction"][:, 1], "estimated": log.state["friction"][:, 1]},
+                ),
+            ):
+                data = (log.t[::step], *(np.ascontiguousarray(values[::step], dtype=np.float64) for values in lines.values()))
+                series = [uplot.Series(label="t")]
+                colours = ("#1971c2", "#e8590c")
+                series += [uplot.Series(label=name, stroke=c, width=1) for name, c in zip(lines, colours, strict=False)]
+                series.append(uplot.Series(label="now", stroke="#c92a2a", width=2))
+                handle = gui.add_uplot((*data, np.zeros(len(data[0]))), tuple(series), title=title, aspect=2.2, scales=SECONDS)
+                self._series.append((handle, data))
+        panel.dock_left()
+        panel.set_width(330)
+        self._mark()
+
+    def _mark(self) -> None:
+        """Move the mark of the time: a spike in each plot, as high as its lines."""
+        at = min(self.player.row // self._stretch, len(self._series[0][1][0]) - 1)
+        for handle, data in self._series:
+            spike = np.zeros(len(data[0]))
+            spike[at] = max(float(np.nanmax(line)) for line in data[1:])
+            handle.data = (*data, spike)
+
+    def _paint(self) -> None:
+        due, before, frame, marked = time.monotonic(), time.monotonic(), 0, -1.0
+        while not self._closing.wait(due - time.monotonic()):
+            now = time.monotonic()
+            due = max(due + FRAME, now)
+            self.player.advance(now - before)
+            before = now
+            self.show()
+            frame += 1
+            if frame % FRAMES_A_PLOT == 0 and marked != self.player.time:
+                marked = self.player.time
+                self._mark()
+
+
+def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
+    seen = snapshot.estimate
+    periods = [(period.name.capitalize(), f"{period.ticks / 500:.2f} s left") for period in snapshot.decision.periods]
+    return [
+        ("Time", f"{player.time:.2f} of {player.end:.2f} s"),
+        ("Phase", snapshot.decision.phase.value),
+        ("Tool speed", f"{1000 * seen.v_tcp:.0f} mm/s"),
+        ("Force at the flange", f"{float(np.linalg.norm(seen.F_user[:3])):.1f} N"),
+        ("Payload true, configured", f"{snapshot.truth_payload_mass:.2f}, {snapshot.configured_mass:.2f} kg"),
+        *periods,
+    ]
+
+
+def _line(event: Line) -> tuple[str, str, Colour]:
+    return f"{event.t:.2f} s", event.headline, SEVERITY_COLOURS[Severity[event.severity]]
