@@ -18,7 +18,6 @@ PLANNED_CONTROLS: dict[str, str] = {
     "restart_period": "FD-16",
     "register_waypoint": "FD-13",
     "axis_locks": "FD-4",
-    "detection": "CD-1",
     "enabling_device": "FD-23",
 }
 """Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""

@@ -34,6 +34,7 @@ class Session(Setup, frozen=True, kw_only=True):
     """A scripted session."""
 
     title: str
+    watch: str = ""  # what to look at, in two sentences; the page offers sessions that say it as scenarios
     duration: Annotated[float, Meta(gt=0, le=3600)]  # [s]
     claims: list[str] = []  # rows of `pendant claims` that this session shows (app/claims.py)
     switch: str | None = None  # the feature, or setting that is true or false, without which it must fail

@@ -73,6 +73,8 @@ class Trigger:
     after: str | None
     nth: int = 1
     happened: int | None = None  # the tick in which it did
+    _word: str = field(init=False, default="")
+    _name: str = field(init=False, default="")
     _left: int = field(init=False)
     _was: str | None = field(init=False, default=None)
 
@@ -81,12 +83,14 @@ class Trigger:
         self._left = self.nth
         if self.after is None:
             self.happened = 0
+        else:
+            self._word, self._name = parse(self.after)
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in the decision of `tick`; call it for every tick in order."""
-        if self.after is None or self.happened is not None:
+        if self.happened is not None:
             return
-        word, name = parse(self.after)
+        word, name = self._word, self._name
         if word == "event":
             self._left -= sum(event.kind.value == name for event in decision.events)
         else:

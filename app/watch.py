@@ -31,15 +31,15 @@ class Watch:
 
     def see(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """Take in one tick; `snapshot` copies it, and is called only where the tick is in the interval and it is needed."""
-        self.trigger.see(tick, decision)
         self.last = tick
-        if self.inside(tick):
-            self.look(tick, decision, snapshot)
-
-    def inside(self, tick: int) -> bool:
-        """Whether `tick` is in the interval."""
         start = self.trigger.happened
-        return start is not None and start + self.begin <= tick and (self.end is None or tick <= start + self.end)
+        if start is None:
+            self.trigger.see(tick, decision)
+            start = self.trigger.happened
+            if start is None:
+                return
+        if start + self.begin <= tick and (self.end is None or tick <= start + self.end):
+            self.look(tick, decision, snapshot)
 
     def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """Take in one tick of the interval."""

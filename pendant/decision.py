@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from pendant.contact import Contact
 from pendant.events import Event
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
@@ -34,3 +35,5 @@ class Decision:
     program: ProgramState = ProgramState.NONE
     step: int = 0  # of the program, from 1; 0 unless it is running or paused
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
+    contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
+    tool_on: bool = False  # what the program switches (CD-15)

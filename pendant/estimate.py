@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.signal import Signal
+
 Array = NDArray[np.float64]
 
 
@@ -54,6 +56,8 @@ class Estimate:
     degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
     lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned
+    p_BT: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tool centre point [m]
+    signals: tuple[Signal | None, ...] = ()  # for the contact detectors, as pendant.contact_monitor.SOURCES; None: not valid
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -89,4 +93,6 @@ class Estimate:
             self.degraded,
             self.lost,
             self.touched,
+            self.p_BT,
+            self.signals,
         )

@@ -25,6 +25,7 @@ class Command(StrEnum):
     PAUSE_PROGRAM = "pause_program"
     RESUME_PROGRAM = "resume_program"
     STOP_PROGRAM = "stop_program"
+    DETECTION = "detection"  # switch contact detection on or off (CD-1)
 
 
 @dataclass(frozen=True, slots=True)

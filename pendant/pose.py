@@ -32,6 +32,21 @@ def rotation(quaternion: Quaternion) -> Rotation:
     return (1.0 - yy - zz, xy - wz, xz + wy, xy + wz, 1.0 - xx - zz, yz - wx, xz - wy, yz + wx, 1.0 - xx - yy)
 
 
+def quaternion(R: Rotation) -> Quaternion:
+    """The quaternion wxyz of unit length of a rotation matrix, by its largest component, which is taken positive."""
+    a, b, c, d, e, f, g, h, i = R
+    squares = (1.0 + a + e + i, 1.0 + a - e - i, 1.0 - a + e - i, 1.0 - a - e + i)  # four times those of w, x, y, z
+    rows: tuple[Quaternion, ...] = (
+        (squares[0], h - f, c - g, d - b),
+        (h - f, squares[1], b + d, c + g),
+        (c - g, b + d, squares[2], f + h),
+        (d - b, c + g, f + h, squares[3]),
+    )
+    w, x, y, z = rows[squares.index(max(squares))]
+    size = math.sqrt(w * w + x * x + y * y + z * z)
+    return w / size, x / size, y / size, z / size
+
+
 def turned(R: Rotation, v: Vector) -> Vector:
     """R_AB times a vector in B: the vector in A."""
     a, b, c, d, e, f, g, h, i = R

@@ -7,6 +7,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from pendant.contact import ArmPose, Contact
+from pendant.reaction import REACTION_SPEED, Until, goal
 from pendant.settings import ticks
 
 Fraction = Annotated[float, Meta(gt=0.0, le=1.0)]
@@ -24,6 +26,7 @@ class JointMove(Move, tag="joint", frozen=True, forbid_unknown_fields=True, kw_o
     q: tuple[float, ...]  # (n,) output angles [rad]
     speed: Fraction = 0.25  # of each joint's limit
     acceleration: Fraction = 0.25  # of each joint's limit
+    until: Until | None = None  # a contact that ends it (CD-15)
 
     def __post_init__(self) -> None:
         _finite(self.q)
@@ -36,6 +39,7 @@ class LinearMove(Move, tag="linear", frozen=True, forbid_unknown_fields=True, kw
     quaternion: tuple[float, float, float, float]  # wxyz, orientation of T in B
     speed: Annotated[float, Meta(gt=0.0, le=3.0)] = 0.1  # [m/s]
     acceleration: Annotated[float, Meta(gt=0.0, le=50.0)] = 0.5  # [m/s²]
+    until: Until | None = None  # a contact that ends it (CD-15)
 
     def __post_init__(self) -> None:
         _finite(self.position + self.quaternion)
@@ -52,11 +56,26 @@ class Wait(Move, tag="wait", frozen=True, forbid_unknown_fields=True, kw_only=Tr
         _finite((self.duration,))
 
 
+class WaitForContact(Move, tag="wait_for_contact", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Keep the posture until a contact changes (CD-15)."""
+
+    until: Until = Until()
+
+
+class SwitchTool(Move, tag="tool", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Switch the tool on or off (CD-15)."""
+
+    on: bool
+
+
+AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool
+
+
 class Program(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A named list of steps, run once from first to last."""
 
     name: str = "program"
-    steps: Annotated[tuple[JointMove | LinearMove | Wait, ...], Meta(min_length=1)]
+    steps: Annotated[tuple[AnyStep, ...], Meta(min_length=1)]
 
 
 class ProgramState(StrEnum):
@@ -81,7 +100,7 @@ def misfit(program: Program, n_joints: int) -> str | None:
 class Sequencer:
     """Runs the loaded program step by step. A step paused half-way is begun again, with a new id, when resumed."""
 
-    __slots__ = ("_begun", "_left", "index", "move", "program", "state")
+    __slots__ = ("_begun", "_from", "_left", "contact", "index", "move", "program", "state", "tool_on")
 
     def __init__(self) -> None:
         self.program: Program | None = None
@@ -90,6 +109,9 @@ class Sequencer:
         self.move: Move | None = None  # the step being done, None unless RUNNING
         self._begun = 0  # how many moves were begun so far: the last id
         self._left = 0  # ticks left of a wait
+        self._from: ArmPose | None = None  # where the present move began
+        self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
+        self.tool_on = False
 
     def load(self, program: Program) -> None:
         """Take a program; allowed unless one is RUNNING or PAUSED."""
@@ -105,7 +127,7 @@ class Sequencer:
     def pause(self) -> None:
         """Give up the present step for now; what is left of a wait is kept."""
         self.state = ProgramState.PAUSED
-        self.move = None
+        self._drop()
 
     def resume(self) -> None:
         """Begin the present step again."""
@@ -117,24 +139,69 @@ class Sequencer:
         self.state = ProgramState.NONE if self.program is None else ProgramState.STOPPED
         self.index = 0
         self._left = 0
-        self.move = None
+        self._drop()
 
-    def step(self, move_done: int) -> bool:
+    @property
+    def until(self) -> Until | None:
+        """The contact that the present step waits for."""
+        return getattr(self.move, "until", None)
+
+    def missed(self, move_done: int) -> bool:
+        """The present move has ended without the contact that it should have gone on until."""
+        move = self.move
+        return isinstance(move, JointMove | LinearMove) and move.until is not None and move.id == move_done
+
+    def touch(self, contact: Contact) -> bool:
+        """A contact changes while a step runs: True when it ends the step, so that the arm has to come to rest."""
+        until = self.until
+        if until is None or not until.meets(contact):
+            return False
+        self.contact, self.move = contact, None
+        return True
+
+    def rest(self, now: ArmPose) -> bool:
+        """The arm has come to rest after `touch`: do what the step asks for. Returns as `step`."""
+        assert self.program is not None
+        contact, self.contact = self.contact, None
+        until: Until | None = getattr(self.program.steps[self.index], "until", None)
+        assert contact is not None
+        assert until is not None
+        there = goal(until, contact, self._from or now, now)
+        if there is None:
+            return self._next()
+        self._begun += 1
+        if there.position is None:
+            self.move = JointMove(id=self._begun, q=there.q)
+        else:
+            self.move = LinearMove(id=self._begun, position=there.position, quaternion=there.quaternion, speed=REACTION_SPEED)
+        return False
+
+    def step(self, move_done: int, now: ArmPose | None = None) -> bool:
         """One tick of a RUNNING program.
 
         Args:
             move_done: id of the last move that the FOLLOW law finished.
+            now: where the arm is.
 
         Returns:
             True when this tick ended the program.
         """
-        if isinstance(self.move, Wait):
+        if self._from is None:
+            self._from = now
+        if isinstance(self.move, WaitForContact):
+            return False
+        if isinstance(self.move, SwitchTool):
+            self.tool_on = self.move.on
+        elif isinstance(self.move, Wait):
             self._left -= 1
             if self._left > 0:
                 return False
             self._left = 0
         elif self.move is None or move_done != self.move.id:
             return False
+        return self._next()
+
+    def _next(self) -> bool:
         self.index += 1
         if self.program is None or self.index == len(self.program.steps):
             self.stop()
@@ -145,11 +212,17 @@ class Sequencer:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of the sequencer's state, to compare."""
-        return (self.program, self.state, self.index, self.move, self._begun, self._left)
+        own = (self.program, self.state, self.index, self.move, self._begun, self._left)
+        return (*own, self._from, self.contact, self.tool_on)
+
+    def _drop(self) -> None:
+        self.move, self.contact = None, None
 
     def _begin(self) -> None:
         assert self.program is not None
+        self._drop()
         self._begun += 1
+        self._from = None
         step = self.program.steps[self.index]
         self.move = msgspec.structs.replace(step, id=self._begun)
         if isinstance(step, Wait) and self._left == 0:

@@ -38,8 +38,8 @@ def _number(low: float, high: float, unit: str, ident: str, text: str, locked: b
     return Meta(ge=low, le=high, description=text, extra={"unit": unit, "id": ident, "locked": locked})
 
 
-def _switch(ident: str, text: str) -> Meta:
-    return Meta(description=text, extra={"unit": "", "id": ident, "locked": True})
+def _switch(ident: str, text: str, locked: bool = True) -> Meta:
+    return Meta(description=text, extra={"unit": "", "id": ident, "locked": locked})
 
 
 def _limit(low: float, high: float, unit: str, ident: str, text: str) -> Meta:
@@ -192,6 +192,46 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     from_motor: Annotated[bool, _switch("AF-3", "transmission torque from the motor angle and torque")] = True
 
 
+class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Detection of a change in contact."""
+
+    on: Annotated[bool, _switch("CD-1", "a change in contact is detected and logged, in every mode", locked=False)] = False
+    tool: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its tool side")] = True
+    flange: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its arm side")] = False
+    links: Annotated[bool, _switch("CD-2", "on elbow and forearm, from the joints and the model")] = True
+    instant: Annotated[bool, _switch("CD-3", "rule: force and acceleration of now")] = True
+    difference: Annotated[bool, _switch("CD-4", "rule: differences of samples")] = True
+    ratio: Annotated[bool, _switch("CD-5", "rule: ratio of force and acceleration differences")] = True
+    statistical: Annotated[bool, _switch("CD-6", "rule: differences against the buffer's mean")] = True
+    slow: Annotated[bool, _switch("CD-7", "rule: differences of means, clamping")] = True
+    all_rules: Annotated[bool, _switch("CD-10", "every rule that is on must see it, instead of any")] = False
+    sensitivity: Annotated[float, _number(0.25, 4.0, "", "CD-12", "from clear contacts only to gentle touch", locked=False)] = 1.0
+    hard_count: Annotated[float, _number(1.0, 10.0, "", "CD-9", "confirmations of the first three rules")] = 2.0
+    soft_count: Annotated[float, _number(3.0, 10.0, "", "CD-9", "confirmations of the statistical rule")] = 4.0
+    slow_count: Annotated[float, _number(5.0, 50.0, "", "CD-9", "confirmations of the slow rule")] = 20.0
+    misses: Annotated[float, _number(0.0, 10.0, "", "CD-9", "ticks among the confirming ones that may not; 0: in a row")] = 0.0
+    angle: Annotated[float, _number(0.0, 0.95, "", "CD-0", "minus the cosine beyond which directions are opposite")] = 0.3
+    force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", "noise of the flange force, each axis")] = 0.15
+    acceleration_noise: Annotated[float, _number(0.01, 2.0, "m/s²", "CD-0", "noise of the acceleration, each axis")] = 0.1
+    link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", "noise of the force on a link")] = 3.0
+    link_acceleration_noise: Annotated[float, _number(0.02, 5.0, "m/s²", "CD-2", "noise of a link's acceleration")] = 0.2
+    link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", "slow rule: force on a link")] = 60.0
+    link_margin: Annotated[float, _number(0.0, 100.0, "kg", "CD-11", "force on a link that a wrong model may explain")] = 20.0
+    noise_limit: Annotated[float, _number(1.0, 6.0, "", "CD-0", "differences within so many deviations are noise")] = 3.0
+    hard_limit: Annotated[float, _number(2.0, 20.0, "", "CD-4", "difference rule: deviations of force, acceleration")] = 4.0
+    ratio_share: Annotated[float, _number(0.05, 1.0, "", "CD-5", "ratio's threshold, a share of the payload")] = 0.5
+    ratio_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-5", "ratio rule: least acceleration difference")] = 1.0
+    value_force: Annotated[float, _number(1.0, 50.0, "N", "CD-3", "instant rule: force")] = 8.0
+    value_acceleration: Annotated[float, _number(0.1, 20.0, "m/s²", "CD-3", "instant rule: acceleration")] = 3.0
+    confidence: Annotated[float, _number(2.0, 10.0, "", "CD-6", "statistical rule: standard errors of a mean")] = 3.6
+    slow_force: Annotated[float, _number(0.2, 20.0, "N", "CD-7", "slow rule: force")] = 0.7
+    slow_payload: Annotated[float, _number(0.0, 5.0, "N/kg", "CD-11", "slow rule: force more for each kg carried")] = 0.1
+    clamping_ratio: Annotated[float, _number(1.0, 50.0, "kg", "CD-7", "force over acceleration, beyond is clamping")] = 4.0
+    payload_error: Annotated[float, _number(0.0, 1.0, "", "CD-11", "share by which the payload may be wrong")] = 0.25
+    speed_share: Annotated[float, _number(0.0, 2.0, "s/m", "CD-11", "thresholds rise with the speed")] = 0.0
+    free_drive_factor: Annotated[float, _number(1.0, 10.0, "", "CD-11", "thresholds in FREE_DRIVE, times")] = 3.0
+
+
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
@@ -203,6 +243,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     limits: Limits = Limits()
     static: Static = Static()
     joint_control: JointControl = JointControl()
+    contact: ContactUse = ContactUse()
 
 
 def ticks(seconds: float) -> int:

@@ -1,5 +1,9 @@
 """The supervisor: robot mode, safety mode, program and free-drive, one tick at a time (FD-1)."""
 
+import math
+
+from pendant.contact import Change, Contact
+from pendant.contact_monitor import ContactMonitor
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
@@ -23,6 +27,35 @@ STOPPING = {
     Effect.PROTECTIVE_STOP: Safety.PROTECTIVE_STOP,
     Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
 }
+
+
+TOLD = {
+    Change.GAINED: Kind.CONTACT_GAINED,
+    Change.LOST: Kind.CONTACT_LOST,
+    Change.RESISTANCE: Kind.CONTACT_RESISTANCE,
+    Change.CLAMPING: Kind.CONTACT_CLAMPING,
+}
+
+
+def told(contact: Contact, action: str) -> Values:
+    """The values of a contact's event (CD-16)."""
+    (fx, fy, fz), (x, y, z) = contact.force, contact.pose.p_BT
+    return {
+        "part": contact.part,
+        "source": contact.source,
+        "rule": contact.rule,
+        "force": math.hypot(fx, fy, fz),
+        "fx": fx,
+        "fy": fy,
+        "fz": fz,
+        "acceleration": math.hypot(*contact.acceleration),
+        "ratio": contact.ratio,
+        "steps": contact.steps,
+        "x": x,
+        "y": y,
+        "z": z,
+        "action": action,
+    }
 
 
 class Supervisor:
@@ -57,6 +90,8 @@ class Supervisor:
         self._mean = WrenchMean()
         self._sensors = JointSensors()
         self._sequencer = Sequencer()
+        self._monitor = ContactMonitor()
+        self._contacts: tuple[Contact, ...] = ()  # of this tick
         self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints)
         self._refresh()
         self._key: tuple[object, ...] = ()
@@ -69,7 +104,10 @@ class Supervisor:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """All that the next decision depends on, besides its arguments; equal states decide equally."""
+        """All that the next decision depends on, besides its arguments and the buffers of the contact detectors.
+
+        Equal states decide equally.
+        """
         button = (self._button.held, self._button.silent)
         still = (self._still.count, self._still.joint, self._still.speed)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
@@ -79,14 +117,18 @@ class Supervisor:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
+        self._feel(estimate, events)
         if inputs.commands:
             self._safety_commands(estimate, inputs.commands, events)
             self._mode_commands(estimate, inputs.commands, events)
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
-        if inputs.settings:
+        wanted = inputs.settings
+        if Command.DETECTION in inputs.commands:
+            wanted = {**wanted, "contact.on": not self.settings.contact.on}
+        if wanted:
             trying = self._free.phase is Phase.SEQUENCE
-            self.settings, changed = change(self.settings, inputs.settings, self._mode, trying, estimate.tick)
+            self.settings, changed = change(self.settings, wanted, self._mode, trying, estimate.tick)
             events += changed
             self._refresh()
         return self._publish(events)
@@ -101,6 +143,17 @@ class Supervisor:
         self._still.step(estimate, self._slow)
         self._static = self._still.count >= self._static_ticks
         return self._mean.step(estimate)
+
+    def _feel(self, estimate: Estimate, events: list[Event]) -> None:
+        """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
+        sequencer, use = self._sequencer, self.settings.contact
+        self._contacts = self._monitor.step(estimate, use, self._mode, use.on or sequencer.until is not None)
+        for contact in self._contacts:
+            until = sequencer.until
+            taken = self._mode is Mode.RUN and until is not None and sequencer.touch(contact)
+            if taken:
+                self._braking = True
+            events.append(Event(TOLD[contact.change], estimate.tick, told(contact, until.then if taken and until else "none")))
 
     def _safety_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         stop = Command.EMERGENCY_STOP in commands
@@ -150,17 +203,32 @@ class Supervisor:
                     self._refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate, events)
-        if move is None or sequencer.move is not move:
+        braked = sequencer.contact is not None
+        if not braked and (move is None or sequencer.move is not move):
             return
+        tool_on = sequencer.tool_on
         if not motion_ok(estimate):
             self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED}), events)
+        elif braked:
+            if self._static and sequencer.rest(self._monitor.now):
+                self._finish(estimate.tick, events)
         elif estimate.move_refused:
-            values: Values = {"name": self._name, "step": sequencer.index + 1, "reason": estimate.move_refused}
-            events.append(Event(Kind.PROGRAM_FAILED, estimate.tick, values))
-            self._end_program()
-        elif sequencer.step(estimate.move_done):
-            self._mode = self._origin
-            events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": self._name}))
+            self._fail(estimate.move_refused, estimate.tick, events)
+        elif sequencer.missed(estimate.move_done):
+            self._fail("it ended without a contact", estimate.tick, events)
+        elif sequencer.step(estimate.move_done, self._monitor.now):
+            self._finish(estimate.tick, events)
+        if sequencer.tool_on is not tool_on:
+            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+
+    def _finish(self, tick: int, events: list[Event]) -> None:
+        self._mode = self._origin
+        events.append(Event(Kind.PROGRAM_FINISHED, tick, {"name": self._name}))
+
+    def _fail(self, reason: str, tick: int, events: list[Event]) -> None:
+        values: Values = {"name": self._name, "step": self._sequencer.index + 1, "reason": reason}
+        events.append(Event(Kind.PROGRAM_FAILED, tick, values))
+        self._end_program()
 
     def _load(self, program: Program, estimate: Estimate, events: list[Event]) -> None:
         reason = misfit(program, self._n)
@@ -288,6 +356,7 @@ class Supervisor:
         sequencer = self._sequencer
         law = self._law()
         key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
+        key += (sequencer.tool_on,)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.use_wrench and not (trying and not self.settings.sequence.amplified) else 0.0
@@ -308,6 +377,8 @@ class Supervisor:
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
             monitored=free.monitored() if trying else (),
+            contacts=self._contacts,
+            tool_on=sequencer.tool_on,
         )
         self._key = key
         self._decision = None if events or periods else decision

@@ -69,6 +69,18 @@ def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
     return Row(Effect.INFO, Severity.WARNING, headline, guidance, keys)
 
 
+def _touched(headline: str) -> Row:
+    """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
+    keys = ("part", "source", "rule", "force", "fx", "fy", "fz", "acceleration", "ratio", "steps", "x", "y", "z", "action")
+    return Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        headline,
+        "{force:.1f} N more or less; rule {rule}, {steps} ticks after it began. Action: {action}.",
+        keys,
+    )
+
+
 TABLE: dict[Kind, Row] = {
     # Activation and entry (FD-7, FD-8a, FD-12)
     Kind.ACTIVATION_STARTED: _info(
@@ -222,6 +234,12 @@ TABLE: dict[Kind, Row] = {
     Kind.PROGRAM_STOPPED: _info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: _info("Program {name} finished", "", ("name",)),
     Kind.PROGRAM_FAILED: _denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
+    Kind.TOOL_SWITCHED: _info("Tool {state}", "", ("state",)),
+    # Change in contact (CD-13, CD-16)
+    Kind.CONTACT_GAINED: _touched("Contact gained: {part}"),
+    Kind.CONTACT_LOST: _touched("Contact lost: {part}"),
+    Kind.CONTACT_RESISTANCE: _touched("Resistance changed: {part}"),
+    Kind.CONTACT_CLAMPING: _touched("Clamping: {part}"),
     # Settings
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),

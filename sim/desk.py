@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pendant.inputs import Button, Command, Inputs
 from pendant.program import Program
 from sim.changes import AnyChange
+from sim.scenario import Load
 from sim.touch import Touch
 
 
@@ -16,6 +17,20 @@ class Wishes:
     inputs: Inputs
     touches: tuple[Touch, ...]
     changes: tuple[AnyChange, ...]
+    configured: Load | None = None  # the payload that the controller is to believe in from now on
+
+    def joined(self, other: "Wishes") -> "Wishes":
+        """The wishes of two for the same tick; where only one can have its way, it is `other`."""
+        ours, theirs = self.inputs, other.inputs
+        inputs = Inputs(
+            ours.held | theirs.held,
+            ours.released | theirs.released,
+            ours.commands + theirs.commands,
+            ours.settings | theirs.settings,
+            theirs.program or ours.program,
+        )
+        configured = other.configured or self.configured
+        return Wishes(inputs, self.touches + other.touches, self.changes + other.changes, configured)
 
 
 @dataclass(slots=True)
@@ -30,6 +45,7 @@ class Desk:
     _program: Program | None = None
     _changes: list[AnyChange] = field(default_factory=list)
     _touches: dict[str, Touch] = field(default_factory=dict)
+    _configured: Load | None = None
 
     def hold(self, button: Button) -> None:
         """Say that `button` is held now: a keep-alive (FD-23), good until the next tick."""
@@ -63,6 +79,11 @@ class Desk:
         with self._lock:
             self._changes.append(change)
 
+    def configure(self, load: Load) -> None:
+        """Say what payload the controller is to believe in."""
+        with self._lock:
+            self._configured = load
+
     def touch(self, who: str, touch: Touch) -> None:
         """Set or move the touch of `who`; it lasts until `let_go`."""
         with self._lock:
@@ -80,6 +101,7 @@ class Desk:
                 Inputs(frozenset(self._held), frozenset(self._released), tuple(self._commands), self._settings, self._program),
                 tuple(self._touches.values()),
                 tuple(self._changes),
+                self._configured,
             )
             self._held = set()
             self._released = set()
@@ -87,6 +109,7 @@ class Desk:
             self._settings = {}
             self._program = None
             self._changes = []
+            self._configured = None
             return wishes
 
     def clear(self) -> None:
@@ -94,5 +117,5 @@ class Desk:
         with self._lock:
             self._held, self._released = set(), set()
             self._commands, self._settings, self._changes = [], {}, []
-            self._program = None
+            self._program = self._configured = None
             self._touches.clear()

@@ -8,11 +8,14 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Protocol
 
+from pendant.decision import Decision
 from pendant.events import Event, Kind
 from pendant.modes import TICK, TICK_RATE
 from pendant.settings import Settings
-from sim.desk import Desk
+from sim.desk import Desk, Wishes
+from sim.scenario import Scenario
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
 
@@ -29,6 +32,18 @@ DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must lea
 PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
 
 
+class Script(Protocol):
+    """What acts by itself: a session's time line."""
+
+    def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
+        """The wishes for `tick`, counted from 1; `snapshot` copies the tick before."""
+        ...
+
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in what the robot decided in `tick`."""
+        ...
+
+
 class Loop:
     """Runs `make()`'s simulation in real time, or slower.
 
@@ -38,6 +53,8 @@ class Loop:
 
     def __init__(self, make: Callable[[], Simulation]) -> None:
         self._make = make
+        self._write: Callable[[], Script] | None = None
+        self._script: Script | None = None
         self.simulation = make()
         self.desk = Desk()
         self.speed = 1.0
@@ -57,6 +74,11 @@ class Loop:
     def seed(self) -> int:
         """Seed of the running scenario."""
         return self.simulation.scenario.seed
+
+    @property
+    def scenario(self) -> Scenario:
+        """What the running simulation started from."""
+        return self.simulation.scenario
 
     @property
     def settings(self) -> Settings:
@@ -102,8 +124,31 @@ class Loop:
         """Go back to the scenario's start at the next tick."""
         self._reset = True
 
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+        """Go over to another simulation at the next tick; a later `reset` leads back to its start.
+
+        Args:
+            make: builds it.
+            write: gives the script that is to act in it, beside whoever is at the desk; called anew at each start.
+        """
+        self._make, self._write = make, write
+        self._reset = True
+
+    def _start_over(self) -> None:
+        self._reset = False
+        self.simulation = self._make()
+        self._script = self._write() if self._write is not None else None
+        self.desk.clear()
+        self._do_tick()
+
     def _do_tick(self) -> None:
-        decision = self.simulation.tick(self.desk.take())
+        wishes = self.desk.take()
+        script, tick = self._script, self.simulation.tick_count + 1
+        if script is not None:
+            wishes = wishes.joined(script.wishes(tick, self.simulation.snapshot))
+        decision = self.simulation.tick(wishes)
+        if script is not None:
+            script.see(tick, decision)
         if decision.events:
             self._events.extend(decision.events)
         if self.simulation.plant.tick % SNAPSHOT_TICKS == 1:
@@ -132,10 +177,7 @@ class Loop:
         since, ticks, quiet = due, 0, 0
         while not self._stop.is_set():
             if self._reset:
-                self._reset = False
-                self.simulation = self._make()
-                self.desk.clear()
-                self._do_tick()
+                self._start_over()
                 due = time.perf_counter()
             if self.paused:
                 self._stand()

@@ -24,6 +24,7 @@ class NewtonEuler:
         p, R: flange position (3,) [m] and orientation (3, 3) in B.
         jacobian: (6, n), linear first, axes of B, at the flange origin.
         v_F: flange velocity (6,), linear [m/s], then angular [rad/s].
+        origins: of the joints (n, 3) in B [m].
 
     Args:
         model: Pinocchio's; `set_load` takes its inertias anew.
@@ -44,6 +45,7 @@ class NewtonEuler:
         self.torque = np.zeros(n)
         self.p, self.R, self.v_F = np.zeros(3), np.eye(3), np.zeros(6)
         self.jacobian = np.zeros((6, n))
+        self.origins = np.zeros((n, 3))
 
     def set_load(self) -> None:
         """Take the inertias that Pinocchio's model has now."""
@@ -61,7 +63,7 @@ class NewtonEuler:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tcp: tool centre point in F (3,) [m].
         """
-        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F)
+        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins)
         return _run(q, motion, self._constants, self._gravity, self._elbow, tcp, outcome)
 
 
@@ -107,7 +109,7 @@ def _place(row, behind_p, behind_R, p, R) -> None:
 
 @numba.njit(cache=True)
 def _run(q, motion, constants, gravity, elbow, tcp, outcome):
-    torque, p_F, R_F, jacobian, v_F = outcome
+    torque, p_F, R_F, jacobian, v_F, origins = outcome
     n = q.size
     p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
     behind_p, behind_R = np.zeros(3), np.eye(3)
@@ -121,6 +123,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, outcome):
     _place(constants[n], behind_p, behind_R, p_F, R_F)
     p[n] = p_F
     for i in range(n):
+        origins[i] = p[i]
         z = (R[i, 0, 2], R[i, 1, 2], R[i, 2, 2])
         arm = (p_F[0] - p[i, 0], p_F[1] - p[i, 1], p_F[2] - p[i, 2])
         linear = _cross(z, arm)

@@ -275,12 +275,11 @@ class Plant:
         The sign of a speed is blurred over some mrad/s: a joint at rest slides neither way.
         """
         friction = self.friction
-        sign = np.tanh(self.theta_d / SIGN_SPEED)
-        return (self.friction_in + friction.output_coulomb) * sign + friction.output_viscous * self.qd
+        return _sliding(self.theta_d, self.qd, self.friction_in, friction.output_coulomb, friction.output_viscous)
 
     def poses(self) -> Array:
         """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
-        return np.hstack([self.data.xpos[self._links], self.data.xquat[self._links]])
+        return _poses(self.data.xpos, self.data.xquat, self._links)
 
     @property
     def flange_body(self) -> int:
@@ -289,7 +288,7 @@ class Plant:
 
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
-        return np.hstack([self.data.xpos[self._objects], self.data.xquat[self._objects]])
+        return _poses(self.data.xpos, self.data.xquat, self._objects)
 
     def payload_pose(self) -> Array | None:
         """Pose (7,) in W of the payload's centre, attached or fallen; None without one."""
@@ -358,6 +357,23 @@ def _gather(
         x = length[at[4, i]]
         slip = slip_stiffness[i] * (length[at[5, i]] - plastic[at[6, i]])
         tau_J[i] = x * (stiffness[i] + cubic[i] * x * x) + damping[i] * rate[at[4, i]] + slip
+
+
+@numba.njit(cache=True)
+def _poses(positions, orientations, bodies):
+    out = np.empty((bodies.size, 7))
+    for k in range(bodies.size):
+        out[k, :3] = positions[bodies[k]]
+        out[k, 3:] = orientations[bodies[k]]
+    return out
+
+
+@numba.njit(cache=True)
+def _sliding(motor_speed, speed, inner, coulomb, viscous):
+    out = np.empty(speed.size)
+    for i in range(speed.size):
+        out[i] = (inner[i] + coulomb[i]) * np.tanh(motor_speed[i] / SIGN_SPEED) + viscous[i] * speed[i]
+    return out
 
 
 @numba.njit(cache=True)

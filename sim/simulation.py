@@ -11,6 +11,7 @@ from sim import calibration
 from sim.arm import Arm
 from sim.chain import Body, chain, load_body, plate_body, tool_body
 from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.contact_sources import ContactSources
 from sim.controller import Controller
 from sim.desk import Wishes
 from sim.dynamics import Dynamics
@@ -47,6 +48,7 @@ class Simulation:
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
+        self.contact_sources = ContactSources(self.dynamics, self.tcp, arm.chain.elbow)
         self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque))
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
@@ -87,9 +89,12 @@ class Simulation:
         """
         for change in wishes.changes:
             self.apply(change)
+        if wishes.configured is not None:
+            self.configure_payload(wishes.configured)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         estimate = self.estimator.update(sample, references.move_done, references.refusal, use, references.answered)
+        self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
         decision = self.supervisor.step(estimate, wishes.inputs)
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
         self.plant.advance(self._current * self._motor, wishes.touches)
@@ -102,6 +107,7 @@ class Simulation:
         body = self._load()
         self.dynamics.set_load(body)
         self.estimator.set_load(body)
+        self.contact_sources.set_load(body)
 
     def apply(self, change: AnyChange) -> None:
         """Change the true arm or world, as a laboratory does.
@@ -152,4 +158,5 @@ class Simulation:
             plant.sliding_friction(),
             plant.tau_J.copy(),
             plant.temperature.copy(),
+            self.scenario,
         )

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+from sim.scenario import Scenario
 
 
 def _nothing() -> NDArray[np.float64]:
@@ -30,3 +31,4 @@ class Snapshot:
     truth_friction: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of both sides, with the speed's sign [N·m]
     truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
     truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
+    scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks

@@ -11,6 +11,7 @@ from app.web.panel import Panel
 from app.web.running import Running
 from app.web.settings_tab import SettingsTab
 from pendant.events import Event
+from sim.arm import Arm
 from sim.snapshot import Snapshot
 
 LEFT = 264
@@ -20,15 +21,15 @@ LEFT = 264
 class Docks:
     """All panels."""
 
-    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, title: str) -> None:
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, arm: Arm) -> None:
         self._loop = loop
         self._read = 0
         gui = server.gui
         sheet = gui.add_html("")
-        self.panel = Panel(server, guard, loop, title)
+        self.panel = Panel(server, guard, loop, f"pendant · {arm.title}")
         self._upper = gui.add_panel()
         with self._upper.add_tab("Lab"):
-            self.lab = Lab(gui, loop, hand)
+            self.lab = Lab(gui, loop, hand, arm)
         with self._upper.add_tab("Settings") as tab:
             self.settings = SettingsTab(gui, tab, loop)
         self._lower = gui.add_panel()
@@ -37,7 +38,7 @@ class Docks:
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
-        quiet = (self.panel.leave, self.panel.reset, self.lab.restart)
+        quiet = (self.panel.leave, self.panel.reset, self.lab.restart, self.lab.drop, self.settings.defaults)
         sheet.content = style.sheet(
             self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
         )

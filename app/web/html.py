@@ -1,5 +1,7 @@
 """Pieces of the page that are sent only when they differ from what is shown."""
 
+from typing import Any
+
 import viser
 
 
@@ -19,8 +21,8 @@ class Html:
         return True
 
 
-def enable(control: viser.GuiButtonHandle, enabled: bool) -> bool:
-    """Let a control be used, or not; True if that changed anything."""
+def enable(control: Any, enabled: bool) -> bool:
+    """Let a control of viser be used, or not; True if that changed anything."""
     if control.disabled == (not enabled):
         return False
     control.disabled = not enabled

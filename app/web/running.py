@@ -1,10 +1,14 @@
 """What the page needs of the loop, sim.loop.Loop."""
 
+from collections.abc import Callable
 from typing import Protocol
 
 from pendant.events import Event
 from pendant.settings import Settings
 from sim.desk import Desk
+from sim.loop import Script
+from sim.scenario import Scenario
+from sim.simulation import Simulation
 from sim.snapshot import Snapshot
 
 
@@ -26,6 +30,11 @@ class Running(Protocol):
         ...
 
     @property
+    def scenario(self) -> Scenario:
+        """What the running simulation started from."""
+        ...
+
+    @property
     def settings(self) -> Settings:
         """The pendant's settings as they are now."""
         ...
@@ -44,4 +53,8 @@ class Running(Protocol):
 
     def reset(self) -> None:
         """Back to the scenario's start."""
+        ...
+
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+        """Go over to another simulation at the next tick, with a script that acts in it."""
         ...

@@ -1,7 +1,7 @@
 """The picture: arm, tool, payload, world and touches, drawn from snapshots."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import trimesh
@@ -25,6 +25,9 @@ SHORTEST = 0.06
 LONGEST = 0.4
 """Length of the arrows of touches [m]."""
 
+TOOL = "/arm/tool"
+"""Name of the tool's node."""
+
 TOUCHES = 4
 """Touches shown at once."""
 
@@ -47,6 +50,8 @@ class Scene:
         self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot
     ) -> None:
         self._server = server
+        self._scenario = scenario
+        self.on_tool: Callable[[viser.GlbHandle], None] = lambda tool: None  # told of a tool that another scenario brings
         self._frames = frames_of(arm)
         self._last: dict[str, Array] = {}
         self._nodes: dict[str, viser.SceneNodeHandle] = {}
@@ -67,6 +72,8 @@ class Scene:
         """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
         changed = False
         with self._server.atomic():
+            if snapshot.scenario is not None and snapshot.scenario is not self._scenario:
+                self._change_to(snapshot.scenario)
             for key, node in self._nodes.items():
                 kind, row, _ = key.split(" ", 2)
                 poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
@@ -76,6 +83,18 @@ class Scene:
         if changed:
             self._server.flush()
         return changed
+
+    def _change_to(self, scenario: Scenario) -> None:
+        """Put away the tool and the world of the last scenario, and show those of `scenario`."""
+        self._scenario = scenario
+        for key in [key for key in self._nodes if key.startswith("object ") or key.endswith(" tool")]:
+            self._nodes.pop(key).remove()
+        self._last.clear()
+        self.draggable.pop("tool", None)
+        self._add_tool(scenario)
+        self._add_world(scenario)
+        if "tool" in self.draggable:
+            self.on_tool(self.draggable["tool"])
 
     def _place(self, key: str, node: viser.SceneNodeHandle, pose: Array) -> bool:
         last = self._last.get(key)
@@ -146,7 +165,7 @@ class Scene:
         shape.visual = TextureVisuals(
             material=PBRMaterial(baseColorFactor=[38, 42, 48, 255], metallicFactor=0.0, roughnessFactor=0.5)
         )
-        handle = self._server.scene.add_mesh_trimesh("/arm/tool", shape, cast_shadow=False, receive_shadow=False)
+        handle = self._server.scene.add_mesh_trimesh(TOOL, shape, cast_shadow=False, receive_shadow=False)
         self.draggable["tool"] = handle
         self._nodes[f"link {self._frames['tool']} tool"] = handle
 

@@ -1,5 +1,6 @@
 """The web app as a whole: one viser server behind the guard, one thread that draws."""
 
+import functools
 import io
 import socket
 import threading
@@ -18,7 +19,7 @@ from app.web.guard import LOOPBACK, Guard
 from app.web.hand import Hand
 from app.web.operator import Operator
 from app.web.running import Running
-from app.web.scene import Scene, frames_of
+from app.web.scene import TOOL, Scene, frames_of
 from sim.arm import Arm
 from sim.scenario import Scenario
 
@@ -43,14 +44,16 @@ class Served:
         )
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
         self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
-        self.docks = Docks(self.server, self.guard, loop, self.hand, f"pendant · {arm.title}")
+        self.docks = Docks(self.server, self.guard, loop, self.hand, arm)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
         self.server.on_client_connect(self._welcome)
         self.server.on_client_disconnect(self._farewell)
-        self.guard.open(self.server, frozenset(node.name for node in self.scene.draggable.values()), self._let_go)
+        self.scene.on_tool = functools.partial(self._make_draggable, "tool")
+        draggable = frozenset({TOOL, *(node.name for node in self.scene.draggable.values())})
+        self.guard.open(self.server, draggable, self._let_go)
         self._closing = threading.Event()
         self._painter = threading.Thread(target=self._paint, name="web-painter", daemon=True)
         self._painter.start()

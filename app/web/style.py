@@ -50,6 +50,10 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 .pd-log td:nth-child(1){{width:8px;padding-right:0}}
 .pd-log td:nth-child(2){{font-variant-numeric:tabular-nums;opacity:.6;white-space:nowrap;width:1%}}
 .pd-log i{{display:block;width:7px;height:7px;border-radius:50%;background:var(--c);margin-top:5px}}
+.pd-loads{{display:grid;grid-template-columns:1fr 1fr;gap:4px 8px;margin:2px 12px 8px;font-size:11.5px}}
+.pd-loads span{{padding:5px 8px;border-radius:6px;background:rgba(134,142,150,.12)}}
+.pd-loads b{{display:block;font-size:15px}}
+.pd-loads em{{grid-column:1/3;font-style:normal;font-weight:600;color:var(--c)}}
 .pd-fine{{margin:-2px 12px 8px;font-size:11px;line-height:1.3;opacity:.6}}
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}

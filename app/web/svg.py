@@ -100,6 +100,16 @@ def facts(pairs: Iterable[tuple[str, str]]) -> str:
     return f'<dl class="pd-facts">{rows}</dl>'
 
 
+def loads(true: float, configured: float) -> str:
+    """The true and the configured payload side by side [kg], and what lies between them in a word."""
+    error = true - configured
+    word, colour = ("as configured", Colour.GREEN) if abs(error) < 0.05 else (f"{error:+.1f} kg wrong", Colour.AMBER)
+    return (
+        f'<div class="pd-loads" style="--c:{colour.value}"><span>True<b>{true:.1f} kg</b></span>'
+        f"<span>Configured<b>{configured:.1f} kg</b></span><em>{word}</em></div>"
+    )
+
+
 def fine_print(text: str) -> str:
     """A line in small letters."""
     return f'<p class="pd-fine">{escape(text)}</p>'

@@ -92,6 +92,48 @@ TERMS = {
 EXPECTED |= {f"joint_control.{name}": (on, None, None, "", ident, True) for name, (ident, on) in TERMS.items()}
 EXPECTED["limits.activation.load_share"] = (0.25, 0.0, 1.0, "", "FD-9", True)
 
+CONTACT_SWITCHES = {
+    "on": (False, "CD-1", False),
+    "tool": (True, "CD-2", True),
+    "flange": (False, "CD-2", True),
+    "links": (True, "CD-2", True),
+    "instant": (True, "CD-3", True),
+    "difference": (True, "CD-4", True),
+    "ratio": (True, "CD-5", True),
+    "statistical": (True, "CD-6", True),
+    "slow": (True, "CD-7", True),
+    "all_rules": (False, "CD-10", True),
+}
+CONTACT_NUMBERS = {
+    "sensitivity": (1.0, 0.25, 4.0, "", "CD-12", False),
+    "hard_count": (2.0, 1.0, 10.0, "", "CD-9", True),
+    "soft_count": (4.0, 3.0, 10.0, "", "CD-9", True),
+    "slow_count": (20.0, 5.0, 50.0, "", "CD-9", True),
+    "misses": (0.0, 0.0, 10.0, "", "CD-9", True),
+    "angle": (0.3, 0.0, 0.95, "", "CD-0", True),
+    "force_noise": (0.15, 0.02, 2.0, "N", "CD-0", True),
+    "acceleration_noise": (0.1, 0.01, 2.0, "m/s²", "CD-0", True),
+    "link_force_noise": (3.0, 0.1, 50.0, "N", "CD-2", True),
+    "link_acceleration_noise": (0.2, 0.02, 5.0, "m/s²", "CD-2", True),
+    "link_force": (60.0, 1.0, 200.0, "N", "CD-2", True),
+    "link_margin": (20.0, 0.0, 100.0, "kg", "CD-11", True),
+    "noise_limit": (3.0, 1.0, 6.0, "", "CD-0", True),
+    "hard_limit": (4.0, 2.0, 20.0, "", "CD-4", True),
+    "ratio_share": (0.5, 0.05, 1.0, "", "CD-5", True),
+    "ratio_acceleration": (1.0, 0.2, 10.0, "m/s²", "CD-5", True),
+    "value_force": (8.0, 1.0, 50.0, "N", "CD-3", True),
+    "value_acceleration": (3.0, 0.1, 20.0, "m/s²", "CD-3", True),
+    "confidence": (3.6, 2.0, 10.0, "", "CD-6", True),
+    "slow_force": (0.7, 0.2, 20.0, "N", "CD-7", True),
+    "slow_payload": (0.1, 0.0, 5.0, "N/kg", "CD-11", True),
+    "clamping_ratio": (4.0, 1.0, 50.0, "kg", "CD-7", True),
+    "payload_error": (0.25, 0.0, 1.0, "", "CD-11", True),
+    "speed_share": (0.0, 0.0, 2.0, "s/m", "CD-11", True),
+    "free_drive_factor": (3.0, 1.0, 10.0, "", "CD-11", True),
+}
+EXPECTED |= {f"contact.{name}": (on, None, None, "", ident, locked) for name, (on, ident, locked) in CONTACT_SWITCHES.items()}
+EXPECTED |= {f"contact.{name}": cell for name, cell in CONTACT_NUMBERS.items()}
+
 NUMBERS = [row for row in describe() if row.low is not None]
 SWITCHES = [row for row in describe() if row.low is None]
 

@@ -6,6 +6,7 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.program import Program, Wait
 from sim.changes import DropPayload, Temperature
 from sim.desk import Desk, Wishes
+from sim.scenario import Load
 from sim.touch import Push
 
 EMPTY = Wishes(Inputs(), (), ())
@@ -129,3 +130,33 @@ def test_no_command_is_lost_or_doubled_between_threads() -> None:
     assert len(taken) + len(wishes.inputs.commands) == count * writers
     assert max(touches) <= 3
     assert wishes.touches == ()
+
+
+def test_a_configured_payload_is_taken_once() -> None:
+    desk = Desk()
+    desk.configure(Load(mass=1.0))
+    desk.configure(Load(mass=2.0))
+    assert desk.take().configured == Load(mass=2.0)
+    assert desk.take() == EMPTY
+
+
+def test_a_cleared_desk_configures_nothing() -> None:
+    desk = Desk()
+    desk.configure(Load(mass=1.0))
+    desk.clear()
+    assert desk.take() == EMPTY
+
+
+def test_the_wishes_of_two_are_joined() -> None:
+    other = Wishes(
+        Inputs(frozenset(), frozenset({Button.FREE_DRIVE}), (Command.TEACH,), {"a": 1.0, "free_drive.period": 2.0}),
+        (SECOND,),
+        (Temperature(celsius=50.0),),
+        Load(mass=1.0),
+    )
+    joined = full().take().joined(other)
+    settings = {"free_drive.period": 2.0, "a": 1.0}
+    commands = (Command.RESET, Command.TEACH)
+    inputs = Inputs(frozenset({Button.FREE_DRIVE}), frozenset({Button.FREE_DRIVE}), commands, settings, PROGRAM)
+    assert joined == Wishes(inputs, (FIRST, SECOND), (DropPayload(), Temperature(celsius=50.0)), Load(mass=1.0))
+    assert EMPTY.joined(EMPTY) == EMPTY

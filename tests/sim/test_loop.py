@@ -12,7 +12,7 @@ import pytest
 import sim.loop
 from pendant.decision import Decision
 from pendant.events import Event, Kind
-from pendant.inputs import Button, Command
+from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.settings import Settings
 from pendant.table import render
@@ -50,6 +50,10 @@ class Ticker:
         self.wishes.append(wishes)
         self._during(self.plant.tick)
         return QUIET
+
+    @property
+    def tick_count(self) -> int:
+        return self.plant.tick
 
     def snapshot(self) -> SimpleNamespace:
         return SimpleNamespace(tick=self.plant.tick)
@@ -250,6 +254,42 @@ def test_a_reset_starts_anew_and_lets_go_of_everything(running: Callable[..., Lo
     assert now.truth_links.tobytes() == start.tobytes()
     assert len(loop.events(0)) == told, "what happened before stays; nothing held or commanded came over"
     assert loop.events(told) == []
+
+
+class Note:
+    """A script that asks for a reset in its third tick, and keeps what it saw."""
+
+    def __init__(self) -> None:
+        self.seen: list[int] = []
+
+    def wishes(self, tick: int, snapshot: Callable[[], object]) -> Wishes:
+        return Wishes(Inputs(commands=(Command.RESET,) if tick == 3 else ()), (), ())
+
+    def see(self, tick: int, decision: Decision) -> None:
+        self.seen.append(tick)
+
+
+def test_another_simulation_begins_with_a_script_and_a_reset_leads_back_to_its_start(clock: Clock) -> None:
+    loop = Loop(Ticker)
+    notes: list[Note] = []
+
+    def write() -> Note:
+        notes.append(Note())
+        return notes[-1]
+
+    loop.start()
+    until(lambda: loop.simulation.plant.tick > 5)
+    first = loop.simulation
+    loop.begin(Ticker, write)
+    until(lambda: loop.simulation is not first and loop.simulation.plant.tick > 5)
+    second = loop.simulation
+    loop.desk.command(Command.TEACH)
+    loop.reset()
+    until(lambda: loop.simulation is not second and loop.simulation.plant.tick > 5)
+    loop.stop()
+    assert [w.inputs.commands for w in second.wishes[:4]] == [(), (), (Command.RESET,), ()]
+    assert len(notes) == 2
+    assert notes[1].seen == list(range(1, loop.simulation.plant.tick + 1))
 
 
 def test_touches_last_and_the_rest_is_taken_once(running: Callable[..., Loop], clock: Clock) -> None:

@@ -14,6 +14,7 @@ from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
 from pendant.settings import Settings
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
+from sim.scenario import Scenario
 from sim.snapshot import Snapshot
 
 ARM = load_arm("ur5e")
@@ -64,6 +65,8 @@ class FakeLoop:
         self.actual_rate = 1.0
         self.seed = 7
         self.settings = Settings()
+        self.scenario = Scenario()
+        self.begun: list[Any] = []
         self.tick = 0
         self.mode = Mode.TEACH
         self.safety = Safety.NORMAL
@@ -109,7 +112,18 @@ class FakeLoop:
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))
-        return Snapshot(self.tick, decision, seen, poses, nothing, None, self.payload, self.configured, self.touches)
+        return Snapshot(
+            self.tick,
+            decision,
+            seen,
+            poses,
+            nothing,
+            None,
+            self.payload,
+            self.configured,
+            self.touches,
+            scenario=self.scenario,
+        )
 
     def events(self, since: int) -> list[Event]:
         """Events from index `since` on."""
@@ -128,3 +142,7 @@ class FakeLoop:
     def reset(self) -> None:
         """Count the resets asked for."""
         self.resets += 1
+
+    def begin(self, make: Any, write: Any = None) -> None:
+        """Keep what was to begin."""
+        self.begun.append((make, write))

@@ -26,6 +26,7 @@ WORLD = Scenario(
 def still(loop: FakeLoop) -> Iterator[Served]:
     """A web app with a world, whose painter does not run."""
     loop.latest = lambda: snapshot(loop)  # type: ignore[method-assign]
+    loop.scenario = WORLD
     app = serve(loop, ARM, WORLD)
     app._closing.set()
     app._painter.join()
@@ -104,3 +105,16 @@ def test_a_payload_is_a_ball_of_its_weight_and_falls(loop: FakeLoop, still: Serv
     assert 4.0 / 3.0 * np.pi * float(np.mean(ball.scale)) ** 3 * 1000.0 == pytest.approx(2.0, rel=0.01)
     still.scene.show(snapshot(loop))
     assert not ball.visible
+
+
+def test_another_scenario_brings_its_own_tool_and_world(loop: FakeLoop, still: Served) -> None:
+    still.scene.show(snapshot(loop))
+    bare = replace(FakeLoop.latest(loop), scenario=Scenario())
+    assert still.scene.show(bare)
+    assert "tool" not in still.scene.draggable
+    assert not [key for key in still.scene._nodes if key.startswith("object")]
+    told: list[object] = []
+    still.scene.on_tool = told.append
+    still.scene.show(snapshot(loop))
+    assert told == [still.scene.draggable["tool"]]
+    assert [key for key in still.scene._nodes if key.startswith("object")] == ["object 0 floor", "object 1 table", "object 2 pad"]

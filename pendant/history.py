@@ -1,0 +1,66 @@
+"""Ring buffers of signals, and means and variances over any part of them from running sums (CD-4, CD-6, CD-8)."""
+
+from pendant.signal import Signal
+
+SIZE = 512
+"""Samples kept: a second. A power of two, so that an index wraps by a mask."""
+
+MASK = SIZE - 1
+
+Six = tuple[float, float, float, float, float, float]
+
+
+class History:
+    """The last samples of one source; age 0 is the newest.
+
+    Beside each sample stands the sum of all samples up to it (three of force, three of acceleration, and the squares of both
+    sizes), so a mean or a variance over any window is one difference, and a tick costs the same whatever the windows are.
+    """
+
+    __slots__ = ("_at", "_samples", "_squares", "_sums", "count")
+
+    def __init__(self) -> None:
+        self._samples: list[Signal] = [Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
+        self._sums: list[Six] = [(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
+        self._squares: list[tuple[float, float]] = [(0.0, 0.0)] * SIZE
+        self._at = 0  # where the newest stands
+        self.count = 0  # samples since the last gap, at most SIZE - 1
+
+    def push(self, signal: Signal) -> None:
+        """Take one sample."""
+        fx, fy, fz, ax, ay, az = signal[:6]
+        sx, sy, sz, tx, ty, tz = self._sums[self._at]
+        ff, aa = self._squares[self._at]
+        self._at = at = (self._at + 1) & MASK
+        self._samples[at] = signal
+        self._sums[at] = (sx + fx, sy + fy, sz + fz, tx + ax, ty + ay, tz + az)
+        self._squares[at] = (ff + fx * fx + fy * fy + fz * fz, aa + ax * ax + ay * ay + az * az)
+        if self.count < MASK:
+            self.count += 1
+
+    def gap(self) -> None:
+        """A sample is missing: what was before it counts no more."""
+        self._sums[self._at] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._squares[self._at] = (0.0, 0.0)
+        self.count = 0
+
+    def sample(self, age: int) -> Signal:
+        """The sample of `age` ticks ago, 0 <= age < count."""
+        return self._samples[(self._at - age) & MASK]
+
+    def mean(self, age: int, length: int) -> Six:
+        """Mean force [N] and acceleration [m/s²] of `length` samples, the newest of them `age` ticks old."""
+        sums = self._sums
+        a, b, c, d, e, f = sums[(self._at - age) & MASK]
+        u, v, w, x, y, z = sums[(self._at - age - length) & MASK]
+        share = 1.0 / length
+        return (a - u) * share, (b - v) * share, (c - w) * share, (d - x) * share, (e - y) * share, (f - z) * share
+
+    def variances(self, age: int, length: int, mean: Six) -> tuple[float, float]:
+        """Of force [N²] and acceleration [m²/s⁴], each the mean of its three axes, about `mean`, that of the same samples."""
+        f, a = self._squares[(self._at - age) & MASK]
+        g, b = self._squares[(self._at - age - length) & MASK]
+        x, y, z, u, v, w = mean
+        force = ((f - g) / length - x * x - y * y - z * z) / 3.0
+        acceleration = ((a - b) / length - u * u - v * v - w * w) / 3.0
+        return max(force, 0.0), max(acceleration, 0.0)

@@ -1,0 +1,23 @@
+"""What a contact detector is fed with: the force on a contact part and its acceleration, from one source (CD-2)."""
+
+from typing import NamedTuple
+
+
+class Signal(NamedTuple):
+    """One tick of one source. All in the same axes, those of the part; at the carried load's centre, or at the contact point.
+
+    Signs as docs/conventions.md says of `w_sensor`: what the arm exerts on what it carries or touches. Force and acceleration
+    both contain gravity, so that in free motion they stay parallel: force = mass·acceleration (spec/contact.md, "Sign").
+    """
+
+    fx: float  # force [N]
+    fy: float
+    fz: float
+    ax: float  # specific force [m/s²]
+    ay: float
+    az: float
+    gx: float = 0.0  # gravity [m/s²]
+    gy: float = 0.0
+    gz: float = 0.0
+    mass: float = 0.0  # configured, of what the force accelerates [kg]
+    effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]

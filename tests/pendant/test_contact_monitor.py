@@ -1,0 +1,81 @@
+"""All detectors on estimates: axes of B, pose at the first suspicious sample, switches, sources (CD-1, CD-2, CD-14)."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from pendant.contact import Change, Contact
+from pendant.contact_monitor import SOURCES, ContactMonitor
+from pendant.estimate import Estimate
+from pendant.modes import Mode
+from pendant.settings import ContactUse
+from pendant.signal import Signal
+from tests.pendant.contacts import USE, ramp, signals
+from tests.pendant.estimates import estimate
+
+START = 100
+QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # F turned by 90 degrees about z of B
+
+
+def estimates(source: int, stream: list[Signal | None]) -> list[Estimate]:
+    result = []
+    for k, signal in enumerate(stream, 1):
+        now = estimate(tick=k)
+        now.R_BF, now.q = QUARTER, np.full(6, 0.001 * k)
+        now.p_BT = (0.0002 * k, 0.0, 0.5)
+        now.signals = tuple(signal if index == source else None for index in range(len(SOURCES)))
+        result.append(now)
+    return result
+
+
+def run(source: int, stream: list[Signal | None], use: ContactUse = USE, on: bool = True) -> list[Contact]:
+    monitor = ContactMonitor()
+    return [contact for now in estimates(source, stream) for contact in monitor.step(now, use, Mode.RUN, on)]
+
+
+def test_a_contact_is_told_in_axes_of_the_base_with_its_pose() -> None:
+    (contact,) = run(0, [*signals(200, push=ramp(200, START, 8.0, top=40.0))])
+    assert contact.change is Change.GAINED
+    assert (contact.part, contact.source) == ("tool", SOURCES[0].source)
+    assert contact.force[1] > 0.9 * np.linalg.norm(contact.force)  # x of F is y of B
+    assert contact.acceleration[1] < 0.0
+    first = contact.tick - contact.steps
+    assert abs(first - START - 1) <= 2
+    assert contact.pose.q == pytest.approx((0.001 * first,) * 6)
+    assert contact.pose.p_BT == pytest.approx((0.0002 * first, 0.0, 0.5))
+    assert tuple(QUARTER.ravel().tolist()) == contact.pose.R_BF
+
+
+def test_a_push_on_a_link_is_told_as_it_is() -> None:
+    stream = [
+        s._replace(fx=20.0 * s.fx, mass=0.0) for s in signals(400, mass=0.0, arm=50.0, push=ramp(400, START, 1.0, top=30.0))
+    ]
+    (contact,) = run(2, [*stream])
+    assert (contact.part, contact.source, contact.rule) == ("elbow", "joints", "slow")
+    assert contact.force[0] > 0.9 * np.linalg.norm(contact.force)
+
+
+def test_switched_off_it_fills_its_buffers_and_finds_nothing() -> None:
+    stream = [*signals(200, push=ramp(200, START, 8.0, top=40.0))]
+    assert run(0, stream, on=False) == []
+    monitor = ContactMonitor()
+    found = []
+    for now in estimates(0, stream):
+        found += monitor.step(now, USE, Mode.RUN, now.tick > START - 2)
+    assert len(found) == 1  # at once, since the buffers were full
+
+
+def test_a_source_that_is_not_valid_gives_nothing() -> None:
+    stream: list[Signal | None] = [*signals(200, push=ramp(200, START, 8.0, top=40.0))]
+    stream[START - 5 : START + 8] = [None] * 13
+    assert run(0, stream) == []
+    assert run(0, [None] * 50) == []
+
+
+def test_limits_follow_the_settings_at_once() -> None:
+    stream = signals(400, push=ramp(400, START, 0.05, top=2.0))
+    monitor, dull, found = ContactMonitor(), msgspec.structs.replace(USE, sensitivity=0.25, speed_share=1.0), []
+    for now in estimates(0, [*stream]):
+        found += monitor.step(now, dull if now.tick < 300 else USE, Mode.RUN, True)
+    assert found
+    assert all(contact.tick >= 300 for contact in found)

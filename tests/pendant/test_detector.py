@@ -1,0 +1,156 @@
+"""One detector on signals of a load that is moved and pushed: what it finds, when, and what it must not find."""
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pendant.contact import Change
+from pendant.contact_rules import Rule
+from pendant.detector import GONE, SILENCE, Detector
+from tests.pendant.contacts import GRAVITY, USE, found, limit, ramp, signals
+
+ONLY = {
+    rule: msgspec.structs.replace(USE, **{other.value: other is rule for other in Rule})  # one rule alone
+    for rule in Rule
+}
+START = 150
+
+
+@pytest.mark.parametrize(
+    ("rule", "slope", "within"),
+    [
+        (Rule.DIFFERENCE, 10.0, 3),
+        (Rule.RATIO, 10.0, 3),
+        (Rule.STATISTICAL, 1.0, 15),
+        (Rule.SLOW, 0.2, 45),
+        (Rule.INSTANT, 20.0, 5),
+    ],
+)
+def test_each_rule_alone_finds_a_push(rule: Rule, slope: float, within: int) -> None:
+    (tick, finding), *_ = found(signals(300, push=ramp(300, START, slope)), ONLY[rule])
+    assert START < tick <= START + within
+    assert finding.rule is rule
+    assert finding.force[0] > 0.0
+    assert abs(tick - finding.steps - START) <= 6 / slope + 2
+
+
+def test_no_rule_no_finding() -> None:
+    none = msgspec.structs.replace(ONLY[Rule.SLOW], slow=False)
+    assert found(signals(300, push=ramp(300, START, 10.0)), none) == []
+
+
+def test_all_rules_asked_for_is_stricter_than_any() -> None:
+    strict = msgspec.structs.replace(USE, all_rules=True, ratio=False)
+    stream = signals(400, push=ramp(400, START, 1.0))
+    any_rule, every_rule = found(stream)[0][0], found(stream, strict)
+    assert not every_rule or every_rule[0][0] > any_rule
+
+
+def test_more_sensitive_is_sooner_and_less_is_later() -> None:
+    stream = signals(400, push=ramp(400, START, 0.3))
+    ticks = [found(stream, msgspec.structs.replace(USE, sensitivity=value))[0][0] for value in (2.0, 1.0, 0.25)]
+    assert ticks == sorted(ticks)
+    assert ticks[0] < ticks[2]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 9), st.floats(0.5, 5.0), st.floats(-0.2, 0.2), st.floats(0.3, 2.0), st.floats(2.0, 30.0))
+def test_free_motion_of_a_wrong_payload_is_no_contact(seed: int, mass: float, wrong: float, rate: float, size: float) -> None:
+    """Fast to and fro, the tool turning in gravity: dF and dA stay parallel, whatever the payload weighs."""
+    t = np.arange(800) * 0.002
+    motion = size * np.sin(2 * np.pi * rate * t)[:, None] * np.array([0.6, -0.5, 0.62])
+    gravity = 9.81 * np.stack([np.sin(rate * t), np.zeros_like(t), -np.cos(rate * t)], axis=1)
+    assert found(signals(800, mass=mass * (1 + wrong), believed=mass, motion=motion, gravity=gravity, seed=seed)) == []
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 9), st.lists(st.floats(-8.0, 8.0), min_size=3, max_size=3))
+def test_a_constant_bias_changes_nothing(seed: int, bias: list[float]) -> None:
+    plain = signals(500, push=ramp(500, START, 1.0, top=20.0), seed=seed)
+    biased = [s._replace(fx=s.fx + bias[0], fy=s.fy + bias[1], fz=s.fz + bias[2]) for s in plain]
+    first, second = found(plain), found(biased)
+    assert [(tick, f.change, f.rule, f.steps) for tick, f in first] == [(tick, f.change, f.rule, f.steps) for tick, f in second]
+    assert len(first) == 1
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 9), st.floats(-2.0, 2.0))
+def test_a_slow_drift_changes_nothing(seed: int, drift: float) -> None:
+    """Up to 2 N a minute, four times what the arms' files allow."""
+    stream = [s._replace(fx=s.fx + drift / 60.0 * 0.002 * k) for k, s in enumerate(signals(1500, seed=seed))]
+    assert found(stream) == []
+
+
+def test_kinds_gained_resistance_and_lost() -> None:
+    n = 2400
+    push = ramp(n, START, 5.0, top=20.0)
+    push[900:] += ramp(n, 900, 5.0, top=20.0)[900:]
+    push[1600:] -= ramp(n, 1600, 8.0, top=40.0)[1600:]
+    seen = found(signals(n, push=push))
+    assert [finding.change for _, finding in seen] == [Change.GAINED, Change.RESISTANCE, Change.LOST]
+    for (tick, finding), begin in zip(seen, (START, 900, 1600), strict=True):
+        assert abs(tick - finding.steps - begin) <= 2
+
+
+def test_a_falling_resistance_is_not_a_lost_contact() -> None:
+    push = ramp(1500, START, 5.0, top=30.0)
+    push[800:] -= ramp(1500, 800, 5.0, top=15.0)[800:]
+    assert [finding.change for _, finding in found(signals(1500, push=push))] == [Change.GAINED, Change.RESISTANCE]
+
+
+def test_a_slow_squeeze_is_clamping() -> None:
+    seen = found(signals(600, arm=1e6, push=ramp(600, START, 0.1)))
+    assert seen[0][1].change is Change.CLAMPING
+    assert seen[0][1].rule is Rule.SLOW
+
+
+def test_it_is_silent_until_the_force_has_settled() -> None:
+    n = START + SILENCE + 400
+    seen = found(signals(n, push=ramp(n, START, 0.6)))
+    assert len([tick for tick, _ in seen if tick < START + 200]) == 1
+
+
+def test_a_contact_that_went_too_gently_is_over_after_a_while() -> None:
+    n = 4000
+    push = ramp(n, START, 1.5, top=3.0)
+    push[700:2700, 0] = np.linspace(3.0, 0.0, 2000)  # 0.75 N a second: no rule sees it
+    push[2700:] = ramp(n, 3300, 5.0, top=20.0)[2700:]
+    seen = found(signals(n, push=push))
+    assert [finding.change for _, finding in seen] == [Change.GAINED, Change.GAINED]
+    assert seen[1][0] > 2700 + GONE
+
+
+def test_a_knock_that_is_over_before_the_force_settles_leaves_no_contact() -> None:
+    push = ramp(1200, START, 15.0, top=30.0)
+    push[START + 8 :] = 0.0
+    push[700:] = ramp(1200, 700, 15.0, top=30.0)[700:]
+    assert [finding.change for _, finding in found(signals(1200, push=push))] == [Change.GAINED, Change.GAINED]
+
+
+def test_a_gap_in_the_signal_makes_it_begin_anew() -> None:
+    detector = Detector()
+    for signal in signals(300, push=ramp(300, START, 5.0, top=20.0)):
+        detector.sense(signal)
+        detector.step(USE, limit())
+    assert detector.touching
+    detector.sense(None)
+    assert detector.step(USE, limit()) is None
+    assert not detector.touching
+    assert not detector.silent
+
+
+def test_it_finds_what_lies_in_any_direction() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(10):
+        way = rng.normal(size=3)
+        way /= np.linalg.norm(way)
+        (_, finding), *_ = found(signals(250, push=ramp(250, START, 8.0, way=tuple(way))))
+        assert np.dot(finding.force, way) > 0.9 * np.linalg.norm(finding.force)
+        assert np.dot(finding.acceleration, way) < 0.0
+        assert finding.ratio < 0.0
+
+
+def test_gravity_is_that_of_the_earth() -> None:
+    assert np.linalg.norm(GRAVITY) == 9.81
