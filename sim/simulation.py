@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+from pendant.modes import Law
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from sim import calibration
@@ -159,4 +160,9 @@ class Simulation:
             plant.tau_J.copy(),
             plant.temperature.copy(),
             self.scenario,
+            self._reference(),
         )
+
+    def _reference(self) -> Array | None:
+        now = self.controller.references.now
+        return None if now is None or self._decision is None or self._decision.law is Law.FREE else now.q.copy()

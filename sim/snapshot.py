@@ -32,3 +32,4 @@ class Snapshot:
     truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
     truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
     scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks
+    reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]

@@ -3,11 +3,13 @@
 import viser
 
 from app.web import style
+from app.web.contacts import Contacts
 from app.web.guard import Guard
 from app.web.hand import Hand
 from app.web.journal import Journal
 from app.web.lab import Lab
 from app.web.panel import Panel
+from app.web.plots import Plots
 from app.web.running import Running
 from app.web.settings_tab import SettingsTab
 from pendant.events import Event
@@ -35,10 +37,22 @@ class Docks:
         self._lower = gui.add_panel()
         with self._lower.add_tab("Events"):
             self.journal = Journal(gui)
+        with self._lower.add_tab("Contacts"):
+            self.contacts = Contacts(server)
+        with self._lower.add_tab("Plots"):
+            self.plots = Plots(gui, loop, arm)
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
-        quiet = (self.panel.leave, self.panel.reset, self.lab.restart, self.lab.drop, self.settings.defaults)
+        quiet = (
+            self.panel.leave,
+            self.panel.reset,
+            self.lab.restart,
+            self.lab.drop,
+            self.lab.setup.begin,
+            self.settings.defaults,
+            self.contacts.export,
+        )
         sheet.content = style.sheet(
             self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
         )
@@ -47,10 +61,12 @@ class Docks:
         """Show a snapshot and the events since the last call; True if anything changed."""
         fresh: list[Event] = self._loop.events(self._read)
         self._read += len(fresh)
+        self.plots.note(fresh)
         changed = [
             self.panel.show(snapshot, fresh),
             self.journal.show(fresh),
             self.lab.show(snapshot),
             self.settings.show(snapshot, fresh),
+            self.contacts.show(snapshot, fresh),
         ]
         return any(changed)

@@ -85,6 +85,7 @@ class Served:
             if snapshot.tick != shown:
                 self.scene.show(snapshot)
                 shown = snapshot.tick
+                self.docks.plots.show(snapshot)
             if frame % FRAMES_A_PANEL == 0:
                 self.docks.show(snapshot)
                 self.server.get_event_loop().call_soon_threadsafe(self.control.show)

@@ -54,6 +54,15 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 .pd-loads span{{padding:5px 8px;border-radius:6px;background:rgba(134,142,150,.12)}}
 .pd-loads b{{display:block;font-size:15px}}
 .pd-loads em{{grid-column:1/3;font-style:normal;font-weight:600;color:var(--c)}}
+.pd-chart{{margin:4px 12px 10px;font-size:11px}} .pd-chart figcaption{{display:flex;justify-content:space-between}}
+.pd-chart em{{font-style:normal;opacity:.6;font-variant-numeric:tabular-nums}}
+.pd-chart svg{{display:block;width:100%;height:84px;margin:2px 0;background:rgba(134,142,150,.08);border-radius:4px}}
+.pd-chart div{{display:flex;flex-wrap:wrap;gap:2px 10px}} .pd-chart span{{display:flex;align-items:center;gap:4px}}
+.pd-chart i{{width:12px;border-top:2px solid var(--c)}} .pd-chart .pd-dash i{{border-top-style:dashed}}
+.pd-contacts{{padding:2px 8px 8px;font-size:11.5px}} .pd-contacts table{{border-collapse:collapse;width:100%}}
+.pd-contacts th{{text-align:left;font-weight:500;opacity:.55}}
+.pd-contacts td,.pd-contacts th{{padding:3px;border-bottom:1px solid rgba(128,128,128,.14)}}
+.pd-contacts td{{font-variant-numeric:tabular-nums}}
 .pd-fine{{margin:-2px 12px 8px;font-size:11px;line-height:1.3;opacity:.6}}
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}

@@ -126,3 +126,12 @@ def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
         if lines
         else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
     )
+
+
+def contacts(rows: Iterable[tuple[str, ...]]) -> str:
+    """The contact log: number, time, kind, rule, force with its direction, delay."""
+    lines = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    if not lines:
+        return '<p class="pd-empty">No change in contact yet</p>'
+    heads = "".join(f"<th>{head}</th>" for head in ("", "s", "kind", "rule", "force", "delay"))
+    return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'

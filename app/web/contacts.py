@@ -1,0 +1,108 @@
+"""The contact log: changes in contact, newest first, one of them shown in the picture, all of them as a file."""
+
+import csv
+import io
+from collections import deque
+
+import numpy as np
+import viser
+
+from app.web import svg
+from app.web.html import Html
+from app.web.plots import MARKED
+from pendant.events import Event
+from pendant.modes import TICK, TICK_RATE
+from sim.frames import matrix_from_quaternion
+from sim.snapshot import Snapshot
+
+LENGTH = 200
+"""Contacts kept."""
+
+SHOWN = 30
+"""Contacts in the table."""
+
+NEWEST = "newest"
+COLUMNS = ("number", "t", "kind", "part", "source", "rule", "force", "fx", "fy", "fz", "delay_ms", "x", "y", "z", "action")
+METRES_PER_NEWTON = 0.006
+LONGEST = 0.25
+"""Length of the arrow [m]."""
+
+
+class Contacts:
+    """The tab with the contact log, and the mark of one contact in the picture."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
+        self._count = 0
+        gui = server.gui
+        self.choice = gui.add_dropdown("Mark", (NEWEST,))
+        self.table = Html(gui, svg.contacts(()))
+        self.export = gui.add_button("Export CSV", color="gray", disabled=True)
+        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        self.arrow = server.scene.add_arrows(
+            "/contact/arrow", nothing, (201, 42, 42), shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
+        )
+        self.label = server.scene.add_label("/contact/label", "", visible=False, anchor="bottom-center")
+        self._marked: tuple[int, str] | None = None
+
+        @self.export.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("contacts.csv", self.file(), save_immediately=True)
+
+    def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
+        """Add contacts, and mark the chosen one; True if anything changed."""
+        found = [event for event in fresh if event.kind.value.startswith(MARKED)]
+        for event in found:
+            self._count += 1
+            self._log.append((self._count, event))
+        if found:
+            self.table.show(svg.contacts(_row(number, event) for number, event in list(reversed(self._log))[:SHOWN]))
+            self.choice.options = (NEWEST, *(f"{number}" for number, _ in list(reversed(self._log))[:SHOWN]))
+            self.export.disabled = False
+        return self._mark(snapshot) or bool(found)
+
+    def file(self) -> bytes:
+        """The log as CSV: SI units, force and pose in B, the delay in milliseconds."""
+        text = io.StringIO()
+        writer = csv.writer(text)
+        writer.writerow(COLUMNS)
+        for number, event in self._log:
+            values = event.values | {"number": number, "t": round(event.tick * TICK, 3), "kind": event.kind.value}
+            values["delay_ms"] = round(1000.0 * float(values["steps"]) * TICK)
+            writer.writerow([values[name] for name in COLUMNS])
+        return text.getvalue().encode()
+
+    def _mark(self, snapshot: Snapshot) -> bool:
+        if not self._log:
+            return False
+        wanted = self.choice.value
+        number, event = next((entry for entry in self._log if f"{entry[0]}" == wanted), self._log[-1])
+        if self._marked == (number, wanted):
+            return False
+        self._marked = (number, wanted)
+        values = event.values
+        base = snapshot.truth_links[0]
+        turn = matrix_from_quaternion(base[3:])
+        point = base[:3] + turn @ np.array([float(values[name]) for name in "xyz"])
+        force = turn @ np.array([float(values[name]) for name in ("fx", "fy", "fz")])
+        size = max(float(np.linalg.norm(force)), 1e-9)
+        tip = point + force / size * min(max(size * METRES_PER_NEWTON, 0.05), LONGEST)
+        self.arrow.points = np.array([[point, tip]], dtype=np.float32)
+        self.label.position = tip
+        self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
+        self.arrow.visible = self.label.visible = True
+        return True
+
+
+def _kind(event: Event) -> str:
+    return event.kind.value.removeprefix(MARKED)
+
+
+def _row(number: int, event: Event) -> tuple[str, ...]:
+    values = event.values
+    along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
+    sign = "+" if float(values[f"f{along}"]) >= 0.0 else "−"
+    delay = f"{1000.0 * float(values['steps']) * TICK:.0f} ms"
+    time = f"{event.tick / TICK_RATE:.2f}"
+    return (f"{number}", time, _kind(event), f"{values['rule']}", f"{float(values['force']):.0f} N {sign}{along}", delay)
