@@ -35,7 +35,7 @@ class Contacts:
         self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
         self._count = 0
         gui = server.gui
-        self.choice = gui.add_dropdown("Mark", (NEWEST,))
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
         self.table = Html(gui, svg.contacts(()))
         self.export = gui.add_button("Export CSV", color="gray", disabled=True)
         nothing = np.zeros((1, 2, 3), dtype=np.float32)
@@ -58,7 +58,7 @@ class Contacts:
             self._log.append((self._count, event))
         if found:
             self.table.show(svg.contacts(_row(number, event) for number, event in list(reversed(self._log))[:SHOWN]))
-            self.choice.options = (NEWEST, *(f"{number}" for number, _ in list(reversed(self._log))[:SHOWN]))
+            self.choice.options = choices(self._count)
             self.export.disabled = False
         return self._mark(snapshot) or bool(found)
 
@@ -93,6 +93,11 @@ class Contacts:
         self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
         self.arrow.visible = self.label.visible = True
         return True
+
+
+def choices(count: int) -> tuple[str, ...]:
+    """What can be marked, when `count` contacts were seen."""
+    return (NEWEST, *(f"{number}" for number in range(count, max(count - SHOWN, 0), -1)))
 
 
 def _kind(event: Event) -> str:

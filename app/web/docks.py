@@ -12,6 +12,7 @@ from app.web.panel import Panel
 from app.web.plots import Plots
 from app.web.running import Running
 from app.web.settings_tab import SettingsTab
+from app.web.teach import Teach
 from pendant.events import Event
 from sim.arm import Arm
 from sim.snapshot import Snapshot
@@ -30,6 +31,8 @@ class Docks:
         sheet = gui.add_html("")
         self.panel = Panel(server, guard, loop, f"pendant · {arm.title}")
         self._upper = gui.add_panel()
+        with self._upper.add_tab("Teach"):
+            self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
         with self._upper.add_tab("Settings") as tab:
@@ -52,6 +55,8 @@ class Docks:
             self.lab.setup.begin,
             self.settings.defaults,
             self.contacts.export,
+            self.teach.save,
+            self.teach.load,
         )
         sheet.content = style.sheet(
             self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
@@ -66,6 +71,7 @@ class Docks:
             self.panel.show(snapshot, fresh),
             self.journal.show(fresh),
             self.lab.show(snapshot),
+            self.teach.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
         ]

@@ -25,7 +25,7 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from app.web.messages import Admitted, Camera, Drag, Hold, Update, decode, encode
+from app.web.messages import Admitted, Camera, Drag, Hold, Part, Update, Upload, decode, encode
 from app.web.operator import Operator
 from app.web.page import dress
 
@@ -34,6 +34,9 @@ VISER_VERSION = "1.1.1"
 
 MAX_BYTES = 64 * 1024
 """Largest message from a client."""
+
+MAX_FILE = 48 * 1024
+"""Largest file from a client: it comes in one message."""
 
 MAX_CLIENTS = 16
 MAX_RATE = 200
@@ -128,11 +131,12 @@ class Guard:
             if message.phase == "end":
                 return None
         else:
-            control = self._control(client, message.uuid)
+            uuid = message.source_component_uuid if isinstance(message, Upload | Part) else message.uuid
+            control = self._control(client, uuid)
             if control is None:
                 return "unknown control"
             reason = _reason_against_use(control, message)
-            if reason is not None or message.uuid in self._anyone:
+            if reason is not None or uuid in self._anyone:
                 return reason
         return None if self.operator.claim(client, self._clock()) else "not the operator"
 
@@ -253,16 +257,28 @@ def _bounded(value: Any) -> bool:
     return all(_bounded(getattr(value, name)) for name in getattr(value, "__struct_fields__", ()))
 
 
-def _reason_against_use(control: Any, message: Update | Hold) -> str | None:
+def _reason_against_use(control: Any, message: Update | Hold | Upload | Part) -> str | None:
     """Why the control cannot be used like that by anybody, or None."""
     if control.disabled or not control.visible:
         return "disabled control"
+    if isinstance(message, Upload | Part):
+        if not isinstance(control, viser.GuiUploadButtonHandle):
+            return "not an upload button"
+        return None if _small(message) else "not a small file"
     if isinstance(message, Hold):
         holdable = isinstance(control, viser.GuiButtonHandle) and message.frequency in control._hold_callback_freqs
         return None if holdable else "not a hold button"
     if set(message.updates) != {"value"}:
         return "attribute other than value"
     return None if _fits(control, message.updates["value"]) else "value not allowed"
+
+
+def _small(message: Upload | Part) -> bool:
+    """Whether a file, or its content, comes in one piece that is small enough."""
+    if isinstance(message, Part):
+        return message.part_index == 0 and len(message.content) <= MAX_FILE
+    texts = (message.filename, message.transfer_uuid, message.mime_type)
+    return message.part_count == 1 and 0 < message.size_bytes <= MAX_FILE and max(map(len, texts)) <= MAX_TEXT
 
 
 def _fits(control: Any, value: Any) -> bool:

@@ -55,7 +55,27 @@ class Drag(Message, tag="SceneNodeDragMessage"):
     owner: str = ""
 
 
-Admitted = Camera | Update | Hold | Drag
+class Upload(Message, tag="FileTransferStartUpload"):
+    """A file is about to come."""
+
+    source_component_uuid: str
+    transfer_uuid: str
+    filename: str
+    mime_type: str
+    part_count: int
+    size_bytes: int
+
+
+class Part(Message, tag="FileTransferPart"):
+    """The content of a file."""
+
+    source_component_uuid: str
+    transfer_uuid: str
+    part_index: int
+    content: bytes
+
+
+Admitted = Camera | Update | Hold | Drag | Upload | Part
 
 _decoder = msgspec.msgpack.Decoder(Admitted)
 _encoder = msgspec.msgpack.Encoder()

@@ -131,7 +131,7 @@ def _sized(values: Array, n: int) -> Array:
     return values if len(values) == n else np.full(n, np.nan)
 
 
-def _push(store: Array, value: object) -> None:
+def _push(store: Array, value: Array | float) -> None:
     """Shift a store by one sample and add the newest at its end."""
     store[..., :-1] = store[..., 1:]
     store[..., -1] = value

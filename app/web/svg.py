@@ -135,3 +135,12 @@ def contacts(rows: Iterable[tuple[str, ...]]) -> str:
         return '<p class="pd-empty">No change in contact yet</p>'
     heads = "".join(f"<th>{head}</th>" for head in ("", "s", "kind", "rule", "force", "delay"))
     return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
+
+
+def steps(rows: Iterable[tuple[str, bool]], state: str) -> str:
+    """The steps of a program; the one being done is marked with `state`."""
+    lines = "".join(
+        f'<li class="pd-now">{escape(text)} <em>{escape(state)}</em></li>' if now else f"<li>{escape(text)}</li>"
+        for text, now in rows
+    )
+    return f'<ol class="pd-steps">{lines}</ol>' if lines else '<p class="pd-empty">No waypoints yet</p>'

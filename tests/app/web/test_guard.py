@@ -16,7 +16,7 @@ from websockets.sync.client import connect
 
 from app.web import guard as guard_module
 from app.web.guard import MAX_BYTES, MAX_CLIENTS, VISER_VERSION, Gate
-from app.web.messages import Camera, Drag, Hold, Update
+from app.web.messages import Camera, Drag, Hold, Part, Update, Upload
 from app.web.server import Served
 from pendant.inputs import Button, Command
 from sim.touch import Pull
@@ -71,7 +71,7 @@ def test_viser_handles_the_messages_that_the_guard_knows(served: Served, join: J
     assert {message.__name__ for message in own} - HANDLED == {"ViewerCameraMessage"}
 
 
-@pytest.mark.parametrize("ours", [Camera, Update, Hold, Drag])
+@pytest.mark.parametrize("ours", [Camera, Update, Hold, Drag, Upload, Part])
 def test_admitted_messages_have_the_fields_of_visers(ours: Any) -> None:
     theirs = getattr(wire, ours.__struct_config__.tag)
     assert list(ours.__struct_fields__) == [field.name for field in fields(theirs)]
@@ -168,7 +168,7 @@ def test_only_the_hold_button_at_its_rate_is_held(served: Served, join: Join, na
 def others() -> list[str]:
     """Names of all messages that viser knows and a client may not send."""
     known = {message.__name__ for message in wire.Message.get_subclasses()}
-    return sorted(known - {message.__struct_config__.tag for message in (Camera, Update, Hold, Drag)})
+    return sorted(known - {message.__struct_config__.tag for message in (Camera, Update, Hold, Drag, Upload, Part)})
 
 
 @pytest.mark.parametrize("with_fields", [True, False])
@@ -176,7 +176,7 @@ def test_no_other_message_is_understood(served: Served, join: Join, monkeypatch:
     monkeypatch.setattr(viser.ViserServer, "request_share_url", lambda *_: pytest.fail("a tunnel was asked for"))
     client = join()
     names = others()
-    assert {"ShareUrlRequest", "FileTransferStartUpload", "SceneNodeClickMessage", "GetRenderResponseMessage"} <= set(names)
+    assert {"ShareUrlRequest", "SceneNodeClickMessage", "GetRenderResponseMessage"} <= set(names)
     for name in names:
         filler = {field.name: "x" for field in fields(getattr(wire, name))} if with_fields else {}
         client.send(**(filler | {"type": name}))

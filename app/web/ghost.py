@@ -1,0 +1,58 @@
+"""A ghost of the arm in a posture: where a waypoint is, and where a program goes next."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import trimesh
+import viser
+
+from sim.arm import Arm
+from sim.frames import joint_frames, matrix_from_quaternion
+from sim.snapshot import Snapshot
+
+RADIUS = 0.035  # of its limbs [m]
+COLOUR = (25, 113, 194)
+
+
+class Ghost:
+    """Limbs from joint to joint, half transparent."""
+
+    def __init__(self, server: viser.ViserServer, arm: Arm) -> None:
+        self._server, self._arm = server, arm
+        self._q: tuple[float, ...] | None = None
+        self._node: viser.MeshHandle | None = None
+
+    @property
+    def posture(self) -> tuple[float, ...] | None:
+        """The posture shown [rad]."""
+        return self._q
+
+    def show(self, q: Sequence[float] | None, snapshot: Snapshot) -> bool:
+        """Show the arm in posture `q` [rad], or nothing; True if anything changed."""
+        wanted = None if q is None else tuple(q)
+        if wanted == self._q:
+            return False
+        self._q = wanted
+        if self._node is not None:
+            self._node.remove()
+            self._node = None
+        if wanted is not None:
+            shape = limbs(self._arm, wanted)
+            base = snapshot.truth_links[0]
+            vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
+            points, faces = vertices.astype(np.float32), shape.faces
+            self._node = self._server.scene.add_mesh_simple(
+                "/ghost", points, faces, color=COLOUR, opacity=0.3, cast_shadow=False, receive_shadow=False
+            )
+        return True
+
+
+def limbs(arm: Arm, q: Sequence[float]) -> trimesh.Trimesh:
+    """Cylinders between the joints' origins, in B."""
+    points = [np.zeros(3), *(frame[:3, 3] for frame in joint_frames(arm, np.array(q)))]
+    pairs = [pair for pair in pairwise(points) if np.linalg.norm(pair[1] - pair[0]) > 1e-3]
+    pieces = [trimesh.creation.cylinder(RADIUS, segment=np.array(pair), sections=12) for pair in pairs]
+    whole = trimesh.util.concatenate(pieces)
+    assert isinstance(whole, trimesh.Trimesh)
+    return whole
