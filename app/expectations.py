@@ -19,12 +19,15 @@ Quantity = Literal[
     "elbow_speed",  # as the controller estimates it [m/s]
     "joint_angle",  # of `joint`, as measured [rad]
     "joint_speed",  # of `joint`, as estimated [rad/s]
+    "tracking_error",  # of `joint`, truth scoring: how far its true angle is from the wanted one, 0 in free-drive [rad]
+    "friction_error",  # of `joint`, truth scoring: how wrong its friction estimate is, while it moves [N·m]
+    "torque_error",  # of `joint`, truth scoring: how wrong the estimate of its transmission torque is [N·m]
     "user_force",  # size of F_user's force, as estimated [N]
     "user_torque",  # size of F_user's torque, as estimated [N·m]
     "payload_true",  # true mass of what is attached [kg]
 ]
 
-OF_A_JOINT = ("joint_angle", "joint_speed")
+OF_A_JOINT = ("joint_angle", "joint_speed", "tracking_error", "friction_error", "torque_error")
 
 
 class Expectation(After, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="expect"):

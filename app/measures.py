@@ -20,10 +20,29 @@ UNITS = {
     "elbow_speed": "m/s",
     "joint_angle": "rad",
     "joint_speed": "rad/s",
+    "tracking_error": "rad",
+    "friction_error": "N·m",
+    "torque_error": "N·m",
     "user_force": "N",
     "user_torque": "N·m",
     "payload_true": "kg",
 }
+
+
+SLIDING = 0.05
+"""Friction is compared above this speed [rad/s]: a standing joint has none of its own."""
+
+
+def control_error(now: Snapshot, quantity: str, joint: int) -> float:
+    """Size of an error of the joint control against the truth: for scoring alone."""
+    estimate = now.estimate
+    if quantity == "tracking_error":
+        return abs(float(now.truth_q[joint] - now.wanted_q[joint])) if now.wanted_q.size else 0.0
+    if quantity == "torque_error":
+        return abs(float(estimate.tau_J[joint] - now.truth_tau_J[joint]))
+    if abs(float(estimate.theta_d[joint])) < SLIDING:
+        return 0.0
+    return abs(float(estimate.friction[joint] - now.truth_friction[joint]))
 
 
 @dataclass(slots=True)
@@ -93,6 +112,8 @@ class ValueWatch(BoundsWatch):
                 self.number(float(estimate.q[self.joints.index(self.wanted.joint or "")]), tick)
             case "joint_speed":
                 self.number(float(estimate.qd[self.joints.index(self.wanted.joint or "")]), tick)
+            case "tracking_error" | "friction_error" | "torque_error":
+                self.number(control_error(now, self.wanted.of, self.joints.index(self.wanted.joint or "")), tick)
             case "user_force":
                 self.number(math.hypot(*estimate.F_user[:3]), tick)
             case "user_torque":

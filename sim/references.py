@@ -64,6 +64,12 @@ class References:
         """The reference that the next tick's measurement answers to; None under free-drive."""
         return self._past[0] if self._past else None
 
+    def wanted(self) -> Array:
+        """Angles (n,) of the last reference [rad]; empty under free-drive and before the first."""
+        if self.now is None or self._law is Law.FREE:
+            return np.zeros(0)
+        return self.now.q.copy()
+
     def step(self, estimate: Estimate, decision: Decision) -> Reference:
         """The reference of this tick."""
         law = decision.law

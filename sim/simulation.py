@@ -156,6 +156,8 @@ class Simulation:
             plant.load.mass,
             self.configured.mass,
             plant.touched,
+            self.controller.references.wanted(),
+            plant.q.copy(),
             plant.sliding_friction(),
             plant.tau_J.copy(),
             plant.temperature.copy(),

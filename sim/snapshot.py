@@ -28,6 +28,10 @@ class Snapshot:
     configured_mass: float  # what the controller believes [kg]
     touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
     # each: part, point in W [m], force in W [N], torque in W [N·m]
+    wanted_q: NDArray[np.float64] = field(
+        default_factory=_nothing
+    )  # (n,) reference of the tracking laws [rad]; none in free-drive
+    truth_q: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) output angles [rad]
     truth_friction: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of both sides, with the speed's sign [N·m]
     truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
     truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
