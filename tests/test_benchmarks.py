@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks import common, realtime, tick
+from benchmarks import common, realtime, recording, tick
 from benchmarks.common import Options, Report
 
 FOLDER = Path(common.__file__).parent
@@ -76,3 +76,11 @@ def test_a_late_joiner_that_lacks_something_is_found_out() -> None:
     own = {"picture": {**full["picture"], "own strip": {}}}
     assert realtime.missing(own, [own, full]) == (0, 0)
     assert realtime.missing({"picture": {"/arm": {"position": [2.0]}}}, [own, full]) == (1, 1)
+
+
+def test_the_bench_of_the_recording_measures(tmp_path: Path) -> None:
+    tried = report(tmp_path)
+    recording.measure(tried, ticks=50, turns=1)
+    rows = {row["what"]: row["value"] for row in tried.rows}
+    assert rows["its share of a tick"] > 0.0
+    assert all(rows[f"session {name} with recording"] > 0.0 for name in recording.SESSIONS)

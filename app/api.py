@@ -1,0 +1,113 @@
+"""The product from Python, all of it: a session, a simulation stepped by hand, a recording read into numpy.
+
+    from app.api import read, run, session, stepped
+
+`read(path)` gives an `app.log.reader.Log`. Errors are `BadInput`, whose text is one line: file, field, value, what is allowed.
+"""
+
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from app.batch import Job, run_all, work
+from app.checked import BadInput, convert, load
+from app.log.reader import Log, read
+from app.prepare import prepare
+from app.runner import Outcome, simulate
+from app.session import Session, find
+from pendant.inputs import Button, Command, Inputs
+from sim.desk import Wishes
+from sim.simulation import Simulation
+from sim.touch import Pull, Push, Touch
+
+__all__ = [
+    "BadInput",
+    "Button",
+    "Command",
+    "Log",
+    "Outcome",
+    "Pull",
+    "Push",
+    "Session",
+    "Simulation",
+    "read",
+    "run",
+    "run_many",
+    "session",
+    "step",
+    "stepped",
+]
+
+
+def session(source: str | Path | dict[str, Any] | Session, **fields: Any) -> Session:
+    """A session from a file, the name of a bundled one, another session, or its fields; `fields` replace those of the source.
+
+    Raises:
+        BadInput: the source is not there, or does not make a session.
+    """
+    if isinstance(source, Session):
+        raw = msgspec.to_builtins(source)
+    else:
+        raw = source if isinstance(source, dict) else load(find(str(source)), dict[str, object])
+    made = convert({**raw, **fields}, Session, "session")
+    prepare(made, "session")
+    return made
+
+
+def run(what: Session, out: str | Path | None = None) -> Outcome:
+    """Run a session as fast as it goes.
+
+    Args:
+        what: from `session`.
+        out: folder for events.jsonl, log.mcap, summary.json and report.html; None: nothing is kept.
+
+    Raises:
+        BadInput: the results cannot be written.
+    """
+    if out is not None:
+        return work(Job("session", what, Path(out)))
+    with tempfile.TemporaryDirectory() as folder:
+        return work(Job("session", what, Path(folder), recorded=False))
+
+
+def run_many(sessions: Iterable[Session]) -> list[Outcome]:
+    """Run sessions in parallel on all cores, keeping no files; the outcomes are in the order of the sessions.
+
+    In a script, call it under `if __name__ == "__main__":`, since the other processes import the script.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        jobs = [Job("session", each, Path(folder) / str(k), recorded=False) for k, each in enumerate(sessions)]
+        found = dict(run_all(jobs))
+    return [found[k] for k in range(len(jobs))]
+
+
+def stepped(what: Session) -> Simulation:
+    """The simulation of a session's header, at its start; its time line does not act. `step` does its ticks."""
+    return simulate(prepare(what, "session"))
+
+
+def step(
+    simulation: Simulation,
+    ticks: int = 1,
+    held: Iterable[Button] = (),
+    commands: Iterable[Command] = (),
+    touches: Iterable[Touch] = (),
+) -> None:
+    """Do ticks of 2 ms; then read `simulation.estimate`, `simulation.plant` or `simulation.snapshot()`.
+
+    Args:
+        simulation: from `stepped`.
+        ticks: how many.
+        held: buttons held all the time.
+        commands: given in the first of them.
+        touches: what hands do all the time; a `Push` is a force in W [N] on a point of a part, a `Pull` a hand that holds it.
+
+    Raises:
+        KeyError: a touch names a part that does not exist.
+    """
+    held, touches, first = frozenset(held), tuple(touches), tuple(commands)
+    for k in range(ticks):
+        simulation.tick(Wishes(Inputs(held=held, commands=first if k == 0 else ()), touches, ()))

@@ -1,0 +1,80 @@
+"""What recording costs: a tick with it over a tick without, what it adds to the simulation's thread, and headless speed with it."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from app.checked import load
+from app.log.recorder import Recorder
+from app.prepare import prepare
+from app.runner import record, simulate
+from app.session import Session, find
+from benchmarks.common import Report, main
+from pendant.inputs import NOTHING
+from pendant.modes import TICK
+from sim.desk import Wishes
+
+SHARE = 0.15
+"""Recording costs at most this share of a tick."""
+
+SPEED = 8.0
+"""Headless speed with recording is at least this [x real time]."""
+
+SESSIONS = ("free-drive", "hold", "program")
+IDLE = Wishes(NOTHING, (), ())
+
+
+def clocked(clock: Callable[[], float], ticks: int, turns: int) -> tuple[list[float], list[float], list[float]]:
+    """Seconds a tick bare and recorded, in turns on one simulation, and of them what the recorder adds to its thread."""
+    simulation = simulate(prepare(load(find("hold"), Session), "hold"))
+    bare, recorded, seen = [], [], []
+    for _ in range(turns):
+        begun = clock()
+        for _ in range(ticks):
+            simulation.tick(IDLE)
+        bare.append((clock() - begun) / ticks)
+        with TemporaryDirectory() as out:
+            recorder = Recorder(Path(out) / "log.mcap", simulation, "bench")
+            begun, inside = clock(), 0
+            for _ in range(ticks):
+                decision = simulation.tick(IDLE)
+                start = time.thread_time_ns()
+                recorder.see(simulation, decision)
+                inside += time.thread_time_ns() - start
+            recorder.close()
+            recorded.append((clock() - begun) / ticks)
+            seen.append(inside / 1e9 / ticks)
+    return bare, recorded, seen
+
+
+def measure(report: Report, ticks: int = 2000, turns: int = 5) -> None:
+    """Fill the report; in the full size with five times the turns."""
+    turns = 5 * turns if report.options.full else turns
+    clocked(time.process_time, 300, 1)  # compiles and warms caches up
+    bare, recorded, seen = clocked(time.process_time, ticks, turns)
+    base = float(np.median(bare))
+    report.row("a tick without recording, median", 1e6 * base, "µs")
+    report.row("recording on the simulation's thread, median", 1e6 * float(np.median(seen)), "µs a tick")
+    report.row("its share of a tick", float(np.median(seen)) / base, "", at_most=SHARE)
+    both = [a / b - 1.0 for a, b in zip(recorded, bare, strict=True)]
+    report.row(
+        "with packing, compressing and writing on the recorder's thread: share of a tick's processor time", float(np.median(both))
+    )
+    for name in SESSIONS:
+        session = load(find(name), Session)
+        prepared = prepare(session, name)
+        with TemporaryDirectory() as out:
+            begun = time.process_time()
+            record(session, prepared, Path(out))
+            took = time.process_time() - begun
+            size = (Path(out) / "log.mcap").stat().st_size
+        report.row(f"session {name} with recording", session.duration / took, "x real time", at_least=SPEED)
+        report.row(f"session {name}: log", size / 1e6 / session.duration, "MB a second")
+    report.notes.append(f"processor time of all threads; a tick is {1000 * TICK:g} ms")
+
+
+if __name__ == "__main__":
+    main("recording", measure)

@@ -1,0 +1,82 @@
+"""The Python interface, and the examples that show it: each runs as a user runs it."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.api import BadInput, Button, Push, read, run, run_many, session, step, stepped
+
+ROOT = Path(__file__).parents[2]
+FIELDS = {"title": "t", "duration": 0.1, "expectations": [{"expect": "state", "mode": "TEACH", "at": 0.05}]}
+
+
+def example(name: str, folder: Path, *arguments: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-m", f"examples.{name}", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout
+
+
+def test_a_session_comes_from_fields_a_name_or_a_file(tmp_path: Path) -> None:
+    assert session("hold", seed=9).seed == 9
+    assert session(FIELDS).title == "t"
+    assert session(session(FIELDS), title="u").title == "u"
+    (tmp_path / "s.yaml").write_text("title: x\nduration: 1.0\n")
+    assert session(tmp_path / "s.yaml").title == "x"
+    with pytest.raises(BadInput, match="duration"):
+        session(FIELDS, duration=-1.0)
+    with pytest.raises(BadInput, match="ur6"):
+        session(FIELDS, robot="ur6")
+
+
+def test_a_run_keeps_its_files_where_asked(tmp_path: Path) -> None:
+    assert run(session(FIELDS)).passed
+    assert run(session(FIELDS), tmp_path).passed
+    log = read(tmp_path / "log.mcap")
+    assert len(log.ticks) == 50
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_many_runs_keep_their_order() -> None:
+    outcomes = run_many(session(FIELDS, duration=duration) for duration in (0.1, 0.2))
+    assert [outcome.seconds for outcome in outcomes] == [0.1, 0.2]
+
+
+def test_a_simulation_is_stepped_by_hand() -> None:
+    simulation = stepped(session(FIELDS))
+    step(simulation, 10)
+    assert simulation.tick_count == 10
+    step(simulation, held=[Button.FREE_DRIVE], touches=[Push("flange", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))])
+    assert simulation.snapshot().touches[0][2] == (1.0, 0.0, 0.0)
+    assert simulation.snapshot().decision.phase == "ACTIVATION"
+
+
+def test_an_example_sweeps_the_payload_error(tmp_path: Path) -> None:
+    said = example("payload_error", tmp_path, "2")
+    shares = ast.literal_eval(said.partition(":")[2].strip())
+    assert (shares[-1.5], shares[0.0], shares[1.5]) == (100.0, 0.0, 100.0)
+    assert "<svg" in (tmp_path / "payload_error.svg").read_text()
+    lines = (ROOT / "examples" / "payload_error.py").read_text().splitlines()
+    assert len([line for line in lines if line.strip()]) < 20
+
+
+def test_an_example_pushes_the_freed_arm(tmp_path: Path) -> None:
+    said = example("by_hand", tmp_path)
+    assert said.startswith("FREE_DRIVE: the flange went ")
+    assert float(said.split()[-2]) > 10.0
+
+
+def test_an_example_reads_a_log(tmp_path: Path) -> None:
+    said = example("from_a_log", tmp_path)
+    assert 30.0 < float(said.split()[0]) < 70.0  # it is pushed with 50 N
+    assert np.isfinite(float(said.split()[3]))
