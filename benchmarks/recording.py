@@ -1,4 +1,4 @@
-"""What recording costs: a tick with it over a tick without, what it adds to the simulation's thread, and headless speed with it."""
+"""What recording costs: its share of a tick on the simulation's thread and in all, and headless speed with it."""
 
 import time
 from collections.abc import Callable
