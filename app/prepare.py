@@ -14,12 +14,14 @@ from app.claims import CLAIMS
 from app.expectations import Displacement, Expectation, Value
 from app.library import load_arm, load_tool
 from app.session import Session, Setup, World, bundled, folder
+from pendant.containment import PARTS, TETHER
 from pendant.program import Program as Steps
 from pendant.program import misfit
 from pendant.settings import SettingError, Settings, apply, describe
+from pendant.walls import AnyBorder, problem
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
-from sim.scenario import Scenario
+from sim.scenario import AnyObject, Scenario
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -90,6 +92,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
             raise BadInput(where, "world", world, f"a list of objects, or one of {', '.join(bundled('worlds'))}")
         world = load(folder("worlds") / f"{world}.yaml", World).objects
     check_world(world, where)
+    _check_walls(setup.walls, world, where)
     check_load(setup.payload_true, arm, where, "payload_true")
     check_load(setup.payload_configured, arm, where, "payload_configured")
     return Scenario(
@@ -99,9 +102,19 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
         payload_true=setup.payload_true,
         payload_configured=setup.payload_configured,
         world=world,
+        walls=setup.walls,
         seed=setup.seed,
         mismatch=setup.mismatch,
     )
+
+
+def _check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str) -> None:
+    references = {"base", "world", "flange", "tcp", *(thing.name for thing in world)}
+    if any(wall.name == TETHER for wall in walls):
+        raise BadInput(where, "walls", TETHER, "another name: the tether is set by settings, walls.*")
+    why = problem(tuple(walls), frozenset(PARTS), frozenset(references))
+    if why is not None:
+        raise BadInput(where, "walls", ABSENT, why)
 
 
 def _check_posture(posture: list[float], arm: Arm, where: str) -> None:

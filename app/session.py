@@ -11,6 +11,7 @@ from app.checked import ABSENT, BadInput
 from app.expectations import AnyExpectation
 from app.library import ASSETS
 from pendant.program import Program
+from pendant.walls import AnyBorder
 from sim.scenario import AnyObject, Load, Tool, Vector
 
 
@@ -28,6 +29,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
     world: list[AnyObject] | str = []  # objects, or the name of a bundled world
+    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether (docs/walls.md)
 
 
 class Session(Setup, frozen=True, kw_only=True):

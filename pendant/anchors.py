@@ -47,13 +47,13 @@ class Anchor:
         self.local = local  # the anchor in the wall's reference [m]
         self._wall = wall
         self._clear = 0  # ticks in a row in which the wall was not exceeded
-        self._left = 0  # stepwise: ticks to the end of the redefine period, 0 before the first
+        self._left = 0  # stepwise: ticks to the end of the redefine period, 0 before the first; average: for which a hand counts
         self._touched = False  # stepwise: a user force acted in this redefine period
         self._away = 0.0  # stepwise: way against the residual in it; user: way away from the wall [m]
-        self._track: list[tuple[float, float, float, float, int]] = []  # average: place, way against the residual, touched
+        self._track: list[tuple[float, float, float, float]] = []  # average: place, way against the residual
         self._next = 0
         self._length = averaging_ticks
-        self._sums = [0.0, 0.0, 0.0, 0.0, 0]
+        self._sums = [0.0, 0.0, 0.0, 0.0]
         decide: dict[Policy, Callable[[Stay, bool], bool]] = {
             Policy.STEPWISE: self._stepwise,
             Policy.AVERAGE: self._average,
@@ -68,7 +68,9 @@ class Anchor:
         self._clear = 0 if stay.exceeded else self._clear + 1
         x, y, z = stay.user_force
         least = self._wall.push_back
-        return self._decide(stay, x * x + y * y + z * z >= least * least)
+        # A hand drives a part or holds it; the inertia of a wrong payload that gathers speed looks like a force against it.
+        driving = _dot(stay.user_force, stay.moved) >= 0.0
+        return self._decide(stay, driving and x * x + y * y + z * z >= least * least)
 
     def _stepwise(self, stay: Stay, pushed: bool) -> bool:
         """VW-3: at the end of each redefine period, unless exceeded within the safety period before."""
@@ -87,20 +89,24 @@ class Anchor:
         return False
 
     def _average(self, stay: Stay, pushed: bool) -> bool:
-        """VW-4: the mean of the part's places in the averaging period, while somebody moves it."""
-        entry = (*stay.local, _against(stay), int(pushed))
+        """VW-4: the mean of the part's places in the averaging period, while somebody moves it.
+
+        A hand that guides in steady motion needs hardly any force: it counts for the safety period after it was last felt.
+        """
+        self._left = stay.safety_ticks if pushed else max(self._left - 1, 0)
+        entry = (*stay.local, _against(stay))
         sums = self._sums
         if len(self._track) < self._length:
             self._track.append(entry)
-            for k in range(5):
+            for k in range(4):
                 sums[k] += entry[k]
         else:
             oldest = self._track[self._next]
             self._track[self._next] = entry
             self._next = (self._next + 1) % self._length
-            for k in range(5):
+            for k in range(4):
                 sums[k] += entry[k] - oldest[k]
-        somebody = (sums[4] > 0 or sums[3] >= MOVED) and not stay.in_band
+        somebody = (self._left > 0 or sums[3] >= MOVED) and not stay.in_band
         count = len(self._track)
         if self._clear >= count and (somebody or self._wall.literal):
             self.local = (sums[0] / count, sums[1] / count, sums[2] / count)

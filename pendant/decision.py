@@ -7,6 +7,7 @@ from pendant.contact import Contact
 from pendant.events import Event
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
+from pendant.pose import Vector
 from pendant.program import Move, ProgramState
 
 
@@ -16,6 +17,19 @@ class Remaining(NamedTuple):
     name: str  # "activation", "free-drive", "restart", ...
     ticks: int  # left, counted down to 0
     total: int  # its whole length
+
+
+class WallState(NamedTuple):
+    """A wall or an area in one tick, everything in B; the law pushes the part with its force, pictures draw it (VW-7)."""
+
+    name: str
+    part: str  # "flange", "tcp", "elbow"
+    p: Vector  # of the part [m]
+    distance: float  # to the wall, negative inside [m]
+    outward: Vector  # direction towards the wall, of length 1
+    near: float  # 0 before the feedback band, 1 at the wall and beyond
+    exceeded: bool
+    force: Vector  # on the part [N]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,3 +51,4 @@ class Decision:
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
     tool_on: bool = False  # what the program switches (CD-15)
+    walls: tuple[WallState, ...] = ()  # that hold

@@ -14,6 +14,10 @@ def _no_joints() -> Array:
     return np.zeros(0)
 
 
+def _nowhere() -> Array:
+    return np.zeros(6)
+
+
 GRAVITY = 9.81
 """[m/s²]"""
 
@@ -58,6 +62,10 @@ class Estimate:
     touched: bool = False  # the joints feel a contact, so that nothing is learned
     p_BT: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tool centre point [m]
     signals: tuple[Signal | None, ...] = ()  # for the contact detectors, as pendant.contact_monitor.SOURCES; None: not valid
+    tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
+    elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
+    F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
+    load_mass: float = 0.0  # configured: payload and tool [kg]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -95,4 +103,8 @@ class Estimate:
             self.touched,
             self.p_BT,
             self.signals,
+            self.tcp.copy(),
+            self.elbow.copy(),
+            self.F_joints.copy(),
+            self.load_mass,
         )

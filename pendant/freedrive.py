@@ -5,22 +5,33 @@ A period of N ticks that begins in tick t ends in tick t + N; its remainder is N
 
 from typing import NamedTuple
 
-from pendant.decision import Remaining
+from pendant.barrier import Consequence, Reading
+from pendant.containment import NOBODY, Containment, caught, facts
+from pendant.decision import Remaining, WallState
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
+from pendant.hand import Hand
 from pendant.limits import Monitored
 from pendant.maintain import Maintained
 from pendant.modes import TICK, Mode, Phase
+from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, ticks
-from pendant.table import TABLE
+from pendant.table import TABLE, Effect
+from pendant.walls import Start
 from pendant.watch import Stillness, WrenchMean, joints_ok
 
 ABSENT = ticks(0.2)
 """A signal present at a refusal or a leaving counts again after an absence of so many ticks (FD-7)."""
 
+ASKED_FOR = frozenset({Kind.LEFT_PRESS, Kind.LEFT_RELEASE, Kind.DEACTIVATED})
+"""Leavings that the user asked for: nobody has to be told the way back (FD-22)."""
+
 IN_FREE_DRIVE = frozenset({Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART})
+
+KNOWN = IN_FREE_DRIVE | {Phase.SEQUENCE}
+"""Phases in which the posture at activation is remembered."""
 
 
 class Surroundings(NamedTuple):
@@ -40,28 +51,34 @@ class FreeDrive:
         "_absent",
         "_began",
         "_blocked",
+        "_containment",
         "_cool",
         "_cool_total",
         "_ended",
+        "_hand",
         "_held",
         "_joints",
         "_left",
         "_maintained",
+        "_operation",
+        "_posture",
         "_pressed",
         "_rated",
         "_sequence",
         "_total",
         "_verdict",
         "baseline",
+        "caught",
         "phase",
         "use_wrench",
     )
 
-    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...]) -> None:
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment) -> None:
         """
         Args:
             joints: the names used in events, base to flange.
             rated: torque of each joint [N·m].
+            containment: walls and areas.
         """
         self.phase = Phase.OFF
         self.baseline: tuple[float, ...] = ZEROS
@@ -81,6 +98,11 @@ class FreeDrive:
         self._ended = False
         self._pressed = -1  # ticks since a press that began in free-drive, -1 for the press that entered it
         self._maintained: Maintained | None = None
+        self._containment = containment
+        self._hand: Hand | None = None
+        self._operation: Operation | None = None
+        self._posture: tuple[float, ...] | None = None  # at activation (FD-22)
+        self.caught = False  # a wall keeps the arm where it is (VW-6)
 
     @property
     def memory(self) -> tuple[object, ...]:
@@ -112,6 +134,15 @@ class FreeDrive:
         """What the activation sequence checks, while it runs."""
         return self._sequence.monitored() if self._sequence is not None else ()
 
+    def walls(self, estimate: Estimate) -> tuple[WallState, ...]:
+        """Walls and areas that hold."""
+        return self._containment.states(estimate)
+
+    @property
+    def helping(self) -> bool:
+        """The user's force is amplified: not while a payload may have dropped (FD-19)."""
+        return self.use_wrench and not (self._operation is not None and self._operation.suspect)
+
     def sense(self, held: bool) -> None:
         """Begin a tick: the button, the cool-down, the absence of the signal."""
         self._began = held and not self._held
@@ -125,6 +156,16 @@ class FreeDrive:
 
     def step(self, around: Surroundings, settings: Settings) -> list[Event]:
         """Decide the tick that `sense` began. Returns what happened, in order."""
+        events = self._decide(around, settings)
+        if self._posture is not None and self.phase not in KNOWN:
+            if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
+                joints = way_back(self._posture, tuple(around.estimate.q.tolist()), self._joints)
+                if joints:
+                    events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints}))
+            self._posture = None
+        return events
+
+    def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
         if self.phase in IN_FREE_DRIVE:
             return self._stay(around, settings)
         if self.phase is Phase.SEQUENCE:
@@ -135,6 +176,7 @@ class FreeDrive:
         if self.phase is Phase.ACTIVATION:
             values: Values = {"value": (self._total - self._left + 1) * TICK, "limit": self._total * TICK}
             self.phase = Phase.OFF
+            self._containment.leave()
             events.append(Event(Kind.ACTIVATION_CANCELLED, around.estimate.tick, values))
         return events
 
@@ -153,9 +195,15 @@ class FreeDrive:
         if self.phase is Phase.OFF:
             self.phase = Phase.ACTIVATION
             self._total = self._left = ticks(settings.activation.period)
+            self._containment.begin(Start.ACTIVATION, settings.walls)
             events.append(Event(Kind.ACTIVATION_STARTED, tick, {"period": self._total * TICK}))
         else:
             self._left -= 1
+        if joints_ok(around.estimate):  # a wall may be anchored here already (VW-6)
+            reading = self._containment.step(around.estimate, *NOBODY)
+            if reading is not None:
+                events.append(self._refuse_wall(reading, tick, settings))
+                return events
         if self._left == 0:
             events += self._end_activation(around, settings)
         return events
@@ -168,6 +216,7 @@ class FreeDrive:
         if around.still.count < ticks(settings.static.time):
             values = moving(around.still, self._joints, settings)
             return [self._refuse(Kind.REFUSED_MOVING, tick, settings, values)]
+        self._posture = tuple(around.estimate.q.tolist())
         if not settings.sequence.on:
             return [self._enter(around, settings)]
         self.phase = Phase.SEQUENCE
@@ -175,6 +224,7 @@ class FreeDrive:
         self._sequence = Sequence(seen(around), settings, self._joints, self._rated)
         self.use_wrench = around.wrench_ok
         self.baseline = around.mean.mean()
+        self._containment.begin(Start.SEQUENCE, settings.walls)
         return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(around, settings)]
 
     def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
@@ -197,6 +247,9 @@ class FreeDrive:
         if missing:
             return [self._refuse(Kind.REFUSED_SENSORS, around.estimate.tick, settings, {"sensor": missing})]
         beyond = sequence.check(now)
+        reading = self._containment.step(around.estimate, *NOBODY)
+        if not beyond and reading is not None:
+            return [self._refuse_wall(reading, around.estimate.tick, settings)]
         if not beyond:
             return []
         events = sequence.reasons(beyond, now, settings)
@@ -213,6 +266,10 @@ class FreeDrive:
         self.baseline = around.mean.mean()
         if self.phase is Phase.PERIOD:
             self._begin(Phase.PERIOD, settings.free_drive.period, around, settings)
+        self._hand = Hand(around.estimate, self.baseline)
+        self._operation = Operation(around.estimate, settings, self.baseline, self._joints, self._rated)
+        self._containment.enter(settings.walls)
+        self._containment.step(around.estimate, *NOBODY)
         gain = settings.free_drive.gain if self.use_wrench else 0.0
         return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})
 
@@ -225,6 +282,8 @@ class FreeDrive:
             self.use_wrench = False
             self.baseline = ZEROS
             events.append(Event(Kind.WRENCH_LOST, tick))
+        if self._contain(around, settings, events):
+            return events
         if self.phase is Phase.HELD:
             self._hold(around, settings, events)
         elif self._began:
@@ -238,6 +297,36 @@ class FreeDrive:
         else:
             self._count(around, settings, events)
         return events
+
+    def _contain(self, around: Surroundings, settings: Settings, events: list[Event]) -> bool:
+        """Walls and areas in free-drive (VW-6). Returns whether free-drive is left."""
+        estimate = around.estimate
+        hand = self._hand
+        assert hand is not None
+        hand.step(estimate, self.use_wrench)
+        reading = self._containment.step(estimate, hand.user, hand.payload)
+        before, self.caught = self.caught, caught(reading)
+        if reading is not None and not self.caught:
+            kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
+            events.append(self._leave(kind, estimate.tick, settings, facts(reading)))
+            return True
+        if reading is not None and not before:
+            events.append(Event(Kind.WALL_REACHED, estimate.tick, facts(reading)))
+        assert self._operation is not None
+        ending = self._operation.step(estimate, hand, self.use_wrench, self.caught)
+        if ending is None:
+            return False
+        events.append(self._leave(ending.kind, estimate.tick, settings, ending.values))
+        return True
+
+    def _refuse_wall(self, reading: Reading, tick: int, settings: Settings) -> Event:
+        """The activation shape is exceeded (VW-6, FD-10)."""
+        values = facts(reading)
+        if settings.sequence.protective_stop:
+            metres = float(values["distance"]) / 1000.0
+            values = {"parameter": f"wall {values['wall']}", "part": values["part"], "value": metres, "limit": 0.0, "unit": "m"}
+            return self._refuse(Kind.SEQUENCE_STOPPED, tick, settings, values)
+        return self._refuse(Kind.REFUSED_WALL, tick, settings, values)
 
     def _hold(self, around: Surroundings, settings: Settings, events: list[Event]) -> None:
         """The button was held in the tick before."""
@@ -288,6 +377,10 @@ class FreeDrive:
         self.baseline = ZEROS
         self._sequence = None
         self._maintained = None
+        self._hand = None
+        self._operation = None
+        self.caught = False
+        self._containment.leave()
         self._verdict.waiting = False
         self._blocked = self._held
         if TABLE[kind].cool_down:

@@ -151,7 +151,7 @@ class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=
         max=40.0, stop=True
     )
     joint_torque: Annotated[Operation, _limit(0.01, 2.0, "of rated", "FD-18", "external torque of a joint")] = Operation(
-        max=0.8, stop=True
+        max=0.8, time=0.05, stop=True
     )
     user_force: Annotated[Operation, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = Operation(max=90.0, time=0.1)
 
@@ -232,6 +232,33 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     free_drive_factor: Annotated[float, _number(1.0, 10.0, "", "CD-11", "thresholds in FREE_DRIVE, times")] = 3.0
 
 
+class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
+
+    on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True
+    tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True
+    activation_radius: Annotated[float, _number(0.001, 0.1, "m", "VW-6", "of the tether in the activation sequence")] = 0.005
+    operation_radius: Annotated[float, _number(0.005, 1.0, "m", "VW-6", "of the tether in free-drive; the arm stops at it")] = (
+        0.03
+    )
+    band: Annotated[float, _number(0.0, 0.5, "m", "VW-7", "before the tether, where it resists")] = 0.005
+    averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", "the tether lies round the flange's mean place")] = 0.02
+    safety_period: Annotated[float, _number(0.1, 10.0, "s", "VW-3", "the tether follows a hand that was felt so long ago")] = 1.0
+    push_back: Annotated[float, _number(2.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 2.0
+    leave: Annotated[bool, _switch("VW-6", "beyond the tether, free-drive is left")] = False
+    stop: Annotated[bool, _switch("VW-6", "beyond the tether is STOP")] = False
+
+
+class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Motion that nobody causes, and payloads that drop or change, are STOP."""
+
+    motion: Annotated[bool, _switch("FD-19", "motion in free-drive that nobody causes is STOP")] = True
+    payload: Annotated[bool, _switch("FD-19", "a payload that drops or changes in free-drive is STOP")] = True
+    speed: Annotated[float, _number(0.005, 0.25, "m/s", "FD-19", "of the flange, from which on it counts as moving")] = 0.02
+    time: Annotated[float, _number(0.02, 2.0, "s", "FD-19", "that it may move alone")] = 0.3
+    force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", "a smaller force is nobody's")] = 1.5
+
+
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
@@ -241,6 +268,8 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hold: Hold = Hold()
     button: ButtonUse = ButtonUse()
     limits: Limits = Limits()
+    unexplained: Unexplained = Unexplained()
+    walls: Walls = Walls()
     static: Static = Static()
     joint_control: JointControl = JointControl()
     contact: ContactUse = ContactUse()

@@ -1,9 +1,11 @@
 """The supervisor: robot mode, safety mode, program and free-drive, one tick at a time (FD-1)."""
 
 import math
+from collections.abc import Mapping
 
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import ContactMonitor
+from pendant.containment import Containment
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
@@ -12,11 +14,13 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
+from pendant.pose import Pose
 from pendant.program import Program, ProgramState, Sequencer, misfit
 from pendant.sensing import JointSensors
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, ticks
 from pendant.table import TABLE, Effect
+from pendant.walls import AnyBorder
 from pendant.watch import Stillness, WrenchMean, joints_ok, motion_ok
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
@@ -67,6 +71,8 @@ class Supervisor:
         n_joints: int,
         joints: tuple[str, ...] | None = None,
         rated: tuple[float, ...] | None = None,
+        borders: tuple[AnyBorder, ...] = (),
+        frames: Mapping[str, Pose] | None = None,
     ) -> None:
         """
         Args:
@@ -74,6 +80,8 @@ class Supervisor:
             n_joints: number of joints of the arm, as in every estimate.
             joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
+            borders: walls and areas; `pendant.walls.problem` has found nothing.
+            frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
         """
         self.settings = settings
         self._n = n_joints
@@ -92,7 +100,7 @@ class Supervisor:
         self._sequencer = Sequencer()
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
-        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints)
+        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints, Containment(borders, frames or {}))
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -131,7 +139,7 @@ class Supervisor:
             self.settings, changed = change(self.settings, wanted, self._mode, trying, estimate.tick)
             events += changed
             self._refresh()
-        return self._publish(events)
+        return self._publish(estimate, events)
 
     def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
         button = Button.FREE_DRIVE
@@ -338,7 +346,7 @@ class Supervisor:
     def _law(self) -> Law:
         if self._mode is Mode.FREE_DRIVE or self._free.phase is Phase.SEQUENCE:
             self._freed = True
-            return Law.FREE
+            return Law.HOLD if self._free.caught else Law.FREE
         if self._freed:
             self._freed, self._braking = False, True
         if self._mode is Mode.STOP:
@@ -350,17 +358,19 @@ class Supervisor:
             self._braking = False
         return Law.BRAKE if self._braking else Law.HOLD
 
-    def _publish(self, events: list[Event]) -> Decision:
+    def _publish(self, estimate: Estimate, events: list[Event]) -> Decision:
         """The decision; the last one again when nothing is different."""
         free = self._free
         sequencer = self._sequencer
         law = self._law()
-        key = (self._mode, self._safety, free.phase, law, sequencer.move, free.use_wrench, sequencer.state, sequencer.index)
+        key = (self._mode, self._safety, free.phase, law, sequencer.move, free.helping, sequencer.state, sequencer.index)
         key += (sequencer.tool_on,)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
-        gain = self.settings.free_drive.gain if free.use_wrench and not (trying and not self.settings.sequence.amplified) else 0.0
-        if self._decision is not None and not events and not periods and key == self._key:
+        gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
+        walls = () if free.phase is Phase.OFF else free.walls(estimate)
+        changing = events or periods or walls
+        if self._decision is not None and not changing and key == self._key:
             return self._decision
         active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
         decision = Decision(
@@ -379,7 +389,8 @@ class Supervisor:
             monitored=free.monitored() if trying else (),
             contacts=self._contacts,
             tool_on=sequencer.tool_on,
+            walls=walls,
         )
         self._key = key
-        self._decision = None if events or periods else decision
+        self._decision = None if changing else decision
         return decision

@@ -53,6 +53,10 @@ class Row(NamedTuple):
     cool_down: bool = False  # starts the cool-down (FD-12c)
 
 
+WALL = ("wall", "part", "distance", "way")
+"""Values of an event of a wall: its name, the part, how far out [mm], the way back."""
+
+
 def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
     return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
 
@@ -63,6 +67,10 @@ def _refused(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
 
 def _left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Severity = Severity.NOTICE) -> Row:
     return Row(Effect.LEAVE, severity, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+
+
+def _stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
+    return Row(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
 
 
 def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
@@ -119,6 +127,11 @@ TABLE: dict[Kind, Row] = {
         "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
         ("mass", "force", "way", "parameter"),
     ),
+    Kind.REFUSED_WALL: _refused(
+        "Free-drive refused: {part} beyond {wall}",
+        "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
+        WALL,
+    ),
     Kind.SEQUENCE_STOPPED: Row(
         Effect.PROTECTIVE_STOP,
         Severity.STOP,
@@ -158,6 +171,13 @@ TABLE: dict[Kind, Row] = {
         ("parameter", "part", "value", "limit", "unit"),
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
+    Kind.WALL_REACHED: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "{part} held at {wall}",
+        "{distance:.1f} mm out. Push it back, {way} of the base.",
+        WALL,
+    ),
     Kind.WRENCH_LOST: Row(
         Effect.INFO,
         Severity.WARNING,
@@ -182,6 +202,34 @@ TABLE: dict[Kind, Row] = {
         "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
     ),
     Kind.LEFT_RELEASE: _left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
+    Kind.LEFT_LIMIT: _left(
+        "Free-drive ended: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Guide it more gently.",
+        ("parameter", "part", "value", "limit", "unit"),
+        Severity.WARNING,
+    ),
+    Kind.STOPPED_LIMIT: _stopped(
+        "Stopped: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. See what happened, then reset.",
+        ("parameter", "part", "value", "limit", "unit"),
+    ),
+    Kind.STOPPED_MOTION: _stopped(
+        "Stopped: the arm moved and nobody moved it",
+        "{value:.3f} m/s for {time:.2f} s, limit {limit:.3f} m/s. Check payload and mounting, then reset.",
+        ("value", "limit", "time"),
+    ),
+    Kind.STOPPED_PAYLOAD: _stopped(
+        "Stopped: the payload dropped or changed",
+        "{mass:+.1f} kg, {force:.0f} N at once. Correct the payload, then reset.",
+        ("mass", "force"),
+    ),
+    Kind.WAY_BACK: _info("Back to the posture at activation", "{joints}.", ("joints",)),
+    Kind.LEFT_WALL: _left(
+        "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
+    ),
+    Kind.STOPPED_WALL: _stopped(
+        "Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL
+    ),
     Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     Kind.SENSORS_LOST: Row(
         Effect.LEAVE_TO_STOP,

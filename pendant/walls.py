@@ -120,7 +120,7 @@ class Wall(Border, tag="wall", frozen=True, forbid_unknown_fields=True, kw_only=
     safety_period: Period = 1.0  # stepwise: anchored anew only when not exceeded for so long (VW-3)
     safety_dependence: Dependence | None = None  # a factor on the safety period
     redefine_period: Period | None = None  # stepwise: how often; None: as the safety period
-    averaging_period: Period = 2.0  # average (VW-4)
+    averaging_period: Annotated[float, Meta(ge=0.02, le=10.0)] = 2.0  # average (VW-4) [s]
     step: Annotated[float, Meta(ge=0.002, le=0.5)] = (
         0.02  # user: how far away from the wall the user must move the part [m] (VW-5)
     )

@@ -28,6 +28,7 @@ SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
 
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
+DAMPING = 0.1  # lever arm below which the joints feel no force [m]
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
 
 
@@ -124,7 +125,8 @@ class Estimator:
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         p, R, v_F, self.jacobian = rigid.p, rigid.R, rigid.v_F, rigid.jacobian
         self._estimate_torques(sample, use, rigid.torque)
-        F_user = np.zeros(6)
+        F_user, F_joints = np.zeros(6), np.empty(3)
+        _felt_by_joints(self.jacobian, self.transmission.external, F_joints)
         if sample.acceleration_valid:
             _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
         if sample.wrench_valid:
@@ -167,6 +169,10 @@ class Estimator:
             not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all()),
             self._lost,
             self.transmission.contact,
+            tcp=rigid.tcp,
+            elbow=rigid.elbow,
+            F_joints=F_joints,
+            load_mass=self._load[0],
         )
 
     def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array) -> None:
@@ -286,6 +292,32 @@ def _follow(measured, gains, constants, state, tau_m, tau_J) -> None:
         rest[i] = min(max(rest[i], x - slip_yield[i]), x + slip_yield[i])
         slip = slip_stiffness[i] * (x - rest[i])
         tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i]) + slip
+
+
+@numba.njit(cache=True)
+def _felt_by_joints(jacobian, tau_ext, out) -> None:
+    """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
+    a = np.zeros((3, 3))
+    b = np.zeros(3)
+    for j in range(3):
+        for i in range(tau_ext.size):
+            b[j] += jacobian[j, i] * tau_ext[i]
+            for k in range(3):
+                a[j, k] += jacobian[j, i] * jacobian[k, i]
+        a[j, j] += DAMPING * DAMPING
+    c0 = a[1, 1] * a[2, 2] - a[1, 2] * a[2, 1]
+    c1 = a[1, 2] * a[2, 0] - a[1, 0] * a[2, 2]
+    c2 = a[1, 0] * a[2, 1] - a[1, 1] * a[2, 0]
+    determinant = a[0, 0] * c0 + a[0, 1] * c1 + a[0, 2] * c2
+    d1 = a[0, 2] * a[2, 1] - a[0, 1] * a[2, 2]
+    d2 = a[0, 1] * a[2, 0] - a[0, 0] * a[2, 1]
+    e1 = a[0, 0] * a[2, 2] - a[0, 2] * a[2, 0]
+    e2 = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    f12 = a[0, 2] * a[1, 0] - a[0, 0] * a[1, 2]
+    g = a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
+    out[0] = (c0 * b[0] + d1 * b[1] + g * b[2]) / determinant
+    out[1] = (c1 * b[0] + e1 * b[1] + f12 * b[2]) / determinant
+    out[2] = (c2 * b[0] + d2 * b[1] + e2 * b[2]) / determinant
 
 
 @numba.njit(cache=True)

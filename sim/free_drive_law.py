@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import TICK, Phase
+from pendant.pose import ORIGIN
 from sim.adaptive_friction import AdaptiveFriction
 from sim.dynamics import Dynamics
 
@@ -36,13 +37,23 @@ class FreeDriveLaw:
         share: of the friction estimate that is taken off at most.
     """
 
-    def __init__(self, dynamics: Dynamics, n: int) -> None:
-        self._dynamics = dynamics
+    def __init__(self, dynamics: Dynamics, n: int, elbow: int) -> None:
+        """
+        Args:
+            dynamics: the controller's rigid model.
+            n: number of joints.
+            elbow: index of the joint whose origin is the elbow.
+        """
+        self._dynamics, self._elbow = dynamics, elbow
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
         self._memory = np.zeros((3, n))  # asked and felt, filtered; what is usual
         self._turned = np.eye(3)
+
+    def _moving(self, part: str) -> int:
+        """How many joints move a part."""
+        return self._elbow if part == "elbow" else self._hand.shape[1]
 
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
@@ -64,6 +75,9 @@ class FreeDriveLaw:
             with_friction: take friction off the hand.
         """
         torque = self._dynamics.gravity(estimate.q)
+        for wall in decision.walls:
+            if wall.force != ORIGIN:
+                _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
         hand = self._hand
@@ -76,6 +90,17 @@ class FreeDriveLaw:
             rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
             _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, self.share, torque)
         return torque
+
+
+@numba.njit(cache=True)
+def _push(jacobian, p_BF, p, force, moving, torque) -> None:
+    """Add J^T of a force at the point p of a part that the first `moving` joints move."""
+    x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
+    fx, fy, fz = force
+    tx, ty, tz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
+    for i in range(moving):
+        torque[i] += jacobian[0, i] * fx + jacobian[1, i] * fy + jacobian[2, i] * fz
+        torque[i] += jacobian[3, i] * tx + jacobian[4, i] * ty + jacobian[5, i] * tz
 
 
 @numba.njit(cache=True)

@@ -25,6 +25,7 @@ class NewtonEuler:
         jacobian: (6, n), linear first, axes of B, at the flange origin.
         v_F: flange velocity (6,), linear [m/s], then angular [rad/s].
         origins: of the joints (n, 3) in B [m].
+        tcp, elbow: position [m], then velocity [m/s] of the tool centre point and of the elbow (6,) each.
 
     Args:
         model: Pinocchio's; `set_load` takes its inertias anew.
@@ -41,11 +42,12 @@ class NewtonEuler:
             row[P_AT:R_AT] = placement.translation
             row[R_AT:MASS] = placement.rotation.ravel()
         self._gravity = np.array(model.gravity.linear)
-        self._elbow = elbow
+        self._elbow_at = elbow
         self.torque = np.zeros(n)
         self.p, self.R, self.v_F = np.zeros(3), np.eye(3), np.zeros(6)
         self.jacobian = np.zeros((6, n))
         self.origins = np.zeros((n, 3))
+        self.tcp, self.elbow = np.zeros((2, 6))
 
     def set_load(self) -> None:
         """Take the inertias that Pinocchio's model has now."""
@@ -63,8 +65,8 @@ class NewtonEuler:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tcp: tool centre point in F (3,) [m].
         """
-        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins)
-        return _run(q, motion, self._constants, self._gravity, self._elbow, tcp, outcome)
+        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins, self.tcp, self.elbow)
+        return _run(q, motion, self._constants, self._gravity, self._elbow_at, tcp, outcome)
 
 
 @numba.njit(cache=True)
@@ -109,7 +111,7 @@ def _place(row, behind_p, behind_R, p, R) -> None:
 
 @numba.njit(cache=True)
 def _run(q, motion, constants, gravity, elbow, tcp, outcome):
-    torque, p_F, R_F, jacobian, v_F, origins = outcome
+    torque, p_F, R_F, jacobian, v_F, origins, tip, bend = outcome
     n = q.size
     p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
     behind_p, behind_R = np.zeros(3), np.eye(3)
@@ -129,18 +131,24 @@ def _run(q, motion, constants, gravity, elbow, tcp, outcome):
         linear = _cross(z, arm)
         for k in range(3):
             jacobian[k, i], jacobian[3 + k, i] = linear[k], z[k]
-    v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque)
+    v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque, bend)
     for k in range(6):
         v_F[k] = 0.0
         for i in range(n):
             v_F[k] += jacobian[k, i] * motion[1, i]
-    swing = _cross((v_F[3], v_F[4], v_F[5]), _turn(R_F, tcp))
+    offset = _turn(R_F, tcp)
+    swing = _cross((v_F[3], v_F[4], v_F[5]), offset)
+    for k in range(3):
+        tip[k], tip[3 + k] = p_F[k] + offset[k], v_F[k] + swing[k]
     return _norm((v_F[0] + swing[0], v_F[1] + swing[1], v_F[2] + swing[2])), v_elbow
 
 
 @numba.njit(cache=True)
-def _inverse(p, R, motion, constants, gravity, elbow, torque):
-    """Torques (n,) of a motion, and the speed of the elbow in it. The base accelerates upwards: that is gravity."""
+def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
+    """Torques (n,) of a motion, the speed of the elbow in it, and where the elbow is and how it moves (6,).
+
+    The base accelerates upwards: that is gravity.
+    """
     n = torque.size
     force, moment = np.empty((n, 3)), np.empty((n, 3))
     w, alpha, v = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -156,6 +164,8 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque):
         a = (a[0] + tangential[0] + normal[0], a[1] + tangential[1] + normal[1], a[2] + tangential[2] + normal[2])
         if i == elbow:
             v_elbow = _norm(v)
+            for k in range(3):
+                bend[k], bend[3 + k] = here[k], v[k]
         spin = (R[i, 0, 2] * qd, R[i, 1, 2] * qd, R[i, 2, 2] * qd)
         turn = _cross(w, spin)
         alpha = (

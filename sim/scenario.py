@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
+from pendant.walls import AnyBorder
 from sim.arm import NotNegative, Positive
 
 Vector = Annotated[list[float], Meta(min_length=3, max_length=3)]
@@ -91,5 +92,6 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     world: list[AnyObject] = []
+    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether
     seed: int = 0
     mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)

@@ -93,6 +93,11 @@ class Sensors:
             part = self._groups[name]
             self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
 
+    @property
+    def wrench_offset(self) -> Array:
+        """True offset of the flange sensor (6,) now, for scoring [N, N·m]."""
+        return self._bias[self._groups["force_torque"]].copy()
+
     def fault(self, fault: SensorFault) -> None:
         """Let a sensor drift, get noisier or fail, from now on; a later fault of the same channels replaces the drift."""
         part = self._groups[fault.sensor]

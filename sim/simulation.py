@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import Law
+from pendant.pose import Pose
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from sim import calibration
@@ -17,6 +18,7 @@ from sim.controller import Controller
 from sim.desk import Wishes
 from sim.dynamics import Dynamics
 from sim.estimator import Estimator
+from sim.frames import rotation_from_rpy
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario
@@ -24,6 +26,19 @@ from sim.sensors import Sensors
 from sim.snapshot import Snapshot
 
 Array = NDArray[np.float64]
+
+
+def known_frames(scenario: Scenario) -> dict[str, Pose]:
+    """Poses in B of the world and of its objects, as they are when the robot is set up: what walls can lie in (VW-2)."""
+    R_BW = rotation_from_rpy(scenario.mounting).T
+    frames = {"world": (np.zeros(3), np.eye(3))}
+    frames |= {thing.name: (np.array(thing.position), rotation_from_rpy(thing.rpy)) for thing in scenario.world}
+    poses: dict[str, Pose] = {}
+    for name, (p, R) in frames.items():
+        x, y, z = (R_BW @ p).tolist()
+        a, b, c, d, e, f, g, h, i = (R_BW @ R).ravel().tolist()
+        poses[name] = Pose((x, y, z), (a, b, c, d, e, f, g, h, i))
+    return poses
 
 
 class Simulation:
@@ -50,7 +65,8 @@ class Simulation:
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.contact_sources = ContactSources(self.dynamics, self.tcp, arm.chain.elbow)
-        self.supervisor = Supervisor(settings, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque))
+        joints, rated = tuple(arm.chain.joints), tuple(arm.limits.torque)
+        self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario))
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor

@@ -26,8 +26,17 @@ def estimate(
     v_elbow: float = 0.0,
     move_done: int = 0,
     move_refused: str = "",
+    tcp: list[float] | None = None,
+    elbow: list[float] | None = None,
+    felt: float | list[float] = 0.0,
+    load_mass: float = 0.0,
+    needed: list[float] | None = None,
+    q: list[float] | None = None,
 ) -> Estimate:
-    """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component."""
+    """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
+
+    `needed` is the force that the configured load needs in its motion; what the sensor measures then follows from `force`.
+    """
 
     def vector(value: float | list[float], length: int) -> list[float]:
         return value if isinstance(value, list) else [value] + [0.0] * (length - 1)
@@ -37,7 +46,7 @@ def estimate(
         joints_valid=joints_valid,
         wrench_valid=wrench_valid,
         acceleration_valid=acceleration_valid,
-        q=np.zeros(n),
+        q=np.array(q or [0.0] * n),
         qd=np.array(vector(qd, n)),
         qdd=np.zeros(n),
         theta=np.zeros(n),
@@ -45,7 +54,7 @@ def estimate(
         tau_m=np.zeros(n),
         tau_J=np.array(vector(tau_J, n)),
         tau_ext=np.array(vector(tau_ext, n)),
-        w_sensor=np.zeros(6),
+        w_sensor=np.zeros(6) if needed is None else np.subtract(needed + [0.0] * 3, vector(force, 3) + [0.0] * 3),
         F_user=np.array(vector(force, 3) + vector(torque, 3)),
         a_F=np.add(vector(acceleration, 3), [0.0, 0.0, 9.81]),
         p_BF=np.array(vector(position, 3)),
@@ -55,4 +64,8 @@ def estimate(
         v_elbow=v_elbow,
         move_done=move_done,
         move_refused=move_refused,
+        tcp=np.array(tcp or [0.0] * 6),
+        elbow=np.array(elbow or [0.0] * 6),
+        F_joints=np.array(vector(felt, 3)),
+        load_mass=load_mass,
     )

@@ -116,6 +116,17 @@ def test_average_needs_somebody_in_the_last_period() -> None:
     assert run(Policy.AVERAGE, [*path(0.11, N, payload=DOWN), *[Tick(z=0.11, payload=DOWN)] * N])[1] == list(range(5, 2 * N - 4))
 
 
+def test_average_keeps_following_a_hand_for_the_safety_period() -> None:
+    assert run(Policy.AVERAGE, one(3, user=PUSH), safety=40)[1] == list(range(3, 43))
+
+
+@pytest.mark.parametrize("policy", [Policy.STEPWISE, Policy.AVERAGE])
+def test_a_force_against_the_motion_is_no_hand_that_moves_the_part(policy: Policy) -> None:
+    """A wrong payload that gathers speed looks like that: its inertia is a force against the motion."""
+    assert run(policy, path(-0.3, 3 * N, user=PUSH))[1] == []
+    assert run(policy, [Tick(user=PUSH)] * 3 * N)[1] != []
+
+
 def test_average_waits_for_a_period_without_exceeding() -> None:
     ticks = [Tick(user=PUSH, exceeded=k == 10) for k in range(1, 2 * N + 1)]
     assert run(Policy.AVERAGE, ticks)[1] == [*range(1, 10), *range(N + 10, 2 * N + 1)]

@@ -25,6 +25,21 @@ EXPECTED = {
     "hold.silence": (0.5, 0.1, 1.0, "s", "FD-23", True),
     "button.short_press": (0.4, 0.1, 2.0, "s", "FD-8a", True),
     "button.hold_to_run": (False, None, None, "", "FD-8a", True),
+    "unexplained.motion": (True, None, None, "", "FD-19", True),
+    "unexplained.payload": (True, None, None, "", "FD-19", True),
+    "unexplained.speed": (0.02, 0.005, 0.25, "m/s", "FD-19", True),
+    "unexplained.time": (0.3, 0.02, 2.0, "s", "FD-19", True),
+    "unexplained.force": (1.5, 0.5, 20.0, "N", "FD-19", True),
+    "walls.on": (True, None, None, "", "FD-24", True),
+    "walls.tether": (True, None, None, "", "VW-4", True),
+    "walls.activation_radius": (0.005, 0.001, 0.1, "m", "VW-6", True),
+    "walls.operation_radius": (0.03, 0.005, 1.0, "m", "VW-6", True),
+    "walls.band": (0.005, 0.0, 0.5, "m", "VW-7", True),
+    "walls.averaging": (0.02, 0.02, 10.0, "s", "VW-4", True),
+    "walls.safety_period": (1.0, 0.1, 10.0, "s", "VW-3", True),
+    "walls.push_back": (2.0, 2.0, 50.0, "N", "VW-5", True),
+    "walls.leave": (False, None, None, "", "VW-6", True),
+    "walls.stop": (False, None, None, "", "VW-6", True),
     "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
     "static.time": (0.1, 0.02, 2.0, "s", "static", True),
 }
@@ -60,7 +75,7 @@ LIMITS = {
 }
 """Stage, parameter: default, low, high, unit, requirement."""
 
-TIMES = {"operation.user_force": 0.1}
+TIMES = {"operation.user_force": 0.1, "operation.joint_torque": 0.05}
 STOPS = {"operation.flange_acceleration", "operation.joint_torque"}
 
 for stage, parameters in LIMITS.items():
@@ -209,7 +224,7 @@ def test_the_error_is_one_line_with_name_value_and_what_is_allowed() -> None:
 
 
 def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
-    for bad in ({"walls": {}}, {"hold": {"silence": 3.0}}, {"hold": {"silense": 0.2}}):
+    for bad in ({"wall": {}}, {"hold": {"silence": 3.0}}, {"hold": {"silense": 0.2}}):
         with pytest.raises(msgspec.ValidationError):
             msgspec.convert(bad, Settings)
 

@@ -91,6 +91,8 @@ def test_speeds_of_tool_elbow_and_flange_are_those_of_the_kinematics() -> None:
     assert np.allclose(result.v_F[:3], flange, atol=1e-6)
     assert result.v_tcp == pytest.approx(np.linalg.norm(tcp), abs=1e-6)
     assert result.v_elbow == pytest.approx(np.linalg.norm(elbow), abs=1e-6)
+    assert np.allclose(result.tcp, [*points(BENT)[1], *tcp], atol=1e-6)
+    assert np.allclose(result.elbow, [*points(BENT)[2], *elbow], atol=1e-6)
     spin = joint_frames(UR5E, BENT + step * speed)[-1][:3, :3] @ joint_frames(UR5E, BENT - step * speed)[-1][:3, :3].T
     turn = np.array([spin[2, 1], spin[0, 2], spin[1, 0]]) / (2.0 * step)
     assert np.allclose(result.v_F[3:], turn, atol=1e-6)
@@ -327,3 +329,16 @@ def test_gravity_is_given_in_the_axes_of_the_base(mounting: list[float], down: l
     result = device.update(sample(np.zeros(6), np.zeros(6)), 0, "")
     np.testing.assert_allclose(result.g_B, down, atol=1e-12)
     assert result.copy().g_B is not result.g_B
+
+
+def test_the_joints_tell_a_force_on_the_flange() -> None:
+    """Against the damped least squares of the textbook, and near a push that really acts."""
+    bench = Bench(Scenario(mismatch="nominal", posture=[0.3, -1.2, 1.4, -1.3, -1.2, 0.2]))
+    bench.run(0.5)
+    before = bench.estimate.F_joints
+    bench.run(0.5, push("flange", (20.0, -15.0, 25.0)))
+    seen = bench.estimate
+    jacobian = bench.simulation.estimator.jacobian[:3]
+    expected = np.linalg.solve(jacobian @ jacobian.T + 0.01 * np.eye(3), jacobian @ seen.tau_ext)
+    assert np.allclose(seen.F_joints, expected, atol=1e-9)
+    assert np.linalg.norm(seen.F_joints - before - [20.0, -15.0, 25.0]) < 12.0

@@ -1,10 +1,13 @@
 """Free-drive law: what the hand asks for, what is taken off it, and that nothing drives an arm that nobody touches."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from pendant.decision import WallState
 from pendant.modes import Law, Phase
 from sim.adaptive_friction import AdaptiveFriction
-from sim.frames import rotation
+from sim.frames import joint_frames, rotation
 from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
 from tests.sim.arms import UR5E
 from tests.sim.control import N, decision, dynamics, estimate
@@ -17,7 +20,7 @@ BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
 
 
 def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
-    module = FreeDriveLaw(dynamics(), N)
+    module = FreeDriveLaw(dynamics(), N, UR5E.chain.elbow)
     module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
     return module
 
@@ -67,3 +70,24 @@ def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -
     np.testing.assert_allclose((helped - plain)[full], expected[full])
     none = np.abs(ask) < DEAD_ZONE * BREAKAWAY
     assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
+
+
+def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None:
+    """By virtual work: the torque of a force at a point is the force's share along how each joint moves the point."""
+    force = np.array([3.0, -7.0, 5.0])
+    tcp = np.array([0.02, -0.01, 0.15, 1.0])
+
+    def points(q: np.ndarray) -> dict[str, np.ndarray]:
+        frames = joint_frames(UR5E, q)
+        return {"flange": frames[-1][:3, 3], "tcp": (frames[-1] @ tcp)[:3], "elbow": frames[UR5E.chain.elbow][:3, 3]}
+
+    seen = estimate(q=Q, R_BF=R, p_BF=P)
+    for part, place in points(Q).items():
+        state = WallState("wall", part, tuple(place.tolist()), 0.0, (1.0, 0.0, 0.0), 1.0, False, tuple(force.tolist()))
+        held = replace(decision(Law.FREE), walls=(state, state._replace(force=(0.0, 0.0, 0.0))))
+        torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True) - GRAVITY
+        for i in range(N):
+            step = np.zeros(N)
+            step[i] = 1e-6
+            moved = (points(Q + step)[part] - points(Q - step)[part]) / 2e-6
+            assert abs(torque[i] - force @ moved) < 1e-6, (part, i)

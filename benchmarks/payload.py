@@ -1,0 +1,202 @@
+"""Payload: true and configured each in 0 to 5 kg, over postures and mountings, and nobody touches the arm.
+
+Grids: with the flange sensor, with it invalid, and with activation sequence and walls off. Truth is read for scoring alone.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from app.library import load_arm
+from benchmarks.common import Report, main, spread
+from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
+from pendant.events import Event, Kind
+from pendant.modes import Mode
+from pendant.settings import Settings, apply
+from pendant.table import TABLE, Effect, render
+from sim.changes import SensorFault
+from sim.desk import Wishes
+from sim.dynamics import Dynamics
+from sim.scenario import Load, Scenario
+from sim.simulation import Simulation
+
+ARM = "ur5e"
+GRIDS = ("sensor", "no sensor", "unguarded")
+SETTLE = 1.0  # [s] before the button is pressed
+UNGUARDED = 1.0  # [s] in free-drive that are looked at without sequence and walls
+NEAR = 0.010  # [m] that a right payload's centre is configured wrong by, at most
+SETTINGS = apply(Settings(), {"activation.period": 0.1})
+
+
+class Case(NamedTuple):
+    """One attempt."""
+
+    number: int
+    seed: int
+    mounting: str
+    posture: tuple[float, ...]
+    true: float  # [kg]
+    configured: float  # [kg]
+    grid: str
+
+
+class Result(NamedTuple):
+    """What came of it; ways of the flange [mm]."""
+
+    case: Case
+    entered: bool
+    before: float  # way until refused or entered
+    whole: float  # way in all
+    after_1_s: float
+    reason: str  # text of the refusal
+    said: float  # mass error in the refusal [kg], nan without
+    best: float  # mass error with the sensor's offset, which nothing tells from it [kg]
+    cause: str  # parameter, or kind of the leaving
+
+
+def postures(count: int, rng: np.random.Generator) -> tuple[list[tuple[float, ...]], int]:
+    """Random postures away from singularities, and how many were thrown away."""
+    arm = load_arm(ARM)
+    probe: Dynamics = Simulation(arm, Scenario(mismatch="nominal"), Settings()).dynamics
+    found: list[tuple[float, ...]] = []
+    redrawn = 0
+    while len(found) < count:
+        q = rng.uniform(-2.6, 2.6, arm.n)
+        if np.linalg.svd(probe.update(q)[2], compute_uv=False)[-1] > SMALLEST_SINGULAR:
+            found.append(tuple(q.tolist()))
+        else:
+            redrawn += 1
+    return found, redrawn
+
+
+def draw(options_seed: int, count: int, grid: str) -> tuple[list[Case], int]:
+    """`count` postures x 4 mountings; a third with the right payload, the others anything."""
+    rng = np.random.default_rng([options_seed, GRIDS.index(grid) % 2])
+    found, redrawn = postures(count, rng)
+    cases: list[Case] = []
+    for posture in found:
+        for mounting in MOUNTINGS:
+            true, configured = rng.uniform(0.0, 5.0, 2)
+            number = len(cases)
+            if number % 3 == 0:
+                configured = true
+            cases.append(Case(number, options_seed, mounting, posture, float(true), float(configured), grid))
+    return cases, redrawn
+
+
+def simulation(case: Case, settings: Settings = SETTINGS) -> Simulation:
+    """The arm before the attempt, after it has settled."""
+    rng = np.random.default_rng([case.seed, case.number, 7])
+    centre = rng.uniform([-0.03, -0.03, 0.0], [0.03, 0.03, 0.1])
+    shift = rng.normal(size=3)
+    shift *= NEAR * rng.uniform() / np.linalg.norm(shift)
+    device = Simulation(
+        load_arm(ARM),
+        Scenario(
+            mounting=list(MOUNTINGS[case.mounting]),
+            posture=list(case.posture),
+            payload_true=Load(mass=case.true, com=centre.tolist()),
+            payload_configured=Load(mass=case.configured, com=(centre + shift).tolist()),
+            seed=case.seed + case.number,
+        ),
+        settings,
+    )
+    changes = (SensorFault(sensor="force_torque", outage=True),) if case.grid == "no sensor" else ()
+    device.tick(Wishes(IDLE.inputs, (), changes))
+    for _ in range(round(500 * SETTLE)):
+        device.tick(IDLE)
+    return device
+
+
+def told(device: Simulation, case: Case) -> float:
+    """The mass error that the sensor could best tell: the true one and what its offset weighs along gravity [kg]."""
+    R_BF = device.snapshot().estimate.R_BF
+    offset = R_BF @ device.sensors.wrench_offset[:3]
+    return case.true - case.configured + float(offset @ device.dynamics.gravity_B) / -(9.81**2)
+
+
+def measure_case(case: Case) -> Result:
+    """One attempt, from pressing the button to the end of the free-drive period."""
+    unguarded = case.grid == "unguarded"
+    settings = apply(SETTINGS, {"sequence.on": False, "walls.on": False}) if unguarded else SETTINGS
+    device = simulation(case, settings)
+    start = flange(device)
+    events: list[Event] = []
+    before = whole = after = 0.0
+    entered = over = False
+    best = math.nan
+    since = 0
+    seconds = settings.activation.period + (UNGUARDED if unguarded else settings.sequence.period + settings.free_drive.period)
+    for tick in range(round(500 * seconds) + 100):
+        decision = device.tick(RELEASE if entered else HOLD)
+        events += decision.events
+        whole = max(whole, float(np.linalg.norm(flange(device) - start)))
+        if decision.mode is Mode.FREE_DRIVE and not entered:
+            entered, since = True, tick
+        over = over or any(TABLE[event.kind].effect is Effect.NO_ENTRY for event in decision.events)
+        if not entered:
+            before = whole
+        if any(event.kind is Kind.SEQUENCE_STARTED for event in decision.events):
+            best = told(device, case)
+        if over and not entered and tick > 500:
+            break
+        if entered and tick - since == 500:
+            after = whole
+    refusal = next((event for event in events if TABLE[event.kind].effect is Effect.NO_ENTRY), None)
+    ends = [event.kind.value for event in events if TABLE[event.kind].effect in (Effect.LEAVE, Effect.LEAVE_TO_STOP)]
+    reason = " ".join(render(refusal)).lower() if refusal is not None else ""
+    said = float(refusal.values.get("mass", math.nan)) if refusal is not None else math.nan
+    why = str(refusal.values.get("parameter", refusal.kind.value)) if refusal is not None else ", ".join(ends)
+    return Result(case, entered, before, whole, after, reason, said, best, why)
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    count = 100 if report.options.full else 9
+    for grid in GRIDS:
+        cases, redrawn = draw(report.options.seed, count if grid != "unguarded" else max(count // 3, 5), grid)
+        results = spread(measure_case, cases)
+        (score_unguarded if grid == "unguarded" else score)(report, grid, results)
+        report.notes.append(f"{grid}: {redrawn} postures near a singularity drawn again for {count}")
+
+
+def score_unguarded(report: Report, grid: str, results: list[Result]) -> None:
+    """What an arm does that nobody checks and nothing holds."""
+    heavy = [r.whole for r in results if abs(r.case.true - r.case.configured) >= 2.0]
+    report.row(f"{grid}, {len(heavy)} of 2 kg or more: way in the first second, median", float(np.median(heavy)), "mm")
+    report.row(f"{grid}, {len(heavy)} of 2 kg or more: way in the first second, largest", max(heavy), "mm")
+
+
+def score(report: Report, grid: str, results: list[Result]) -> None:
+    """The bars of the grid with the checks on."""
+    n = len(results)
+    refused = [r for r in results if not r.entered]
+    report.row(f"{grid}, {n} cases: way until refused or entered, largest", max(r.before for r in results), "mm", at_most=10.0)
+    p95 = float(np.percentile([r.whole for r in refused], 95)) if refused else 0.0
+    report.row(f"{grid}, {len(refused)} refused: way, 95th percentile", p95, "mm", at_most=3.0)
+    report.row(f"{grid}: way of the flange in the whole period, largest", max(r.whole for r in results), "mm", at_most=30.0)
+    least, share = (1.0, 0.99) if grid == "sensor" else (2.0, 0.95)
+    wrong = [r for r in results if abs(r.case.true - r.case.configured) >= least]
+    found = sum(not r.entered for r in wrong) / len(wrong)
+    report.row(f"{grid}: {len(wrong)} wrong by {least:g} kg or more, refused", found, "", at_least=share)
+    right = [r for r in results if r.case.true == r.case.configured]
+    report.row(f"{grid}: {len(right)} right payloads, accepted", sum(r.entered for r in right) / len(right), "", at_least=0.99)
+    unseen = [r for r in wrong if r.entered]
+    for r in unseen[:5]:
+        error = r.case.true - r.case.configured
+        angles = ", ".join(f"{angle:.2f}" for angle in r.case.posture)
+        report.notes.append(f"{grid}: not seen: {error:+.1f} kg, {r.case.mounting}, posture {angles}; flange {r.whole:.1f} mm")
+    report.notes.append(f"{grid}: {len(unseen)} errors of {least:g} kg or more not seen")
+    for r in [r for r in right if not r.entered][:5]:
+        report.notes.append(f"{grid}: right payload refused: {r.cause}, case {r.case.number}, {r.case.mounting}")
+    named = [r for r in wrong if not r.entered]
+    if grid == "sensor":
+        payload = sum("payload" in r.reason and ("push" in r.reason or "let go" in r.reason) for r in named) / max(len(named), 1)
+        report.row(f"{grid}: reason names payload or push", payload, "", at_least=0.99)
+        off = [abs(r.said - r.best) for r in named if not math.isnan(r.said)]
+        report.row(f"{grid}: mass said, off what the sensor tells, largest", max(off, default=math.nan), "kg", at_most=0.3)
+
+
+if __name__ == "__main__":
+    main("payload", measure)

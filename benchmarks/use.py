@@ -1,0 +1,125 @@
+"""Use: a hand guides the flange with 15 to 40 N right after entry; how far it comes in 3 s, and whether anything gets in its way.
+
+The hand is a spring to a point that walks away along a straight line, its force capped. Truth is read for scoring alone.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.common import Report, main, spread
+from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
+from benchmarks.payload import SETTINGS, Case, draw, simulation
+from pendant.events import Event, Kind
+from pendant.modes import Mode
+from pendant.settings import Settings, apply
+from pendant.table import LEAVING, TABLE
+from sim.desk import Wishes
+from sim.simulation import Simulation
+from sim.touch import Pull
+
+WAY = 0.3  # [m] free of singularities and limits, as a user would choose it
+SECONDS = 3.0
+
+
+class Push(NamedTuple):
+    """One guided push."""
+
+    case: Case
+    force: float  # [N]
+    pace: float  # of the hand [m/s]
+    walls: bool
+    sensor: bool
+
+
+class Result(NamedTuple):
+    """What came of it."""
+
+    push: Push
+    entered: bool
+    way: float  # of the flange [mm]
+    left: str  # kind of an involuntary leaving
+    caught: int  # times that a wall held the arm
+
+
+def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
+    """A direction in W in which the flange can go for `WAY` by the model's kinematics; None when 20 draws found none."""
+    dynamics, q0 = device.dynamics, device.plant.q.copy()
+    limits = np.array(device.arm.limits.position)
+    base = device.plant.data.xmat[device.plant.model.body("foot").id].reshape(3, 3)
+    steps = 30
+    for _ in range(20):
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        q = q0.copy()
+        for _ in range(steps):
+            jacobian = dynamics.update(q)[2]
+            if np.linalg.svd(jacobian, compute_uv=False)[-1] < SMALLEST_SINGULAR or np.any(np.abs(q) > limits - 0.2):
+                break
+            q = q + np.linalg.pinv(jacobian[:3]) @ direction * WAY / steps
+        else:
+            return base @ direction
+    return None
+
+
+def measure_push(push: Push) -> Result:
+    """Enter, then guide at once."""
+    rng = np.random.default_rng([push.case.seed, push.case.number, 9])
+    settings: Settings = apply(SETTINGS, {"walls.on": push.walls})
+    device = simulation(push.case, settings)
+    direction = free_way(device, rng)
+    if direction is None:
+        return Result(push, False, 0.0, "no way", 0)
+    for _ in range(1000):
+        if device.tick(HOLD).mode is Mode.FREE_DRIVE:
+            break
+    entered = device.tick(RELEASE).mode is Mode.FREE_DRIVE
+    start = flange(device)
+    target, pace = start / 1000.0, 0.0
+    events: list[Event] = []
+    for _ in range(round(500 * SECONDS)):
+        pace = min(pace + 0.002 * 1.0, push.pace)  # a quarter of a second to get going
+        target = target + 0.002 * pace * direction
+        pull = Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), push.force)
+        events += device.tick(Wishes(IDLE.inputs, (pull,), ())).events
+    way = float(np.linalg.norm(flange(device) - start))
+    left = [event.kind.value for event in events if TABLE[event.kind].effect in LEAVING]
+    return Result(push, entered, way, ", ".join(left), sum(event.kind is Kind.WALL_REACHED for event in events))
+
+
+def pushes(report: Report, sensor: bool, walls: bool, count: int) -> list[Push]:
+    """Right payloads of 0 to 5 kg, forces and paces at random."""
+    cases, _ = draw(report.options.seed + 500, -(-count // len(MOUNTINGS)), "sensor" if sensor else "no sensor")
+    rng = np.random.default_rng([report.options.seed, 5])
+    made: list[Push] = []
+    for case in cases[:count]:
+        mass = float(rng.uniform(0.0, 5.0))
+        force, pace = float(rng.uniform(15.0, 40.0)), float(rng.uniform(0.12, 0.3))
+        made.append(Push(case._replace(true=mass, configured=mass), force, pace, walls, sensor))
+    return made
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    count = 500 if report.options.full else 32
+    plans = ((True, True, count), (True, False, count // 2))
+    for sensor, walls, number in plans:
+        results = [r for r in spread(measure_push, pushes(report, sensor, walls, number)) if r.left != "no way"]
+        label = f"walls {'on' if walls else 'off'}"
+        entered = [r for r in results if r.entered]
+        report.row(f"{label}: {len(results)} pushes, entered", len(entered) / len(results), "")
+        far = sum(r.way >= 200.0 for r in entered) / len(entered)
+        report.row(f"{label}: {len(entered)} pushes, 200 mm or more in 3 s", far, "", at_least=0.99 if walls else None)
+        stayed = sum(not r.left for r in entered) / len(entered)
+        report.row(f"{label}: no involuntary leaving", stayed, "", at_least=0.99 if walls else None)
+        report.row(f"{label}: pushes in which a wall held the arm", sum(r.caught > 0 for r in entered), "")
+        short = sorted((r for r in entered if r.way < 200.0 or r.left), key=lambda r: r.way)
+        for r in short[:6]:
+            report.notes.append(
+                f"{label}: {r.way:.0f} mm with {r.push.force:.0f} N at {r.push.pace:.2f} m/s, {r.push.case.true:.1f} kg, "
+                f"{r.push.case.mounting}, case {r.push.case.number}: held {r.caught} times, {r.left or 'stayed'}"
+            )
+
+
+if __name__ == "__main__":
+    main("use", measure)

@@ -1,0 +1,201 @@
+"""What ends free-drive while it lasts: limits (FD-18), motion that nobody causes, a payload that drops (FD-19).
+
+A payload that is lost leaves the sensor with what it weighed: F_user is then a constant share of what the configured load needs
+in the arm's own, violent acceleration. A hand neither comes in two ticks nor follows that acceleration; one that lets go ends
+at no force at all.
+"""
+
+import math
+from typing import NamedTuple
+
+from pendant.estimate import GRAVITY, Estimate
+from pendant.events import Kind, Values
+from pendant.hand import Hand
+from pendant.modes import TICK
+from pendant.parameters import Monitor, Reference, View, reference
+from pendant.pose import Vector, turned_back
+from pendant.residual import Split
+from pendant.settings import Settings, ticks
+
+STEP = 2
+"""A payload comes or goes within so many ticks."""
+
+CERTAIN = 4
+"""Ticks for which the step must last, before it is called one: no vibration does; the additional torque goes at once."""
+
+LEAST = 4.0
+"""Smallest step that is looked at [N]."""
+
+STAYS = 0.6  # of the step is what the new level must be, and the reverse: a hand that lets go ends at none
+RISES = 1.35  # of the level after the step is the most that may follow: a hand's force still rises
+ACROSS = 0.35  # of a step may be across it: the share that is not explained
+SLACK = 2.0  # [N] for the sensor's noise
+LOST_AT_MOST = 1.15  # of the configured load
+
+
+class Ending(NamedTuple):
+    """Why free-drive ends."""
+
+    kind: Kind
+    values: Values
+
+
+class Operation:
+    """Watches one free-drive, from entry to leaving."""
+
+    __slots__ = (
+        "_allowed",
+        "_alone",
+        "_joints",
+        "_level",
+        "_monitor",
+        "_motion",
+        "_offset",
+        "_on",
+        "_rated",
+        "_shares",
+        "_since",
+        "_stepped",
+        "suspect",
+    )
+
+    def __init__(
+        self,
+        estimate: Estimate,
+        settings: Settings,
+        baseline: tuple[float, ...],
+        joints: tuple[str, ...],
+        rated: tuple[float, ...],
+    ) -> None:
+        """
+        Args:
+            estimate: of the tick of entry; its joint values are finite.
+            settings: as they are now; they stay so to the end.
+            baseline: mean of F_user before entry, axes of B [N, N·m]; zeros without a sensor.
+            joints: names, base to flange.
+            rated: torque of each joint [N·m].
+        """
+        self._monitor = Monitor(settings.limits.operation)
+        self._joints, self._rated = joints, rated
+        self._since: Reference = reference(estimate, False)
+        self._offset = turned_back(_matrix(estimate), (baseline[0], baseline[1], baseline[2]))
+        self._on = settings.unexplained
+        self._allowed = ticks(self._on.time)
+        self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
+        self._motion = 0.0  # speed then [m/s]
+        self._shares = [0.0] * (STEP + 1)  # of the load that the sensor misses, in the last ticks
+        self._level = 0.0  # of the share after a step
+        self._stepped = 0  # ticks since a step, 0: none
+        self.suspect = False  # a payload may have dropped: the additional torque goes (FD-19)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        own = (
+            self._alone,
+            self._motion,
+            tuple(self._shares),
+            self._level,
+            self._stepped,
+            self.suspect,
+            self._offset,
+            self._since,
+        )
+        return (*own, self._monitor.memory)
+
+    def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
+        """One tick; its joint values are finite.
+
+        Args:
+            estimate: of this tick.
+            hand: after its step.
+            use_wrench: the flange sensor is valid.
+            driven: a wall or another device moves the arm, or holds it.
+        """
+        if self._on.payload and use_wrench:
+            lost = self._lost(estimate)
+            if lost is not None:
+                return lost
+        else:
+            self._stepped, self.suspect = 0, False
+        change = hand.change
+        size = math.sqrt(change[0] * change[0] + change[1] * change[1] + change[2] * change[2])
+        parts = Split(0.0, 0.0, size, 0.0) if use_wrench else None
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0))
+        if beyond:
+            gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
+            return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
+        return self._moved(estimate, hand, driven) if self._on.motion else None
+
+    def _moved(self, estimate: Estimate, hand: Hand, driven: bool) -> Ending | None:
+        """Motion that nobody causes."""
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        self._motion = math.sqrt(vx * vx + vy * vy + vz * vz)
+        x, y, z = hand.user
+        least = self._on.force
+        if self._motion < self._on.speed or driven or x * x + y * y + z * z >= least * least:
+            self._alone = 0
+            return None
+        self._alone += 1
+        if self._alone <= self._allowed:
+            return None
+        values: Values = {"value": self._motion, "limit": self._on.speed, "time": self._alone * TICK}
+        return Ending(Kind.STOPPED_MOTION, values)
+
+    def _lost(self, estimate: Estimate) -> Ending | None:
+        """A payload-like step."""
+        mass = estimate.load_mass
+        weight = mass * GRAVITY
+        if weight < LEAST:
+            return None
+        turn = _matrix(estimate)
+        fx, fy, fz = estimate.F_user.tolist()[:3]
+        rest = turned_back(turn, (fx, fy, fz))
+        wx, wy, wz = estimate.w_sensor.tolist()[:3]
+        needed = (rest[0] + wx, rest[1] + wy, rest[2] + wz)  # what the configured load needs in this motion
+        offset = self._offset
+        missing = (rest[0] - offset[0], rest[1] - offset[1], rest[2] - offset[2])
+        square = needed[0] ** 2 + needed[1] ** 2 + needed[2] ** 2
+        share = (missing[0] * needed[0] + missing[1] * needed[1] + missing[2] * needed[2]) / max(square, 1e-9)
+        shares = self._shares
+        before = shares[0]
+        shares[:-1] = shares[1:]
+        shares[-1] = share
+        across = _size((missing[0] - share * needed[0], missing[1] - share * needed[1], missing[2] - share * needed[2]))
+        if not self._stepped:
+            jump = share - before
+            began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
+            began = began and abs(share) >= STAYS * abs(jump)
+            self._stepped = int(began and self._like(share, across, square))
+        elif self._stepped == 1:  # the sensor's mean over the tick in which it happened may have held a part of it
+            self._level = share
+            self._stepped = 2 if self._like(share, across, square) and abs(share) * weight >= LEAST else 0
+        elif self._like(share, across, square) and STAYS <= share / self._level <= RISES:
+            self._stepped += 1
+        else:
+            self._stepped = 0
+        self.suspect = self._stepped > 0
+        if self._stepped <= CERTAIN:
+            return None
+        return Ending(Kind.STOPPED_PAYLOAD, {"mass": -share * mass, "force": abs(share) * weight})
+
+    @staticmethod
+    def _like(share: float, across: float, square: float) -> bool:
+        """What is missing is a share of the load."""
+        return abs(share) <= LOST_AT_MOST and across <= ACROSS * abs(share) * math.sqrt(square) + SLACK
+
+
+def way_back(then: tuple[float, ...], now: tuple[float, ...], joints: tuple[str, ...]) -> str:
+    """Which joints to move which way by how much to come back to a posture, largest first; empty when it is near (FD-22)."""
+    turns = [(math.degrees(a - b), joint) for a, b, joint in zip(then, now, joints, strict=True)]
+    told = sorted((turn for turn in turns if abs(turn[0]) >= 0.5), key=lambda turn: -abs(turn[0]))
+    return ", ".join(f"{joint} {angle:+.1f}°" for angle, joint in told[:4])
+
+
+def _matrix(estimate: Estimate) -> tuple[float, float, float, float, float, float, float, float, float]:
+    (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
+    return a, b, c, d, e, f, g, h, i
+
+
+def _size(a: Vector) -> float:
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])

@@ -1,0 +1,284 @@
+"""Walls in the running robot: the tether and others, from the activation period to leaving (VW-2, VW-6, VW-8, VW-9, FD-24)."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pendant.containment import NOBODY, Containment, facts, tether
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.inputs import NOTHING, Button, Inputs
+from pendant.modes import Law, Mode, Phase
+from pendant.pose import HERE, Pose
+from pendant.settings import Settings, Walls, apply
+from pendant.shapes import Box, HalfSpace, Sphere
+from pendant.supervisor import Supervisor
+from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
+from tests.pendant.estimates import estimate
+
+HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
+LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
+FLOOR = Area(name="floor", shape=HalfSpace(normal=(0.0, 0.0, -1.0)), position=(0.0, 0.0, -0.1))
+LOOSE = {"limits.activation.flange_displacement.on": False}
+
+
+class Bench:
+    """A supervisor with borders, stepped by hand."""
+
+    def __init__(self, *borders: AnyBorder, frames: dict[str, Pose] | None = None, **changes: float | bool) -> None:
+        names = {name.replace("__", "."): value for name, value in changes.items()} | LOOSE
+        self.supervisor = Supervisor(apply(Settings(), names), 6, borders=borders, frames=frames)
+        self.tick = -1
+        self.events: list[Event] = []
+
+    def step(self, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:
+        self.tick += 1
+        value = value or estimate()
+        value.tick = self.tick
+        decision = self.supervisor.step(value, inputs)
+        self.events += decision.events
+        return decision
+
+    def run(self, count: int, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:
+        for _ in range(count - 1):
+            self.step(inputs, value)
+        return self.step(inputs, value)
+
+    def trying(self, value: Estimate | None = None) -> "Bench":
+        """In the sequence."""
+        self.run(60, NOTHING, value)
+        assert self.run(501, HOLD, value).phase is Phase.SEQUENCE
+        return self
+
+    def entered(self, value: Estimate | None = None) -> "Bench":
+        self.trying(value)
+        assert self.run(501, LET_GO, value).mode is Mode.FREE_DRIVE
+        return self
+
+    def kinds(self) -> list[Kind]:
+        return [event.kind for event in self.events]
+
+
+def at(x: float, y: float = 0.0, z: float = 0.0, **values: Any) -> Estimate:
+    return estimate(position=[x, y, z], **values)
+
+
+def test_the_tether_has_the_sizes_of_the_settings() -> None:
+    wall = tether(Walls(operation_radius=0.05, activation_radius=0.01, band=0.2, push_back=6.0, averaging=0.1, safety_period=2.0))
+    assert wall.shape == Sphere(radius=0.05)
+    assert wall.activation_size == pytest.approx(0.2)
+    assert (wall.band, wall.push_back, wall.averaging_period, wall.safety_period) == (pytest.approx(0.04), 6.0, 0.1, 2.0)
+    assert wall.policy is Policy.AVERAGE
+    assert tether(Walls(operation_radius=1.0, activation_radius=0.001)).activation_size == 0.05
+    assert [tether(Walls(leave=leave, stop=stop)).reaction for leave, stop in ((False, False), (True, False), (True, True))] == [
+        Reaction.STAY, Reaction.LEAVE, Reaction.STOP,
+    ]  # fmt: skip
+    assert problem((tether(Walls()),), frozenset({"flange"}), frozenset({"base"})) is None
+
+
+def test_beyond_the_activation_shape_entry_is_refused_with_the_way_back() -> None:
+    bench = Bench().trying()
+    assert bench.step(LET_GO, at(0.0049)).phase is Phase.SEQUENCE
+    decision = bench.step(NOTHING, at(0.0, 0.0, -0.0062))
+    assert (decision.mode, decision.phase, decision.law) == (Mode.TEACH, Phase.OFF, Law.HOLD)
+    assert bench.events[-1] == Event(
+        Kind.REFUSED_WALL, bench.tick, {"wall": "tether", "part": "flange", "distance": pytest.approx(1.2), "way": "+z"}
+    )
+    assert decision.walls == ()
+
+
+def test_a_limit_comes_before_a_wall_and_a_protective_stop_says_the_wall() -> None:
+    bench = Bench().trying()
+    bench.step(LET_GO, at(0.02, speed=0.5))
+    assert Kind.REFUSED_WALL not in bench.kinds()
+    assert bench.kinds()[-1] is Kind.REFUSED_LIMIT
+    bench = Bench(sequence__protective_stop=True).trying()
+    assert bench.step(LET_GO, at(0.01)).mode is Mode.STOP
+    assert bench.events[-1].values == {
+        "parameter": "wall tether", "part": "flange", "value": pytest.approx(0.005), "limit": 0.0, "unit": "m",
+    }  # fmt: skip
+
+
+def test_no_wall_resists_in_the_sequence() -> None:
+    bench = Bench().trying()
+    (wall,) = bench.step(LET_GO, at(0.004, speed=0.01)).walls
+    assert (wall.name, wall.part, wall.p, wall.force) == ("tether", "flange", (0.004, 0.0, 0.0), (0.0, 0.0, 0.0))
+    assert wall.distance == pytest.approx(-0.001)
+
+
+def test_a_shape_anchored_with_the_activation_period_refuses_in_it() -> None:
+    """VW-6, the option."""
+    early = Wall(name="early", shape=Sphere(radius=0.05), activation_size=0.1, anchored_at=Start.ACTIVATION)
+    bench = Bench(early)
+    bench.run(60)
+    bench.run(100, HOLD)
+    assert bench.step(HOLD, at(0.006)).phase is Phase.OFF
+    assert bench.events[-1].kind is Kind.REFUSED_WALL
+    assert bench.events[-1].values["wall"] == "early"
+
+
+def test_letting_go_early_forgets_the_walls() -> None:
+    early = Wall(name="early", shape=Sphere(radius=0.05), activation_size=0.1, anchored_at=Start.ACTIVATION)
+    bench = Bench(early)
+    bench.run(60)
+    bench.run(100, HOLD)
+    bench.step(LET_GO)
+    bench.run(110)
+    assert bench.run(100, HOLD, at(1.0)).phase is Phase.ACTIVATION
+
+
+def test_invalid_joints_in_the_activation_period_are_left_to_its_end() -> None:
+    bench = Bench(Wall(name="early", shape=Sphere(radius=0.05), anchored_at=Start.ACTIVATION))
+    bench.run(60)
+    bench.run(10, HOLD)
+    assert bench.step(HOLD, estimate(joints_valid=False)).phase is Phase.ACTIVATION
+
+
+def test_the_arm_stops_at_the_wall_and_goes_free_when_pushed_back() -> None:
+    bench = Bench().entered()
+    decision = bench.step(NOTHING, at(0.028, speed=0.1))
+    (wall,) = decision.walls
+    assert decision.law is Law.FREE
+    assert wall.force == (pytest.approx(-0.6 * 200.0 * 0.1), 0.0, 0.0)
+    decision = bench.step(NOTHING, at(0.0305, speed=0.1))
+    assert (decision.mode, decision.law) == (Mode.FREE_DRIVE, Law.HOLD)
+    assert bench.events[-1] == Event(
+        Kind.WALL_REACHED, bench.tick, {"wall": "tether", "part": "flange", "distance": pytest.approx(0.5), "way": "-x"}
+    )
+    bench.run(20, NOTHING, at(0.0305))
+    assert bench.kinds().count(Kind.WALL_REACHED) == 1
+    assert bench.run(60, NOTHING, at(0.0305, force=20.0)).law is Law.HOLD
+    assert bench.run(60, NOTHING, at(0.0305, force=-20.0)).law is Law.FREE
+    assert bench.run(150, NOTHING, at(0.0305)).law is Law.HOLD  # let go, still outside
+
+
+def test_the_tether_follows_a_hand_and_no_payload() -> None:
+    def walk(force: list[float]) -> Decision:
+        bench = Bench().entered()
+        bench.run(50, NOTHING, at(0.0, force=force))
+        decision = bench.step()
+        for k in range(1, 500):
+            decision = bench.step(NOTHING, at(0.0, 0.0, -0.0002 * k, force=force))
+            if decision.law is not Law.FREE:
+                break
+        return decision
+
+    assert walk([10.0, 0.0, -15.0]).law is Law.FREE
+    assert walk([0.0, 0.0, 0.0]).law is Law.HOLD
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind", "mode"),
+    [({"walls__leave": True}, Kind.LEFT_WALL, Mode.TEACH), ({"walls__stop": True}, Kind.STOPPED_WALL, Mode.STOP)],
+)
+def test_the_tether_leaves_or_stops_instead(changes: dict[str, bool], kind: Kind, mode: Mode) -> None:
+    bench = Bench(**changes).entered()
+    decision = bench.step(NOTHING, at(0.0, 0.04))
+    assert (decision.mode, decision.phase) == (mode, Phase.OFF)
+    assert decision.law is not Law.FREE
+    assert bench.events[-1].kind is kind
+    assert bench.events[-1].values == {"wall": "tether", "part": "flange", "distance": pytest.approx(10.0), "way": "-y"}
+
+
+def test_walls_off_means_none() -> None:
+    """FD-24; and the tether alone can be off, which leaves the others."""
+    bench = Bench(FLOOR, walls__on=False).trying()
+    assert bench.step(LET_GO, at(0.009)).walls == ()
+    assert bench.run(500).mode is Mode.FREE_DRIVE
+    assert bench.step(NOTHING, at(0.5)).law is Law.FREE
+    bench = Bench(FLOOR, walls__tether=False).entered()
+    assert [wall.name for wall in bench.step().walls] == ["floor"]
+    assert bench.step(NOTHING, at(0.5)).law is Law.FREE
+    assert bench.step(NOTHING, at(0.5, 0.0, -0.11)).law is Law.HOLD
+
+
+def test_parts_and_references_are_where_the_estimate_says() -> None:
+    """VW-2: a wall round the elbow that moves with the flange's frame, areas for the tcp in the world and at an object."""
+    quarter = (0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+    seen = at(0.1, tcp=[0.1, 0.2, 0.3, 0.0, 0.0, 0.0], elbow=[0.4, 0.0, 0.5, 0.0, 0.0, 0.0])
+    borders = (
+        Wall(name="elbow", part="elbow", reference="flange", shape=Box(size=(0.2, 0.2, 0.2)), activation_size=1.0),
+        Area(name="world", part="tcp", reference="world", shape=HalfSpace(normal=(1.0, 0.0, 0.0)), position=(0.35, 0.0, 0.0)),
+        Area(name="cart", part="tcp", reference="cart", shape=Sphere(radius=0.1)),
+        Wall(name="tip", part="flange", reference="tcp", shape=Sphere(radius=0.1), activation_size=1.0),
+    )
+    frames = {"world": Pose((0.0, 0.0, 0.0), quarter), "cart": Pose((0.1, 0.2, 0.25))}
+    containment = Containment(borders, frames)
+    containment.begin(Start.ACTIVATION, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    assert containment.step(seen, *NOBODY) is None
+    found = {state.name: state for state in containment.states(seen)}
+    assert found["elbow"].distance == pytest.approx(-0.1)
+    assert found["world"].distance == pytest.approx(0.2 - 0.35)  # x of the world is y of the base here
+    assert found["world"].outward == pytest.approx((0.0, 1.0, 0.0))
+    assert found["cart"].distance == pytest.approx(-0.05)
+    assert found["cart"].p == (0.1, 0.2, 0.3)
+    places = {border.name: place for border, place in containment.places()}
+    assert quarter == places["world"].pose.R
+    turned = at(0.1, tcp=[0.1, 0.2, 0.3, 0.0, 0.0, 0.0], elbow=[0.4, 0.0, 0.5, 0.0, 0.0, 0.0])
+    turned.R_BF = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    containment.step(turned, *NOBODY)
+    # the box has turned about the flange with the frame that it lies in, and left the elbow behind: at (0.1, 0.3, 0.5) now
+    found = {state.name: state for state in containment.states(turned)}
+    assert found["elbow"].distance == pytest.approx(math.hypot(0.3 - 0.1, 0.3 - 0.1))
+
+
+@pytest.mark.parametrize(
+    ("measure", "seen", "factor"),
+    [
+        (Measure.REACH, at(0.3, 0.0, 0.4), 0.5),
+        (Measure.HEIGHT, at(0.0, 0.0, 0.25), 0.75),
+        (Measure.PAYLOAD, at(0.0, load_mass=0.5), 0.5),
+        (Measure.MANIPULABILITY, at(0.0), 0.5),  # not measured: the smallest
+    ],
+)
+def test_a_size_follows_posture_and_payload(measure: Measure, seen: Estimate, factor: float) -> None:
+    """VW-8."""
+    wall = Wall(
+        name="w", shape=Sphere(radius=0.2), activation_size=1.0,
+        size=Dependence(measure=measure, low=0.0, high=0.5, at_low=1.0, at_high=0.5),
+    )  # fmt: skip
+    containment = Containment((wall,), {})
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.step(seen, *NOBODY)
+    (state,) = containment.states(seen)
+    assert state.distance == pytest.approx(-0.2 * factor)
+
+
+def test_what_cannot_be_told_is_refused_and_not_drawn() -> None:
+    containment = Containment((Area(name="gone", reference="nowhere", shape=Sphere(radius=1.0)),), {})
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    reading = containment.step(estimate(), *NOBODY)
+    assert reading is not None
+    assert facts(reading) == {"wall": "gone", "part": "flange", "distance": 0.0, "way": "unknown"}
+    assert containment.states(estimate()) == ()
+    assert containment.places() == ()
+
+
+def test_without_any_border_it_does_nothing() -> None:
+    containment = Containment((), {"world": HERE})
+    before = containment.memory
+    containment.begin(Start.ACTIVATION, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.enter(Walls(tether=False))
+    assert containment.step(estimate(), *NOBODY) is None
+    assert containment.memory == before == ((), ())
+
+
+@pytest.mark.parametrize(
+    ("outward", "way"),
+    [((0.0, 0.0, -1.0), "+z"), ((0.707, 0.707, 0.0), "-x -y"), ((0.577, -0.577, 0.577), "-x +y -z"), ((0.95, 0.2, 0.24), "-x")],
+)  # fmt: skip
+def test_the_way_back_is_told_in_axes_of_the_base(outward: tuple[float, float, float], way: str) -> None:
+    x, y, z = outward
+    position = tuple(0.3 * value for value in outward)
+    containment = Containment((Area(name="ball", shape=Sphere(radius=0.2)),), {})
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.step(estimate(), *NOBODY)
+    reading = containment.step(at(*position), *NOBODY)
+    assert reading is not None
+    assert facts(reading)["way"] == way
+    assert facts(reading)["distance"] == pytest.approx(1000.0 * (0.3 * math.sqrt(x * x + y * y + z * z) - 0.2))

@@ -1,0 +1,277 @@
+"""What ends free-drive while it lasts: limits, motion that nobody causes, payloads that drop or change, the way back."""
+
+import math
+from collections.abc import Iterable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.hand import SWING, Hand
+from pendant.inputs import NOTHING, Button, Inputs
+from pendant.modes import TICK, Mode
+from pendant.operation import CERTAIN, LEAST, Ending, Operation, way_back
+from pendant.settings import Settings, apply
+from pendant.supervisor import Supervisor
+from tests.pendant.estimates import estimate
+
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
+RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
+ZEROS = (0.0,) * 6
+G = 9.81
+TWO = [0.0, 0.0, 2.0 * G]  # what 2 kg need at rest
+
+
+class Free:
+    """A free-drive that is watched."""
+
+    def __init__(self, baseline: tuple[float, ...] = ZEROS, **changes: float | bool) -> None:
+        settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
+        self.hand = Hand(estimate(), baseline)
+        self.operation = Operation(estimate(), settings, baseline, JOINTS, RATED)
+        self.ticks = 0
+
+    def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False) -> Ending | None:
+        self.ticks += 1
+        self.hand.step(value, use_wrench)
+        return self.operation.step(value, self.hand, use_wrench, driven)
+
+    def until(self, values: Iterable[Estimate], **how: bool) -> Ending | None:
+        return next((ending for value in values if (ending := self.see(value, **how)) is not None), None)
+
+
+def loaded(force: list[float] | float = 0.0, needed: list[float] | None = None, mass: float = 2.0) -> Estimate:
+    return estimate(force=force, needed=TWO if needed is None else needed, load_mass=mass)
+
+
+@pytest.mark.parametrize(
+    ("within", "beyond", "stop", "parameter", "limit"),
+    [
+        (estimate(v_tcp=1.5), estimate(v_tcp=1.51), False, "tcp speed", 1.5),
+        (estimate(v_elbow=1.5), estimate(v_elbow=1.51), False, "elbow speed", 1.5),
+        (estimate(qd=3.0), estimate(qd=-3.01), False, "joint speed", 3.0),
+        (estimate(acceleration=39.0), estimate(acceleration=41.0), True, "flange acceleration", 40.0),
+    ],
+)
+def test_an_operation_limit_leaves_or_stops_as_its_row_says(
+    within: Estimate, beyond: Estimate, stop: bool, parameter: str, limit: float
+) -> None:
+    """FD-18."""
+    assert Free().see(within) is None
+    ending = Free().see(beyond)
+    assert ending is not None
+    assert ending.kind is (Kind.STOPPED_LIMIT if stop else Kind.LEFT_LIMIT)
+    assert (ending.values["parameter"], ending.values["limit"]) == (parameter, pytest.approx(limit))
+
+
+def test_a_joints_external_torque_has_its_time_and_stops() -> None:
+    free = Free()
+    assert free.until([estimate(tau_ext=120.0)] * 100) is None
+    ending = free.until([estimate(tau_ext=-121.0)] * 100)
+    assert ending is not None
+    assert ending.kind is Kind.STOPPED_LIMIT
+    assert (free.ticks, ending.values["limit"]) == (100 + 26, pytest.approx(120.0))
+
+
+def test_the_row_that_stops_comes_first() -> None:
+    ending = Free().see(estimate(v_tcp=2.0, acceleration=50.0))
+    assert ending is not None
+    assert ending.kind is Kind.STOPPED_LIMIT
+
+
+def test_the_users_force_has_its_time_and_counts_from_the_baseline() -> None:
+    free = Free((2.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    assert free.until([estimate(force=91.0)] * 500) is None
+    ending = free.until([estimate(force=93.0)] * 500)
+    assert ending is not None
+    assert ending.values["value"] == pytest.approx(91.0)
+    assert free.ticks == 500 + 51
+    assert Free().until([estimate(force=[0.0, 0.0, -200.0])] * 500, use_wrench=False) is None
+
+
+def test_motion_that_nobody_causes_is_stopped_after_its_time() -> None:
+    """FD-19."""
+    free = Free()
+    assert free.until([estimate(speed=0.03)] * 150) is None
+    ending = free.see(estimate(speed=0.03))
+    assert ending == Ending(Kind.STOPPED_MOTION, {"value": pytest.approx(0.03), "limit": 0.02, "time": pytest.approx(151 * TICK)})
+
+
+@pytest.mark.parametrize(
+    "pause", [{"speed": 0.019}, {"speed": 0.03, "force": 30.0}, {"speed": 0.03, "driven": True}], ids=["slow", "hand", "driven"]
+)
+def test_a_hand_a_wall_or_rest_starts_its_time_afresh(pause: dict[str, float | bool]) -> None:
+    free = Free()
+    driven = bool(pause.pop("driven", False))
+    assert free.until([estimate(speed=0.03)] * 149) is None
+    assert free.see(estimate(**pause), driven=driven) is None  # type: ignore[arg-type]
+    assert free.until([estimate(speed=0.03)] * 150) is None or "force" in pause
+
+
+def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
+    free = Free()
+    free.until([estimate(force=10.0, speed=0.1)] * 500)
+    settle = math.ceil(SWING * math.log(10.0 / 1.5) / TICK)
+    assert free.until([estimate(speed=0.1)] * (150 + settle - 2)) is None
+    assert free.until([estimate(speed=0.1)] * 4) is not None
+
+
+def test_motion_can_be_switched_off() -> None:
+    assert Free(unexplained__motion=False).until([estimate(speed=0.3)] * 500) is None
+
+
+def test_a_dropped_payload_takes_the_help_at_once_and_stops_in_20_ms() -> None:
+    """FD-19: all of 2 kg is missing from one tick to the next, also while the arm is shaken by it."""
+    free = Free()
+    assert free.until([loaded()] * 100) is None
+    shaken = [[0.0, 0.0, 2.0 * G * factor] for factor in (1.0, 3.0, -1.5, 0.5, 1.2, 2.0)]
+    seen = [loaded(force=needed, needed=needed) for needed in shaken]
+    assert free.see(seen[0]) is None
+    assert free.operation.suspect
+    ending = free.until(seen[1:])
+    assert free.ticks == 100 + 1 + CERTAIN
+    assert ending == Ending(Kind.STOPPED_PAYLOAD, {"mass": pytest.approx(-2.0), "force": pytest.approx(2.0 * G)})
+
+
+def test_a_payload_that_comes_is_a_change_too() -> None:
+    free = Free()
+    free.until([loaded()] * 10)
+    ending = free.until([loaded(force=[0.0, 0.0, -G])] * 10)
+    assert ending is not None
+    assert ending.values["mass"] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        [0.0, 0.0, 0.3 * LEAST],  # too small
+        [2.0 * G, 0.0, 0.0],  # across
+        [0.0, 0.0, 3.0 * 2.0 * G],  # more than there is
+    ],
+)
+def test_what_no_payload_does_is_none(after: list[float]) -> None:
+    free = Free()
+    free.until([loaded()] * 10)
+    assert free.until([loaded(force=after)] * 100) is None
+    assert not free.operation.suspect
+
+
+def test_a_hand_that_lets_go_ends_at_no_force_and_is_no_drop() -> None:
+    free = Free()
+    assert free.until([loaded(force=[0.0, 0.0, -15.0 * min(k / 50, 1.0)]) for k in range(200)]) is None
+    assert free.until([loaded()] * 100) is None
+    assert not free.operation.suspect
+
+
+def test_a_hand_comes_slower_than_a_drop() -> None:
+    free = Free()
+    assert free.until([loaded(force=[0.0, 0.0, 20.0 * min(k / 20, 1.0)]) for k in range(300)]) is None
+
+
+def test_a_knock_gives_the_help_back() -> None:
+    free = Free()
+    free.until([loaded()] * 10)
+    free.until([loaded(force=[0.0, 0.0, 15.0])] * CERTAIN)
+    assert free.operation.suspect
+    assert free.see(loaded()) is None
+    assert not free.operation.suspect
+
+
+def test_without_sensor_or_load_or_switch_no_drop_is_looked_for() -> None:
+    drop = [loaded(force=[0.0, 0.0, 15.0])] * 50
+    for free, how in ((Free(), False), (Free(unexplained__payload=False), True)):
+        free.until([loaded()] * 10)
+        assert free.until(drop, use_wrench=how) is None
+    free = Free()
+    assert free.until([loaded(mass=0.0)] * 10 + [loaded(force=[0.0, 0.0, 15.0], mass=0.0)] * 50) is None
+
+
+def test_losing_the_sensor_ends_a_suspicion() -> None:
+    free = Free()
+    free.until([loaded()] * 10 + [loaded(force=[0.0, 0.0, 15.0])] * 2)
+    assert free.operation.suspect
+    free.see(loaded(), use_wrench=False)
+    assert not free.operation.suspect
+
+
+@given(st.floats(0.8, 5.0), st.floats(0.0, 1.0), st.lists(st.floats(-20.0, 60.0), min_size=8, max_size=8))
+def test_a_whole_load_that_drops_in_any_motion_is_found(mass: float, tilt: float, lifts: list[float]) -> None:
+    free = Free()
+    start = [mass * G * math.sin(tilt), 0.0, mass * G * math.cos(tilt)]
+    free.until([loaded(needed=start, mass=mass)] * 10)
+    motion = [[start[0], 0.0, start[2] + mass * lift] for lift in lifts]
+    ending = free.until([loaded(force=needed, needed=needed, mass=mass) for needed in [start, *motion]])
+    assert ending is not None
+    assert ending.values["mass"] == pytest.approx(-mass)
+
+
+@pytest.mark.parametrize(
+    ("now", "text"),
+    [
+        ((0.0,) * 6, ""),
+        ((0.0, 0.0, 0.008, 0.0, 0.0, 0.0), ""),
+        ((0.1, -0.2, 0.009, 0.0, 0.0, 0.0), "shoulder +11.5°, base -5.7°, elbow -0.5°"),
+        ((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), "wrist_3 -34.4°, wrist_2 -28.6°, wrist_1 -22.9°, elbow -17.2°"),
+    ],
+)
+def test_the_way_back_names_the_joints_that_are_off(now: tuple[float, ...], text: str) -> None:
+    """FD-22."""
+    assert way_back((0.0,) * 6, now, JOINTS) == text
+
+
+class Robot:
+    """A supervisor in free-drive, entered at q = 0 with 2 kg."""
+
+    def __init__(self) -> None:
+        self.supervisor = Supervisor(Settings(), 6, JOINTS, RATED)
+        self.events: list[Event] = []
+        self.tick = -1
+        hold = Inputs(held=frozenset({Button.FREE_DRIVE}))
+        self.run(60, loaded())
+        self.run(501, loaded(), hold)
+        assert self.run(502, loaded(), Inputs(released=frozenset({Button.FREE_DRIVE}))).mode is Mode.FREE_DRIVE
+
+    def run(self, count: int, value: Estimate, inputs: Inputs = NOTHING) -> Decision:
+        for _ in range(count - 1):
+            self.step(value, inputs)
+        return self.step(value, inputs)
+
+    def step(self, value: Estimate, inputs: Inputs = NOTHING) -> Decision:
+        self.tick += 1
+        value.tick = self.tick
+        decision = self.supervisor.step(value, inputs)
+        self.events += decision.events
+        return decision
+
+
+def test_a_drop_in_the_robot_removes_the_gain_in_its_tick_and_stops() -> None:
+    robot = Robot()
+    assert robot.step(loaded()).gain == 1.0
+    dropped = loaded(force=TWO)
+    assert robot.step(dropped).gain == 0.0
+    decision = robot.run(CERTAIN, dropped)
+    assert decision.mode is Mode.STOP
+    assert robot.events[-1].kind is Kind.STOPPED_PAYLOAD
+
+
+def test_an_involuntary_leaving_tells_the_way_back_and_one_that_was_asked_for_does_not() -> None:
+    robot = Robot()
+    away = estimate(q=[0.1, 0.0, 0.0, 0.0, 0.0, -0.2], v_tcp=2.0, load_mass=2.0, needed=TWO)
+    robot.step(away)
+    assert [event.kind for event in robot.events[-2:]] == [Kind.LEFT_LIMIT, Kind.WAY_BACK]
+    assert robot.events[-1].values == {"joints": "wrist_3 +11.5°, base -5.7°"}
+    robot = Robot()
+    near = estimate(q=[0.1, 0.0, 0.0, 0.0, 0.0, -0.2], load_mass=2.0, needed=TWO)
+    robot.run(20, near, Inputs(held=frozenset({Button.FREE_DRIVE})))
+    robot.run(2, near, Inputs(released=frozenset({Button.FREE_DRIVE})))
+    assert robot.events[-1].kind is Kind.LEFT_PRESS
+
+
+def test_equal_histories_are_equal() -> None:
+    one, two = Free(), Free()
+    assert one.operation.memory == two.operation.memory
+    one.see(loaded(force=[0.0, 0.0, 3.0]))
+    assert one.operation.memory != two.operation.memory
