@@ -21,8 +21,11 @@ from tests.sim.arms import UR5E
 CENTRE = (0.0, 0.0, 0.0)
 IDLE = Wishes(NOTHING, (), ())
 NOMINAL = Scenario(mismatch="nominal")
-LONG = apply(Settings(), {"free_drive.period": 30.0})
-"""Shipped settings, but an untouched arm stays in free-drive for 30 s."""
+LONG = apply(
+    Settings(),
+    {"free_drive.period": 30.0, "limits.operation.joint_speed.on": False, "limits.operation.tcp_speed.on": False},
+)
+"""Shipped settings, but an untouched arm stays in free-drive for 30 s, and a push that never eases does not end it by its speed."""
 
 
 class Bench:
