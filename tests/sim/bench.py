@@ -25,7 +25,7 @@ LONG = apply(
     Settings(),
     {"free_drive.period": 30.0, "limits.operation.joint_speed.on": False, "limits.operation.tcp_speed.on": False},
 )
-"""Shipped settings, but an untouched arm stays in free-drive for 30 s, and a push that never eases does not end it by its speed."""
+"""Shipped settings, but an untouched arm stays in free-drive for 30 s, and a push that never eases runs on."""
 
 
 class Bench:
