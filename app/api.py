@@ -14,7 +14,8 @@ import msgspec
 
 from app.batch import Job, run_all, work
 from app.checked import BadInput, convert, load
-from app.log.reader import Log, read
+from app.log.reader import Log
+from app.log.reader import read as read_log
 from app.prepare import prepare
 from app.runner import Outcome, simulate
 from app.session import Session, find
@@ -55,6 +56,15 @@ def session(source: str | Path | dict[str, Any] | Session, **fields: Any) -> Ses
     made = convert({**raw, **fields}, Session, "session")
     prepare(made, "session")
     return made
+
+
+def read(path: str | Path) -> Log:
+    """A recording, as numpy arrays by name.
+
+    Raises:
+        BadInput: the file cannot be read, is no recording, or is damaged before its last chunk.
+    """
+    return read_log(Path(path))
 
 
 def run(what: Session, out: str | Path | None = None) -> Outcome:
