@@ -25,6 +25,7 @@ SHORTEST = 0.06
 LONGEST = 0.4
 """Length of the arrows of touches [m]."""
 
+FLOOR = "/floor"
 TOOL = "/arm/tool"
 """Name of the tool's node."""
 
@@ -170,7 +171,11 @@ class Scene:
         self._nodes[f"link {self._frames['tool']} tool"] = handle
 
     def _add_world(self, scenario: Scenario) -> None:
+        level = min([0.0, *(thing.position[2] for thing in scenario.world if isinstance(thing, Plane) and not any(thing.rpy))])
+        self._floor.position = (0.0, 0.0, level)  # so that it hides nothing that stands on a lower floor
         for row, thing in enumerate(scenario.world):
+            if isinstance(thing, Plane) and thing.position[2] == level and not any(thing.rpy):
+                continue  # it is the floor
             size = np.array([3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size)
             colour = WORLD_COLOURS.get(type(thing), GREY)
             self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
@@ -190,8 +195,8 @@ class Scene:
         scene.configure_environment_map(None)
         scene.configure_default_lights(False)
         scene.add_light_hemisphere("/light/sky", sky_color=(255, 255, 255), ground_color=(176, 182, 190), intensity=2.6)
-        scene.add_grid(
-            "/floor",
+        self._floor = scene.add_grid(
+            FLOOR,
             width=6.0,
             height=6.0,
             cell_size=0.1,

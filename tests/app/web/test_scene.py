@@ -117,4 +117,12 @@ def test_another_scenario_brings_its_own_tool_and_world(loop: FakeLoop, still: S
     still.scene.on_tool = told.append
     still.scene.show(snapshot(loop))
     assert told == [still.scene.draggable["tool"]]
-    assert [key for key in still.scene._nodes if key.startswith("object")] == ["object 0 floor", "object 1 table", "object 2 pad"]
+    assert [key for key in still.scene._nodes if key.startswith("object")] == ["object 1 table", "object 2 pad"]
+
+
+def test_the_floor_lies_as_low_as_the_world_says(loop: FakeLoop, still: Served) -> None:
+    deep = Scenario(world=[Plane(name="floor", position=[0.0, 0.0, -0.8])])
+    still.scene.show(replace(FakeLoop.latest(loop), scenario=deep, truth_objects=np.zeros((1, 7))))
+    assert still.scene._floor.position == pytest.approx((0.0, 0.0, -0.8))
+    still.scene.show(replace(FakeLoop.latest(loop), scenario=Scenario()))
+    assert still.scene._floor.position == pytest.approx((0.0, 0.0, 0.0))
