@@ -87,11 +87,11 @@ class Contacts:
         point = base[:3] + turn @ np.array([float(values[name]) for name in "xyz"])
         force = turn @ np.array([float(values[name]) for name in ("fx", "fy", "fz")])
         size = max(float(np.linalg.norm(force)), 1e-9)
-        tip = point + force / size * min(max(size * METRES_PER_NEWTON, 0.05), LONGEST)
-        self.arrow.points = np.array([[point, tip]], dtype=np.float32)
-        self.label.position = tip
-        self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
+        tail = point - force / size * min(max(size * METRES_PER_NEWTON, 0.05), LONGEST)  # outside of what was touched
         self.arrow.visible = self.label.visible = True
+        self.arrow.points = np.array([[tail, point]], dtype=np.float32)
+        self.label.position = tail
+        self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
         return True
 
 
