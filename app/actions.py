@@ -18,7 +18,6 @@ PLANNED_CONTROLS: dict[str, str] = {
     "restart_period": "FD-16",
     "register_waypoint": "FD-13",
     "axis_locks": "FD-4",
-    "enabling_device": "FD-23",
 }
 """Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
 
@@ -36,6 +35,11 @@ Control = Literal[
     "axis_locks",
     "detection",
     "enabling_device",
+    "enabling_device_full",
+    "safeguard_open",
+    "safeguard_closed",
+    "reduced_on",
+    "reduced_off",
 ]
 # Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
 Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]

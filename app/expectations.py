@@ -11,7 +11,7 @@ from pendant.modes import Mode, Phase
 from sim.arm import NotNegative, Positive
 from sim.scenario import Vector
 
-SafetyName = Literal["NORMAL", "REDUCED", "PROTECTIVE_STOP", "EMERGENCY_STOP"]
+SafetyName = Literal["NORMAL", "REDUCED", "SAFEGUARD_STOP", "PROTECTIVE_STOP", "EMERGENCY_STOP"]
 
 Quantity = Literal[
     "flange_speed",  # true speed of the flange's point [m/s]

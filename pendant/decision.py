@@ -4,11 +4,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from pendant.contact import Contact
+from pendant.enabling import Grip
 from pendant.events import Event
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.pose import Vector
 from pendant.program import Move, ProgramState
+from pendant.reduced import SpeedLimits
 
 
 class Remaining(NamedTuple):
@@ -52,3 +54,6 @@ class Decision:
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
     tool_on: bool = False  # what the program switches (CD-15)
     walls: tuple[WallState, ...] = ()  # that hold
+    grip: Grip | None = None  # of the enabling device, None where none is used
+    speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
+    limits: str = ""  # checksum of all limits

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from pendant.barrier import Consequence, Reading
 from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.decision import Remaining, WallState
+from pendant.enabling import Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.hand import Hand
@@ -42,6 +43,12 @@ class Surroundings(NamedTuple):
     wrench_ok: bool  # pendant.watch.wrench_ok
     still: Stillness
     mean: WrenchMean  # of F_user
+    grip: Grip | None = None  # of the enabling device, None where none is needed
+
+    @property
+    def enabled(self) -> bool:
+        """No enabling device forbids motion."""
+        return self.grip is None or self.grip is Grip.MIDDLE
 
 
 class FreeDrive:
@@ -166,6 +173,8 @@ class FreeDrive:
         return events
 
     def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
+        if not around.enabled and self.phase is not Phase.OFF:
+            return [self._disabled(around, settings)]
         if self.phase in IN_FREE_DRIVE:
             return self._stay(around, settings)
         if self.phase is Phase.SEQUENCE:
@@ -192,6 +201,8 @@ class FreeDrive:
             return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._began else events
         if not may_enter(around.mode, settings):
             return [self._refuse(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
+        if not around.enabled:
+            return [self._disabled(around, settings)]
         if self.phase is Phase.OFF:
             self.phase = Phase.ACTIVATION
             self._total = self._left = ticks(settings.activation.period)
@@ -362,6 +373,11 @@ class FreeDrive:
         self.phase = phase
         self._total = self._left = ticks(seconds)
         self._maintained = Maintained(around.estimate, settings, self.use_wrench, self._joints)
+
+    def _disabled(self, around: Surroundings, settings: Settings) -> Event:
+        """The enabling device is not in its middle position."""
+        kind = Kind.LEFT_ENABLING if self.phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
+        return self._refuse(kind, around.estimate.tick, settings, {"grip": around.grip or ""})
 
     def _refuse(self, kind: Kind, tick: int, settings: Settings, values: Values) -> Event:
         self._end(kind, settings)

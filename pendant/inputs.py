@@ -10,6 +10,8 @@ class Button(StrEnum):
     """A control of the pendant that is held (FD-23: a keep-alive)."""
 
     FREE_DRIVE = "free_drive"
+    ENABLING = "enabling_device"  # in its middle position
+    ENABLING_FULL = "enabling_device_full"  # pressed beyond it
 
 
 class Command(StrEnum):
@@ -17,6 +19,10 @@ class Command(StrEnum):
 
     EMERGENCY_STOP = "emergency_stop"
     RESET = "reset"
+    SAFEGUARD_OPEN = "safeguard_open"  # a level of the safety input: door open, light curtain broken
+    SAFEGUARD_CLOSED = "safeguard_closed"
+    REDUCED_ON = "reduced_on"  # a level of the safety input
+    REDUCED_OFF = "reduced_off"
     LEAVE_FREE_DRIVE = "leave_free_drive"  # deactivation signal (FD-17)
     NORMAL = "normal"  # switch the mode to NORMAL
     TEACH = "teach"  # switch the mode to TEACH

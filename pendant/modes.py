@@ -25,8 +25,9 @@ class Safety(IntEnum):
 
     NORMAL = 1
     REDUCED = 2
-    PROTECTIVE_STOP = 3
-    EMERGENCY_STOP = 4
+    SAFEGUARD_STOP = 3
+    PROTECTIVE_STOP = 4
+    EMERGENCY_STOP = 5
 
 
 class Phase(StrEnum):
@@ -47,6 +48,7 @@ class Law(StrEnum):
     HOLD = "HOLD"  # keep the posture
     BRAKE = "BRAKE"  # come to rest as fast as the limits allow, then keep the posture
     FOLLOW = "FOLLOW"  # track the requested move
+    OFF = "OFF"  # no drive power, the brakes hold
     FREE = "FREE"  # free-drive law (FD-2, FD-3); also in the activation sequence, where the mode is still the old one
 
 

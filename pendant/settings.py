@@ -107,6 +107,22 @@ class Hold(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     silence: Annotated[float, _number(0.1, 1.0, "s", "FD-23", "a held control silent for longer counts as released")] = 0.5
 
 
+class Enabling(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The three-position enabling device."""
+
+    on: Annotated[bool, _switch("FD-23", "motion needs the enabling device in its middle position")] = False
+
+
+class ReducedLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Safety mode REDUCED."""
+
+    on: Annotated[bool, _switch("FD-1", "REDUCED slows the arm down, and stops a faster one")] = True
+    tcp_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", "speed of the tool centre point in REDUCED")] = 0.25
+    elbow_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", "speed of the elbow in REDUCED")] = 0.25
+    joint_speed: Annotated[float, _number(0.1, 3.0, "rad/s", "FD-1", "speed of a joint in REDUCED")] = 1.0
+    transition: Annotated[float, _number(0.1, 1.0, "s", "FD-1", "time to slow down in when REDUCED begins")] = 0.5
+
+
 class ButtonUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The free-drive button."""
 
@@ -267,6 +283,8 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     free_drive: FreeDrive = FreeDrive()
     hold: Hold = Hold()
     button: ButtonUse = ButtonUse()
+    enabling: Enabling = Enabling()
+    reduced: ReducedLimits = ReducedLimits()
     limits: Limits = Limits()
     unexplained: Unexplained = Unexplained()
     walls: Walls = Walls()
@@ -371,5 +389,14 @@ def apply(settings: Settings, changes: dict[str, Any]) -> Settings:
 
 def digest(settings: Settings) -> str:
     """Short hash of all values: 8 hexadecimal digits, equal for equal settings."""
-    lines = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in _ROWS.values())
+    return _hashed(settings, list(_ROWS.values()))
+
+
+def limits_checksum(settings: Settings) -> str:
+    """Short hash of everything that is locked while the arm moves: 8 hexadecimal digits, equal for equal limits."""
+    return _hashed(settings, [row for row in _ROWS.values() if row.locked])
+
+
+def _hashed(settings: Settings, rows: list[Row]) -> str:
+    lines = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in rows)
     return hashlib.sha256(lines.encode()).hexdigest()[:8]

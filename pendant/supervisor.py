@@ -7,6 +7,7 @@ from pendant.contact import Change, Contact
 from pendant.contact_monitor import ContactMonitor
 from pendant.containment import Containment
 from pendant.decision import Decision
+from pendant.enabling import EnablingDevice, Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.freedrive import FreeDrive, Surroundings, moving
@@ -16,9 +17,11 @@ from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
 from pendant.pose import Pose
 from pendant.program import Program, ProgramState, Sequencer, misfit
+from pendant.reduced import Reduced
 from pendant.sensing import JointSensors
 from pendant.sequence import JOINTS_SENSED
-from pendant.settings import Settings, ticks
+from pendant.settings import Settings, limits_checksum, ticks
+from pendant.stopping import Stopping
 from pendant.table import TABLE, Effect
 from pendant.walls import AnyBorder
 from pendant.watch import Stillness, WrenchMean, joints_ok, motion_ok
@@ -28,6 +31,7 @@ RESTING = frozenset(SWITCHABLE.values())
 PROGRAM_COMMANDS = frozenset({Command.START_PROGRAM, Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM})
 STOPPING = {
     Effect.LEAVE_TO_STOP: Safety.NORMAL,
+    Effect.SAFEGUARD_STOP: Safety.SAFEGUARD_STOP,
     Effect.PROTECTIVE_STOP: Safety.PROTECTIVE_STOP,
     Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
 }
@@ -94,6 +98,10 @@ class Supervisor:
         self._freed = False  # the law was FREE in the last tick
         self._static = False
         self._button = KeepAlive()
+        self._enabling = EnablingDevice()
+        self._reduced = Reduced()
+        self._safeguard = False  # the safety input is open
+        self._stopping = Stopping()
         self._still = Stillness()
         self._mean = WrenchMean()
         self._sensors = JointSensors()
@@ -118,8 +126,10 @@ class Supervisor:
         """
         button = (self._button.held, self._button.silent)
         still = (self._still.count, self._still.joint, self._still.speed)
+        devices = (self._enabling.memory, self._reduced.memory, self._safeguard, self._stopping.memory)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
-        return (self.settings, *own, self._mean.memory, self._sensors.lost, self._sequencer.memory, self._free.memory)
+        lost = self._sensors.lost
+        return (self.settings, *own, *devices, self._mean.memory, lost, self._sequencer.memory, self._free.memory)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
@@ -127,8 +137,10 @@ class Supervisor:
         wrench_ok = self._observe(estimate, inputs, events)
         self._feel(estimate, events)
         if inputs.commands:
+            self._safety_inputs(estimate, inputs.commands, events)
             self._safety_commands(estimate, inputs.commands, events)
             self._mode_commands(estimate, inputs.commands, events)
+        self._watch_reduced(estimate, events)
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
         wanted = inputs.settings
@@ -147,9 +159,11 @@ class Supervisor:
             values: Values = {"value": (self._silence + 1) * TICK, "limit": self._silence * TICK}
             events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
         events += self._sensors.step(estimate, self._joints)
+        self._enabling.step(inputs, self._silence)
         self._free.sense(self._button.held)
         self._still.step(estimate, self._slow)
         self._static = self._still.count >= self._static_ticks
+        events += self._stopping.step(estimate, self._still.count, self._static_ticks)
         return self._mean.step(estimate)
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
@@ -163,6 +177,43 @@ class Supervisor:
                 self._braking = True
             events.append(Event(TOLD[contact.change], estimate.tick, told(contact, until.then if taken and until else "none")))
 
+    def _safety_inputs(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
+        """Levels of the safety inputs: safeguard and REDUCED."""
+        tick = estimate.tick
+        # Open and REDUCED win over their opposites in the same tick.
+        if Command.SAFEGUARD_OPEN in commands:
+            if not self._safeguard:
+                self._safeguard = True
+                self._happen(Event(Kind.SAFEGUARD_STOP, tick, {"mode": self._mode}), events)
+        elif Command.SAFEGUARD_CLOSED in commands and self._safeguard:
+            self._safeguard = False
+            events.append(Event(Kind.SAFEGUARD_CLOSED, tick))
+        reduced = self.settings.reduced
+        if Command.REDUCED_ON in commands:
+            if self._reduced.switch(True, reduced):
+                values: Values = {"tcp": reduced.tcp_speed, "elbow": reduced.elbow_speed, "joint_speed": reduced.joint_speed}
+                events.append(Event(Kind.REDUCED_ON, tick, values))
+        elif Command.REDUCED_OFF in commands and self._reduced.switch(False, reduced):
+            events.append(Event(Kind.REDUCED_OFF, tick))
+        if self._safety <= Safety.REDUCED:
+            self._safety = self._resting_safety
+
+    def _watch_reduced(self, estimate: Estimate, events: list[Event]) -> None:
+        if self._reduced.on and self._mode is not Mode.STOP and motion_ok(estimate):
+            excess = self._reduced.step(estimate, self.settings.reduced, self._joints)
+            if excess is not None:
+                self._happen(Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict())), events)
+
+    @property
+    def _resting_safety(self) -> Safety:
+        """The safety mode where nothing has stopped the robot."""
+        return Safety.REDUCED if self._reduced.on else Safety.NORMAL
+
+    @property
+    def _grip(self) -> Grip | None:
+        """Of the enabling device, None where none is needed."""
+        return self._enabling.grip if self.settings.enabling.on else None
+
     def _safety_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         stop = Command.EMERGENCY_STOP in commands
         if stop and self._safety is not Safety.EMERGENCY_STOP:
@@ -175,6 +226,8 @@ class Supervisor:
             self._refuse(Command.RESET, estimate, "nothing to reset", events)
         elif self._button.held:
             events.append(Event(Kind.RESET_REFUSED_SIGNAL, estimate.tick))
+        elif self._safeguard:
+            events.append(Event(Kind.RESET_REFUSED_SAFEGUARD, estimate.tick))
         elif not joints_ok(estimate):
             events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": JOINTS_SENSED}))
         elif not self._static:
@@ -182,8 +235,9 @@ class Supervisor:
             events.append(Event(Kind.RESET_REFUSED_MOVING, estimate.tick, values))
         else:
             self._mode = Mode.TEACH
-            self._safety = Safety.NORMAL
+            self._safety = self._resting_safety
             self._braking = False
+            self._stopping.end()
             events.append(Event(Kind.RESET, estimate.tick))
 
     def _mode_commands(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
@@ -220,6 +274,10 @@ class Supervisor:
         elif braked:
             if self._static and sequencer.rest(self._monitor.now):
                 self._finish(estimate.tick, events)
+        elif self._grip not in (None, Grip.MIDDLE):
+            events.append(Event(Kind.RUN_ENABLING, estimate.tick, {"grip": self._grip or ""}))
+            self._stopping.begin(Kind.RUN_ENABLING, TABLE[Kind.RUN_ENABLING].category, self._static)
+            self._pause(estimate.tick, events)
         elif estimate.move_refused:
             self._fail(estimate.move_refused, estimate.tick, events)
         elif sequencer.missed(estimate.move_done):
@@ -266,6 +324,8 @@ class Supervisor:
             return "it is running already"
         if self._free.phase is Phase.SEQUENCE:
             return "free-drive is being tried"
+        if self._grip not in (None, Grip.MIDDLE):
+            return f"enabling device {self._grip}: hold it in its middle position"
         if not joints_ok(estimate):
             return f"check {JOINTS_SENSED}"
         return None if self._static else "the arm still moves"
@@ -300,7 +360,7 @@ class Supervisor:
         events.append(Event(Kind.PROGRAM_PAUSED, tick, values))
 
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
-        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean)
+        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip)
         for event in self._free.step(around, self.settings):
             self._take_effect(event, events)
 
@@ -322,11 +382,14 @@ class Supervisor:
         elif effect is Effect.LEAVE:
             if self._mode is Mode.FREE_DRIVE:
                 self._mode = self._remembered
+            if event.kind is Kind.LEFT_ENABLING:
+                self._stopping.begin(event.kind, TABLE[event.kind].category, self._static)
         elif effect in STOPPING:
             self._mode = Mode.STOP
             self._safety = max(self._safety, STOPPING[effect])
             self._braking = True
             self._sequencer.stop()
+            self._stopping.begin(event.kind, TABLE[event.kind].category, self._static)
 
     def _refuse(self, command: Command, estimate: Estimate, reason: str, events: list[Event]) -> None:
         values: Values = {"command": command, "mode": self._mode, "reason": reason}
@@ -334,6 +397,7 @@ class Supervisor:
 
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
+        self._checksum = limits_checksum(self.settings)
         self._silence = ticks(self.settings.hold.silence)
         self._slow = self.settings.static.speed
         self._static_ticks = ticks(self.settings.static.time)
@@ -350,7 +414,7 @@ class Supervisor:
         if self._freed:
             self._freed, self._braking = False, True
         if self._mode is Mode.STOP:
-            return Law.BRAKE
+            return Law.OFF if self._stopping.off else Law.BRAKE
         if self._sequencer.move is not None:
             self._braking = False
             return Law.FOLLOW
@@ -363,8 +427,9 @@ class Supervisor:
         free = self._free
         sequencer = self._sequencer
         law = self._law()
-        key = (self._mode, self._safety, free.phase, law, sequencer.move, free.helping, sequencer.state, sequencer.index)
-        key += (sequencer.tool_on,)
+        grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
+        robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
+        key = (*robot, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
@@ -390,6 +455,9 @@ class Supervisor:
             contacts=self._contacts,
             tool_on=sequencer.tool_on,
             walls=walls,
+            grip=grip,
+            speed_limits=speeds,
+            limits=self._checksum,
         )
         self._key = key
         self._decision = None if changing else decision

@@ -15,11 +15,12 @@ class Effect(StrEnum):
     NO_ENTRY = "NO_ENTRY"  # free-drive is refused, the mode stays
     LEAVE = "LEAVE"  # free-drive ends, back to the remembered mode
     LEAVE_TO_STOP = "LEAVE_TO_STOP"  # free-drive ends in STOP
+    SAFEGUARD_STOP = "SAFEGUARD_STOP"  # STOP, safety SAFEGUARD_STOP
     PROTECTIVE_STOP = "PROTECTIVE_STOP"  # STOP, safety PROTECTIVE_STOP
     EMERGENCY_STOP = "EMERGENCY_STOP"  # STOP, safety EMERGENCY_STOP
 
 
-LEAVING = frozenset({Effect.LEAVE, Effect.LEAVE_TO_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP})
+LEAVING = frozenset({Effect.LEAVE, Effect.LEAVE_TO_STOP, Effect.SAFEGUARD_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP})
 """Effects that end free-drive."""
 
 
@@ -51,6 +52,7 @@ class Row(NamedTuple):
     clears: Clears = Clears.NEXT
     override: str = "nobody"  # who may override it
     cool_down: bool = False  # starts the cool-down (FD-12c)
+    category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
 
 
 WALL = ("wall", "part", "distance", "way")
@@ -240,6 +242,23 @@ TABLE: dict[Kind, Row] = {
         Clears.RESET,
         cool_down=True,
     ),
+    # Enabling device: released and fully pressed both stop
+    Kind.REFUSED_ENABLING: _refused(
+        "Free-drive refused: enabling device {grip}", "Hold the enabling device in its middle position.", ("grip",)
+    ),
+    Kind.LEFT_ENABLING: _left(
+        "Free-drive ended: enabling device {grip}",
+        "Let go, then hold the enabling device in its middle position.",
+        ("grip",),
+        Severity.WARNING,
+    ),
+    Kind.RUN_ENABLING: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "Program stopped: enabling device {grip}",
+        "Let go, hold the enabling device in its middle position, then resume.",
+        ("grip",),
+    ),
     # Safety (FD-1)
     Kind.RUN_SENSORS_LOST: Row(
         Effect.PROTECTIVE_STOP,
@@ -262,8 +281,41 @@ TABLE: dict[Kind, Row] = {
         ("mode",),
         Clears.RESET,
         cool_down=True,
+        category=1,
+    ),
+    Kind.SAFEGUARD_STOP: Row(
+        Effect.SAFEGUARD_STOP,
+        Severity.STOP,
+        "Safeguard stop",
+        "It was {mode}. Close the safeguard, then reset.",
+        ("mode",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    Kind.SAFEGUARD_CLOSED: _info("Safeguard closed", "Reset to go on."),
+    Kind.REDUCED_ON: _info(
+        "Reduced speed",
+        "Tool {tcp:.2f} m/s, elbow {elbow:.2f} m/s, joints {joint_speed:.2f} rad/s at most.",
+        ("tcp", "elbow", "joint_speed"),
+    ),
+    Kind.REDUCED_OFF: _info("Reduced speed off"),
+    Kind.REDUCED_EXCEEDED: Row(
+        Effect.PROTECTIVE_STOP,
+        Severity.STOP,
+        "Protective stop: {parameter} in REDUCED",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Move it more slowly, then reset.",
+        ("parameter", "part", "value", "limit", "unit"),
+        Clears.RESET,
+        cool_down=True,
+        category=0,
+    ),
+    Kind.STOPPED: _info(
+        "Stopped in {time:.2f} s",
+        "Way of the tool {distance:.3f} m, stop category {category}.",
+        ("time", "distance", "category", "cause"),
     ),
     Kind.RESET: _info("Reset to TEACH"),
+    Kind.RESET_REFUSED_SAFEGUARD: _denied("Reset refused: safeguard open", "Close it, then reset."),
     Kind.RESET_REFUSED_SIGNAL: _denied("Reset refused: free-drive button held", "Let go of it, then reset."),
     Kind.RESET_REFUSED_MOVING: _denied(
         "Reset refused: the arm moves",

@@ -27,7 +27,7 @@ class Controller:
 
     Tracking (HOLD, BRAKE, FOLLOW) is feed-forward + torque feedback + feedback of state errors, each a module of its own, fed
     by different references. A program's motion gets the friction estimate as feed-forward on top (AF-7). FREE is the
-    free-drive law, without any feedback of position.
+    free-drive law, without any feedback of position. OFF is no current at all.
 
     Args:
         arm: the arm's numbers.
@@ -65,7 +65,11 @@ class Controller:
         if self._blind and not blind:
             self.references.skip()  # the arm is not where the reference went on to
         self._blind = blind
-        if decision.law is Law.FREE:
+        if decision.law is Law.OFF:
+            # No power: the brakes hold. Whatever comes after it begins anew, as after free-drive.
+            self.references.skip()
+            torque = self._nothing
+        elif decision.law is Law.FREE:
             self.references.skip()
             if self._law is not Law.FREE:
                 self.free_drive.start(estimate)

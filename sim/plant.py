@@ -54,6 +54,7 @@ class Plant:
         values = arm.transmissions
         self._stiffness, self._cubic = np.array(values.stiffness), np.array(values.stiffening)
         self._damping, self._slip_stiffness = np.array(values.damping), np.array(values.hysteresis_stiffness)
+        self._brakes = np.array(arm.limits.torque)
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
@@ -131,12 +132,13 @@ class Plant:
             rows[:, 3 * j : 3 * j + 3] = start + np.arange(3 * k).reshape(k, 3)
         return rows
 
-    def advance(self, motor_torque: Array, touches: Sequence[Touch] = ()) -> None:
+    def advance(self, motor_torque: Array, touches: Sequence[Touch] = (), braked: bool = False) -> None:
         """Advance by one control tick.
 
         Args:
             motor_torque: true motor torque referred to the output (n,) [N·m], constant over the tick.
             touches: what hands do to parts during the tick.
+            braked: the brakes hold every joint, with what it is rated for.
 
         Raises:
             KeyError: a touch names a part that does not exist; `parts` has those that do.
@@ -146,6 +148,8 @@ class Plant:
         if self._objects.size:
             self._move_world()
         self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
+        if braked:
+            self.friction_in += self._brakes
         _set_friction(self._bias, self._rubs, self.friction_in)
         _scatter(data.qfrc_applied, self._dof_theta, motor_torque)
         mujoco.mj_step(model, data, nstep=self.step.substeps)

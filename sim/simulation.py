@@ -1,5 +1,6 @@
 """One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -72,6 +73,7 @@ class Simulation:
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
+        self._braked = False  # by the last decision
         self._estimate: Estimate | None = None
 
     def _load(self) -> Body:
@@ -110,11 +112,14 @@ class Simulation:
             self.configure_payload(wishes.configured)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
-        estimate = self.estimator.update(sample, references.move_done, references.refusal, use, references.answered)
+        # Nothing is to be learned from joints that the brakes hold.
+        learned = msgspec.structs.replace(use, adaptive=False) if self._braked else use
+        estimate = self.estimator.update(sample, references.move_done, references.refusal, learned, references.answered)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
         decision = self.supervisor.step(estimate, wishes.inputs)
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
-        self.plant.advance(self._current * self._motor, wishes.touches)
+        self._braked = decision.law is Law.OFF
+        self.plant.advance(self._current * self._motor, wishes.touches, self._braked)
         self._estimate, self._decision = estimate, decision
         return decision
 

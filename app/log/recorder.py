@@ -22,7 +22,7 @@ from pendant.events import Event, Kind
 from pendant.modes import Mode, Phase, Safety
 from pendant.parameters import PARAMETERS
 from pendant.program import ProgramState
-from pendant.settings import Settings, describe, digest, value_of
+from pendant.settings import Settings, describe, digest, limits_checksum, value_of
 from pendant.table import TABLE, render
 from sim.loop import SNAPSHOT_TICKS
 from sim.plant import Plant
@@ -287,6 +287,7 @@ class Recorder:
                 "robot": arm.name,
                 "seed": str(scenario.seed),
                 "settings": digest(simulation.settings),
+                "limits": limits_checksum(simulation.settings),
             },
         )
         file.note("words", {name: " ".join(words) for name, words in WORDS.items()})

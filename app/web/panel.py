@@ -13,7 +13,7 @@ from pendant.events import Event, Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Mode, Phase
-from pendant.settings import Settings, digest
+from pendant.settings import Settings, limits_checksum
 from pendant.table import TABLE, Clears, Effect, Severity, render
 from sim.snapshot import Snapshot
 
@@ -123,7 +123,7 @@ class Panel:
         seen = snapshot.estimate
         settings = self._loop.settings
         if settings is not self._settings:
-            self._settings, self._digest = settings, digest(settings)
+            self._settings, self._digest = settings, limits_checksum(settings)
         return [
             ("Tool, elbow", f"{1000 * seen.v_tcp:.0f}, {1000 * seen.v_elbow:.0f} mm/s"),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),

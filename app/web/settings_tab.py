@@ -11,7 +11,7 @@ from app.web.html import Html, enable
 from app.web.running import Running
 from pendant.events import Event, Kind
 from pendant.modes import Mode, Phase
-from pendant.settings import Row, Settings, Value, describe, digest, value_of
+from pendant.settings import Row, Settings, Value, describe, limits_checksum, value_of
 from sim.snapshot import Snapshot
 
 CHANGED = "● "
@@ -117,7 +117,7 @@ class SettingsTab:
             if control.label != (label := _label(row, value)):
                 control.label = label
         state = "Locked while the arm is free or runs" if self._locked else "Taken at the next tick"
-        self._line.show(svg.facts([("Limits checksum", digest(settings)), ("Changed", f"{count}"), ("Now", state)]))
+        self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Now", state)]))
 
 
 def round_down(span: float) -> int:

@@ -15,6 +15,7 @@ WORDS = {
 SAFETY_WORDS = {
     Safety.NORMAL: "Normal",
     Safety.REDUCED: "Reduced",
+    Safety.SAFEGUARD_STOP: "Safeguard stop",
     Safety.PROTECTIVE_STOP: "Protective stop",
     Safety.EMERGENCY_STOP: "Emergency stop",
 }

@@ -107,6 +107,12 @@ class World:
     program: ProgramState = ProgramState.NONE
     at: int = 0
     forces: list[float] = field(default_factory=list)  # of the last tenth of a second, the sensor being valid
+    safeguard: bool = False  # open
+    reduced: bool = False
+    category: int = 2  # hardest stop since the last reset
+    stopped_at: int = 0  # tick of the stop
+    unmeasured: bool = False  # a stop whose end has not been seen yet
+    off_from: float = inf  # drive power is removed from this tick on
     tried: bool = False  # the sensor was valid when the sequence began
 
 
@@ -134,6 +140,8 @@ def _static(w: World, t: int, s: Settings) -> bool:
 def _law(w: World, t: int, s: Settings) -> Law:
     if w.phase is Phase.SEQUENCE:
         return Law.FREE
+    if w.mode is Mode.STOP and t >= w.off_from:
+        return Law.OFF
     moving_law = {
         Mode.FREE_DRIVE: Law.FREE,
         Mode.STOP: Law.BRAKE,
@@ -156,7 +164,12 @@ def _end(w: World, t: int, present: bool, cool: bool) -> None:
         w.cool_from = t
 
 
-def _stop(w: World, safety: Safety) -> None:
+def _stop(w: World, t: int, safety: Safety, static: bool, category: int = 2) -> None:
+    if not w.unmeasured and w.category == 2:
+        w.stopped_at, w.unmeasured = t, not static
+    w.category = min(w.category, category)
+    if w.category == 0 or (w.category == 1 and static):
+        w.off_from = min(w.off_from, t)
     w.mode = Mode.STOP
     w.safety = Safety(max(w.safety, safety))
     w.brake = True
@@ -182,6 +195,12 @@ def _tick(w: World, t: int, i: Step, s: Settings, kinds: list[Kind]) -> None:
     if not i.joints or not abs(i.qd) < s.static.speed:
         w.fast_at = t
     static = _static(w, t, s)
+    if w.category == 1 and t > w.stopped_at and (static or t - w.stopped_at >= 500):
+        w.off_from = min(w.off_from, t)
+    if w.unmeasured and (static or not i.joints):
+        w.unmeasured = False
+        if i.joints:
+            kinds.append(Kind.STOPPED)
     pressed = present and not was_present
     let_go = was_present and not present
 
@@ -189,19 +208,38 @@ def _tick(w: World, t: int, i: Step, s: Settings, kinds: list[Kind]) -> None:
     _modes(w, t, i, present, kinds)
     _programs(w, t, i, static, present, kinds)
     _free(w, t, i, s, present, pressed, let_go, static, kinds)
+    if Command.DETECTION in i.commands:
+        kinds.append(Kind.SETTING_CHANGED)
 
 
 def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+    if Command.SAFEGUARD_OPEN in i.commands and not w.safeguard:
+        kinds.append(Kind.SAFEGUARD_STOP)
+        w.safeguard = True
+        if w.phase is not Phase.OFF:
+            _end(w, t, present, cool=True)
+        _stop(w, t, Safety.SAFEGUARD_STOP, static)
+    elif Command.SAFEGUARD_CLOSED in i.commands and Command.SAFEGUARD_OPEN not in i.commands and w.safeguard:
+        kinds.append(Kind.SAFEGUARD_CLOSED)
+        w.safeguard = False
+    reduced = Command.REDUCED_ON in i.commands or (w.reduced and Command.REDUCED_OFF not in i.commands)
+    if reduced != w.reduced:
+        kinds.append(Kind.REDUCED_ON if reduced else Kind.REDUCED_OFF)
+        w.reduced = reduced
+    calm = Safety.REDUCED if w.reduced else Safety.NORMAL
+    if w.safety in (Safety.NORMAL, Safety.REDUCED):
+        w.safety = calm
     if Command.EMERGENCY_STOP in i.commands and w.safety is not Safety.EMERGENCY_STOP:
         kinds.append(Kind.EMERGENCY_STOP)
         if w.phase is not Phase.OFF:
             _end(w, t, present, cool=True)
-        _stop(w, Safety.EMERGENCY_STOP)
+        _stop(w, t, Safety.EMERGENCY_STOP, static, 1)
     if Command.RESET in i.commands:
         rows = [
             (Command.EMERGENCY_STOP in i.commands, Kind.COMMAND_REFUSED),
             (w.mode is not Mode.STOP, Kind.COMMAND_REFUSED),
             (present, Kind.RESET_REFUSED_SIGNAL),
+            (w.safeguard, Kind.RESET_REFUSED_SAFEGUARD),
             (not i.joints, Kind.RESET_REFUSED_SENSORS),
             (not static, Kind.RESET_REFUSED_MOVING),
             (True, Kind.RESET),
@@ -209,7 +247,8 @@ def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[
         kind = next(kind for condition, kind in rows if condition)
         kinds.append(kind)
         if kind is Kind.RESET:
-            w.mode, w.safety, w.brake = Mode.TEACH, Safety.NORMAL, False
+            w.mode, w.safety, w.brake = Mode.TEACH, calm, False
+            w.category, w.unmeasured, w.off_from = 2, False, inf
 
 
 def _modes(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
@@ -272,7 +311,7 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
         kinds.append(Kind.RUN_SENSORS_LOST)
         if w.phase is not Phase.OFF:
             _end(w, t, present, cool=True)
-        _stop(w, Safety.PROTECTIVE_STOP)
+        _stop(w, t, Safety.PROTECTIVE_STOP, static)
     elif i.cannot:
         kinds.append(Kind.PROGRAM_FAILED)
         w.mode, w.program, w.brake = w.origin, ProgramState.STOPPED, True
@@ -351,7 +390,7 @@ def _stays(w: World, t: int, i: Step, s: Settings, present: bool, kinds: list[Ki
         kinds += [Kind.ENTRY_PREVENTED] * sum(beyond) + [Kind.SEQUENCE_STOPPED if stop else Kind.REFUSED_LIMIT]
         _end(w, t, present, cool=True)
         if stop:
-            _stop(w, Safety.PROTECTIVE_STOP)
+            _stop(w, t, Safety.PROTECTIVE_STOP, _static(w, t, s))
     return not any(beyond)
 
 
@@ -377,7 +416,7 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
     if not i.joints:
         kinds.append(Kind.SENSORS_LOST)
         _end(w, t, present, cool=True)
-        _stop(w, Safety.NORMAL)
+        _stop(w, t, Safety.NORMAL, static)
         return
     if w.wrench and not i.wrench:
         kinds.append(Kind.WRENCH_LOST)

@@ -184,7 +184,7 @@ def test_a_stop_while_it_brakes_ends_the_program() -> None:
     bench.step(Inputs(commands=(Command.EMERGENCY_STOP,)))
     bench.run(100)
     assert bench.last.mode is Mode.STOP
-    assert bench.last.law is Law.BRAKE
+    assert bench.last.law is Law.OFF
     assert bench.last.program is ProgramState.STOPPED
 
 

@@ -5,7 +5,7 @@ import math
 import msgspec
 import pytest
 
-from pendant.settings import Row, SettingError, Settings, apply, describe, digest, find, ticks, value_of
+from pendant.settings import Row, SettingError, Settings, Value, apply, describe, digest, find, limits_checksum, ticks, value_of
 
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
 EXPECTED = {
@@ -40,6 +40,12 @@ EXPECTED = {
     "walls.push_back": (2.0, 2.0, 50.0, "N", "VW-5", True),
     "walls.leave": (False, None, None, "", "VW-6", True),
     "walls.stop": (False, None, None, "", "VW-6", True),
+    "enabling.on": (False, None, None, "", "FD-23", True),
+    "reduced.on": (True, None, None, "", "FD-1", True),
+    "reduced.tcp_speed": (0.25, 0.05, 0.25, "m/s", "FD-1", True),
+    "reduced.elbow_speed": (0.25, 0.05, 0.25, "m/s", "FD-1", True),
+    "reduced.joint_speed": (1.0, 0.1, 3.0, "rad/s", "FD-1", True),
+    "reduced.transition": (0.5, 0.1, 1.0, "s", "FD-1", True),
     "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
     "static.time": (0.1, 0.02, 2.0, "s", "static", True),
 }
@@ -229,10 +235,25 @@ def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
             msgspec.convert(bad, Settings)
 
 
+def other(row: Row) -> Value:
+    if row.low is None or row.high is None:
+        return not row.default
+    return row.low if row.high == row.default else row.high
+
+
+def test_the_limits_checksum_is_of_what_is_locked() -> None:
+    shipped = limits_checksum(Settings())
+    sums = {row.name: limits_checksum(apply(Settings(), {row.name: other(row)})) for row in describe()}
+    assert {name for name, value in sums.items() if value == shipped} == {row.name for row in describe() if not row.locked}
+    assert len(set(sums.values()) - {shipped}) == sum(row.locked for row in describe())
+    assert len(shipped) == 8
+    assert shipped != digest(Settings())
+
+
 def test_the_digest_tells_settings_apart() -> None:
     digests = {digest(Settings())}
     for row in describe():
-        value = (not row.default) if row.low is None else row.high
+        value = other(row)
         digests.add(digest(apply(Settings(), {row.name: value})))
     assert len(digests) == len(describe()) + 1
     assert digest(apply(Settings(), {"free_drive.period": 3})) == digest(Settings())

@@ -9,11 +9,12 @@ from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Safety
 from pendant.program import JointMove, Program, ProgramState, Wait
-from pendant.settings import Settings, apply, describe, value_of
+from pendant.settings import Row, Settings, apply, describe, value_of
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
 from tests.pendant.oracle import PROGRAM, WRONG
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+from tests.pendant.test_settings import other
 
 START = Bench().supervisor.settings
 
@@ -73,7 +74,7 @@ def test_emergency_stop_and_reset() -> None:
     bench.step(command(Command.RESET), estimate(joints_valid=False))
     assert bench.last.events == (Event(Kind.RESET_REFUSED_SENSORS, bench.tick, {"sensor": "joint encoders and motor currents"}),)
     bench.run(60)
-    assert bench.last.law is Law.BRAKE
+    assert bench.last.law is Law.OFF
     bench.step(command(Command.RESET))
     assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.TEACH, Safety.NORMAL, Law.HOLD)
     assert bench.last.events == (Event(Kind.RESET, bench.tick, {}),)
@@ -237,10 +238,10 @@ def test_programs_that_cannot_be_loaded() -> None:
 
 
 @pytest.mark.parametrize("row", describe(), ids=lambda row: row.name)
-def test_limits_are_locked_in_free_drive_and_run(row: object) -> None:
-    name, locked = row.name, row.locked  # type: ignore[attr-defined]
+def test_limits_are_locked_in_free_drive_and_run(row: Row) -> None:
+    name, locked = row.name, row.locked
     default = value_of(START, name)
-    value = not default if row.low is None else row.high  # type: ignore[attr-defined]
+    value = not default if row.low is None else other(row)
     change = Inputs(settings={name: value})
     for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
         before = bench.supervisor.settings

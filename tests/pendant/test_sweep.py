@@ -62,6 +62,11 @@ SITUATIONS = {
     "RUN paused": ([*IN_RUN, Step(commands=(Command.PAUSE_PROGRAM,))], Mode.RUN, Phase.OFF),
     "TEACH braking": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.STOP_PROGRAM,), qd=0.3)], Mode.TEACH, Phase.OFF),
     "emergency stop": ([*REST, Step(commands=(Command.EMERGENCY_STOP,))], Mode.STOP, Phase.OFF),
+    "emergency stop, moving": ([*ON, Step(commands=(Command.EMERGENCY_STOP,), qd=0.4)], Mode.STOP, Phase.OFF),
+    "safeguard stop": ([*REST, Step(commands=(Command.SAFEGUARD_OPEN,))], Mode.STOP, Phase.OFF),
+    "safeguard stop, moving": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.SAFEGUARD_OPEN,))], Mode.STOP, Phase.OFF),
+    "reduced": ([*REST, Step(commands=(Command.REDUCED_ON,))], Mode.TEACH, Phase.OFF),
+    "reduced and stopped": ([*REST, Step(commands=(Command.REDUCED_ON, Command.EMERGENCY_STOP))], Mode.STOP, Phase.OFF),
     "protective stop": ([*IN_RUN, Step(joints=False)], Mode.STOP, Phase.OFF),
     "STOP": ([*ON, Step(joints=False, held=True)], Mode.STOP, Phase.OFF),
     "activation": (REST + ticks_of(4, held=True), Mode.TEACH, Phase.ACTIVATION),
@@ -131,7 +136,7 @@ def test_situations_cover_every_mode_phase_safety_and_law() -> None:
     seen = [agree(stream, SHORT)[-1] for stream, _, _ in SITUATIONS.values()]
     assert {item[0] for item in seen} == set(Mode)
     assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE}
-    assert {item[1] for item in seen} == set(Safety) - {Safety.REDUCED}
+    assert {item[1] for item in seen} == set(Safety)
     assert {item[3] for item in seen} == set(Law)
     assert {item[4] for item in seen} == set(ProgramState)
 

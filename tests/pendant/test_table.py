@@ -17,11 +17,16 @@ EXAMPLE: Values = {
         "state": "off",
     },
     "allowed": "TEACH, NORMAL",
+    "category": 1,
+    "cause": "emergency_stop",
     "command": "resume_program",
+    "elbow": 0.25,
+    "grip": "fully pressed",
     "from": "FREE_DRIVE",
     "gain": 1.0,
     "force": 17.6,
     "joint": "shoulder",
+    "joint_speed": 1.0,
     "joints": "shoulder +12.3°, base -10.4°, wrist_1 +3.2°, wrist_2 +1.1°",
     "late": 123.4,
     "left": 0.4,
@@ -38,6 +43,7 @@ EXAMPLE: Values = {
     "remaining": 1.5,
     "sensor": "joint encoders and motor currents",
     "step": 3,
+    "tcp": 0.25,
     "steps": 12,
     "time": 0.1,
     "to": "TEACH",
@@ -72,6 +78,10 @@ EFFECTS = {
     Kind.SENSORS_LOST: Effect.LEAVE_TO_STOP,
     Kind.RUN_SENSORS_LOST: Effect.PROTECTIVE_STOP,
     Kind.EMERGENCY_STOP: Effect.EMERGENCY_STOP,
+    Kind.SAFEGUARD_STOP: Effect.SAFEGUARD_STOP,
+    Kind.REDUCED_EXCEEDED: Effect.PROTECTIVE_STOP,
+    Kind.REFUSED_ENABLING: Effect.NO_ENTRY,
+    Kind.LEFT_ENABLING: Effect.LEAVE,
 }
 """All other kinds change nothing."""
 
@@ -93,10 +103,17 @@ def test_refusals_and_leavings_start_the_cool_down_except_the_deactivation_signa
 
 
 def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> None:
-    stops = {Effect.LEAVE_TO_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP}
+    stops = {Effect.LEAVE_TO_STOP, Effect.SAFEGUARD_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP}
     for row in TABLE.values():
         assert (row.clears is Clears.RESET) == (row.effect in stops) == (row.severity is Severity.STOP)
         assert row.override == "nobody"
+
+
+def test_stop_categories_are_those_of_the_robots() -> None:
+    """facts/free-drive.md 1.8: an emergency stop removes the power at standstill, a safeguard stop leaves it on; 1.3: beyond
+    REDUCED is category 0."""
+    others = {Kind.EMERGENCY_STOP: 1, Kind.REDUCED_EXCEEDED: 0}
+    assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 
 
 def test_severities_are_ordered() -> None:
@@ -116,7 +133,7 @@ def fields(row: Row) -> set[str]:
 def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
     row = TABLE[kind]
     assert fields(row) <= set(row.keys)
-    assert set(row.keys) - fields(row) <= {"from", "gain", "unit", "parameter"} | LOGGED
+    assert set(row.keys) - fields(row) <= {"from", "gain", "unit", "parameter", "cause"} | LOGGED
     assert len(set(row.keys)) == len(row.keys)
 
 

@@ -40,16 +40,16 @@ SCENARIO = Scenario(seed=11, tool=PROBE, payload_true=TWO_KG, payload_configured
 
 
 def script(tick: int) -> Wishes:
-    """5 s in which much happens: guided, sensors failing, stopped, reset, a program, a drop."""
+    """5.6 s in which much happens: guided, sensors failing, stopped, reset, a program, a drop."""
     held = frozenset({Button.FREE_DRIVE}) if tick < 800 else frozenset()
     released = frozenset({Button.FREE_DRIVE}) if tick == 800 else frozenset()
     move = JointMove(q=(0.2, -1.3, 1.4, -1.8, -1.5, 0.3), speed=1.0, acceleration=1.0)
     steps = (move, Wait(duration=0.05), LinearMove(position=(9.0, 0.0, 0.0), quaternion=(0.0, 1.0, 0.0, 0.0)))
     commands = {
         1300: (Command.EMERGENCY_STOP,),
-        1700: (Command.RESET,),
-        1720: (Command.START_PROGRAM,),
-        2300: (Command.NORMAL,),
+        1900: (Command.RESET,),
+        2150: (Command.START_PROGRAM,),
+        2600: (Command.NORMAL,),
     }.get(tick, ())
     touches: list[Touch] = []
     if 820 < tick < 1300:
@@ -61,9 +61,9 @@ def script(tick: int) -> Wishes:
         900: (SensorFault(sensor="gyro", noise_factor=3.0),),
         1100: (SensorFault(sensor="force_torque", outage=True),),
         1200: (SensorFault(sensor="force_torque"),),
-        2200: (DropPayload(),),
+        2500: (DropPayload(),),
     }.get(tick, ())
-    program = Program(name="trip", steps=steps) if tick == 1710 else None
+    program = Program(name="trip", steps=steps) if tick == 1950 else None
     return Wishes(Inputs(held, released, commands, {}, program), tuple(touches), changes)
 
 
@@ -72,7 +72,7 @@ def play(simulation: Simulation) -> tuple[bytes, list[Event], bytes]:
     events: list[Event] = []
     angles = bytearray()
     where = simulation.plant
-    for tick in range(2500):
+    for tick in range(2800):
         events += simulation.tick(script(tick)).events
         angles += where.q.tobytes()
     return msgspec.json.encode(events), events, bytes(angles)
@@ -200,7 +200,7 @@ def test_truth_never_reaches_the_controller(monkeypatch: pytest.MonkeyPatch) -> 
     simulation.scenario = msgspec.structs.replace(SCENARIO, payload_true=Load(mass=float("nan")), world=[], seed=0)
     simulation.arm = blinded_arm(UR5E)
     events: list[Event] = []
-    for tick in range(2500):
+    for tick in range(2800):
         events += simulation.tick(script(tick)).events
         assert np.isnan(plant.q).all(), "the plant must be closed between ticks"
     assert msgspec.json.encode(events) == played(11)[0]

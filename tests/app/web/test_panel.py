@@ -11,7 +11,7 @@ from pendant.events import Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import Mode, Phase, Safety
-from pendant.settings import Settings, apply, digest
+from pendant.settings import Settings, apply, limits_checksum
 from sim.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -131,10 +131,10 @@ def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: Fak
 
 def test_the_checksum_of_the_limits_is_shown(loop: FakeLoop, still: Served) -> None:
     still.docks.show(loop.latest())
-    assert digest(Settings()) in still.panel.numbers.shown
+    assert limits_checksum(Settings()) in still.panel.numbers.shown
     loop.settings = apply(Settings(), {"free_drive.gain": 2.0})
     still.docks.show(loop.latest())
-    assert digest(loop.settings) in still.panel.numbers.shown
+    assert limits_checksum(loop.settings) in still.panel.numbers.shown
 
 
 def test_the_log_is_newest_first_and_escaped(loop: FakeLoop, still: Served) -> None:

@@ -7,7 +7,7 @@ import pytest
 from app.web.server import Served
 from app.web.settings_tab import CHANGED, SECTIONS, section_of
 from pendant.modes import Mode
-from pendant.settings import Settings, apply, describe, digest
+from pendant.settings import Settings, apply, describe, limits_checksum
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -46,7 +46,7 @@ def test_a_changed_value_goes_to_the_desk_and_is_marked_once_it_holds(served: Se
     assert not control.label.startswith(CHANGED)
     loop.settings = apply(Settings(), {"free_drive.period": 7.5})
     until(lambda: control.label.startswith(CHANGED), "marked")
-    until(lambda: digest(loop.settings) in served.docks.settings._line.shown, "the checksum")
+    until(lambda: limits_checksum(loop.settings) in served.docks.settings._line.shown, "the checksum")
     client.set(served.docks.settings.defaults._impl.uuid, value=True)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings.get("free_drive.period") == 3.0, "the default")
 
