@@ -103,10 +103,6 @@ class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
     input: Annotated[int, Meta(ge=0, le=7)]
     high: bool
 
-    def planned(self) -> str | None:
-        """See `Action.planned`."""
-        return "FD-5"
-
 
 class Effort(Action, frozen=True, kw_only=True):
     """Base of what a hand does to a point of the arm for a while."""

@@ -32,7 +32,20 @@ MOUNTINGS: dict[str, list[float]] = {
 
 FEATURES: dict[str, dict[str, float | bool]] = {
     "FD-3": {"free_drive.gain": 0.0},
+    "FD-5": {
+        "signals.digital": False,
+        "signals.push.on": False,
+        "signals.twist.on": False,
+        "signals.joints.on": False,
+        "signals.pattern.on": False,
+        "signals.turn.on": False,
+        "signals.force_step.on": False,
+        "signals.tap.on": False,
+    },
+    "FD-6": {"signals.push.angle": 90.0, "signals.push.torque_limit": 20.0, "signals.push.radius": 0.0},
     "FD-7": {"activation.period": 0.0},
+    "FD-8": {"handshake.on": False},
+    "FD-8a": {"let_go.on": False},
     "FD-9": {"sequence.on": False},
     "FD-14": {"free_drive.period": 30.0},  # longer than a session: nothing ends by itself
     "FD-15": {"free_drive.restart_period": 30.0},

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from app.actions import (
     COMMAND_OF_PROGRAM,
     Action,
+    DigitalInput,
     Hold,
     Laboratory,
     Press,
@@ -77,6 +78,7 @@ class Timeline:
         self._joints = joints
         self._program = program
         self._held: set[Button] = set()
+        self._high: set[int] = set()  # digital inputs
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
         """The wishes for `tick`; `snapshot` copies the tick before, and is called only where a hand grabs the arm."""
@@ -91,7 +93,8 @@ class Timeline:
                 entry.start = tick
             self._act(entry, tick - entry.start, now, snapshot)
         program, self._program = self._program, None
-        inputs = Inputs(frozenset(self._held), frozenset(now.released), tuple(now.commands), now.settings, program)
+        released, commands = frozenset(now.released), tuple(now.commands)
+        inputs = Inputs(frozenset(self._held), released, commands, now.settings, program, frozenset(self._high))
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -121,6 +124,8 @@ class Timeline:
             return
         entry.done = True
         match action:
+            case DigitalInput():
+                (self._high.add if action.high else self._high.discard)(action.input)
             case Press():
                 self._held.add(Button(action.control))
             case Release():

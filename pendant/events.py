@@ -12,6 +12,12 @@ class Kind(StrEnum):
 
     ACTIVATION_STARTED = "activation_started"
     ACTIVATION_CANCELLED = "activation_cancelled"
+    SIGNAL_SEEN = "signal_seen"
+    CONFIRM_ASKED = "confirm_asked"
+    REFUSED_UNCONFIRMED = "refused_unconfirmed"
+    LET_GO_ASKED = "let_go_asked"
+    REFUSED_STILL_HELD = "refused_still_held"
+    PUSHED = "pushed"
     SEQUENCE_STARTED = "sequence_started"
     ENTERED = "entered"
     ENTRY_PREVENTED = "entry_prevented"

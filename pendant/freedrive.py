@@ -5,6 +5,7 @@ A period of N ticks that begins in tick t ends in tick t + N; its remainder is N
 
 from typing import NamedTuple
 
+from pendant.attempt import ABSENT, Attempt, Outcome
 from pendant.barrier import Consequence, Reading
 from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.decision import Remaining, WallState
@@ -19,12 +20,18 @@ from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, ticks
+from pendant.sources import BUTTON, NONE, Presence
 from pendant.table import TABLE, Effect
 from pendant.walls import Start
 from pendant.watch import Stillness, WrenchMean, joints_ok
 
-ABSENT = ticks(0.2)
-"""A signal present at a refusal or a leaving counts again after an absence of so many ticks (FD-7)."""
+NAMES = {
+    Phase.ACTIVATION: "activation",
+    Phase.FEEDBACK: "feedback",
+    Phase.CONFIRM: "confirmation",
+    Phase.LET_GO: "let go",
+}
+"""Of the periods before the sequence, for interfaces."""
 
 ASKED_FOR = frozenset({Kind.LEFT_PRESS, Kind.LEFT_RELEASE, Kind.DEACTIVATED})
 """Leavings that the user asked for: nobody has to be told the way back (FD-22)."""
@@ -44,6 +51,8 @@ class Surroundings(NamedTuple):
     still: Stillness
     mean: WrenchMean  # of F_user
     grip: Grip | None = None  # of the enabling device, None where none is needed
+    hand_off: bool = True  # no hand is felt (FD-8a)
+    felt: float = 0.0  # change of the force at the flange from the untouched state [N]
 
     @property
     def enabled(self) -> bool:
@@ -56,6 +65,8 @@ class FreeDrive:
 
     __slots__ = (
         "_absent",
+        "_appeared",
+        "_attempt",
         "_began",
         "_blocked",
         "_containment",
@@ -72,6 +83,7 @@ class FreeDrive:
         "_pressed",
         "_rated",
         "_sequence",
+        "_signal",
         "_total",
         "_verdict",
         "baseline",
@@ -100,6 +112,9 @@ class FreeDrive:
         self._cool_total = 0
         self._blocked = False  # the signal was present at a refusal or a leaving
         self._absent = ABSENT  # ticks without the signal
+        self._signal = NONE  # of activation, in this tick
+        self._appeared = False  # it did in this tick
+        self._attempt: Attempt | None = None
         self._held = False  # the button, as sensed in this tick
         self._began = False
         self._ended = False
@@ -125,8 +140,9 @@ class FreeDrive:
     def periods(self) -> tuple[Remaining, ...]:
         """Every running period (FD-20)."""
         running: list[Remaining] = []
-        if self.phase is Phase.ACTIVATION:
-            running.append(Remaining("activation", self._left, self._total))
+        attempt = self._attempt
+        if attempt is not None:
+            running.append(Remaining(NAMES[attempt.phase], attempt.left, attempt.total))
         elif self.phase is Phase.SEQUENCE:
             running.append(Remaining("sequence", self._left, self._total))
         elif self.phase is Phase.PERIOD:
@@ -150,16 +166,22 @@ class FreeDrive:
         """The user's force is amplified: not while a payload may have dropped (FD-19)."""
         return self.use_wrench and not (self._operation is not None and self._operation.suspect)
 
-    def sense(self, held: bool) -> None:
-        """Begin a tick: the button, the cool-down, the absence of the signal."""
+    def sense(self, held: bool, signal: Presence | None = None) -> None:
+        """Begin a tick: the button, the signal of activation (None: as the button), the cool-down, the absence of the signal."""
+        if signal is None:
+            signal = BUTTON if held else NONE
+        self._appeared = bool(signal.source) and not self._signal.source
+        self._signal = signal
         self._began = held and not self._held
         self._ended = self._held and not held
         self._held = held
         if self._cool > 0:
             self._cool -= 1
-        self._absent = 0 if held else min(self._absent + 1, ABSENT)
+        self._absent = 0 if held or signal.source else min(self._absent + 1, ABSENT)
         if self._absent == ABSENT:
             self._blocked = False
+        elif signal.by_hand and self._cool > 0:
+            self._blocked = True
 
     def step(self, around: Surroundings, settings: Settings) -> list[Event]:
         """Decide the tick that `sense` began. Returns what happened, in order."""
@@ -180,13 +202,8 @@ class FreeDrive:
         if self.phase is Phase.SEQUENCE:
             return self._check(around, settings)
         events = self._verdict.step(seen(around), self._cool <= 1) if self._verdict.waiting else []
-        if self._held:
+        if self._signal.source or self._attempt is not None:
             return events + self._activate(around, settings)
-        if self.phase is Phase.ACTIVATION:
-            values: Values = {"value": (self._total - self._left + 1) * TICK, "limit": self._total * TICK}
-            self.phase = Phase.OFF
-            self._containment.leave()
-            events.append(Event(Kind.ACTIVATION_CANCELLED, around.estimate.tick, values))
         return events
 
     def stop(self, kind: Kind, settings: Settings) -> None:
@@ -198,26 +215,55 @@ class FreeDrive:
         tick = around.estimate.tick
         events: list[Event] = []
         if self.phase is Phase.OFF and (self._blocked or self._cool > 0):
-            return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._began else events
-        if not may_enter(around.mode, settings):
+            return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._appeared else events
+        attempt = self._attempt
+        counting = attempt is not None and attempt.phase is Phase.ACTIVATION and not self._signal.source
+        if not counting and not may_enter(around.mode, settings):
             return [self._refuse(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
         if not around.enabled:
             return [self._disabled(around, settings)]
-        if self.phase is Phase.OFF:
-            self.phase = Phase.ACTIVATION
-            self._total = self._left = ticks(settings.activation.period)
+        if attempt is None:
+            attempt = self._attempt = Attempt(self._signal, settings)
             self._containment.begin(Start.ACTIVATION, settings.walls)
-            events.append(Event(Kind.ACTIVATION_STARTED, tick, {"period": self._total * TICK}))
+            events.append(_started(attempt, tick))
+            outcome = attempt.first()
         else:
-            self._left -= 1
+            outcome = attempt.step(self._signal, around.hand_off)
+        self.phase = attempt.phase
+        if outcome is Outcome.CANCELLED:
+            self._give_up()
+            limit = attempt.total * TICK
+            return [*events, Event(Kind.ACTIVATION_CANCELLED, tick, {"value": attempt.present, "limit": limit})]
         if joints_ok(around.estimate):  # a wall may be anchored here already (VW-6)
             reading = self._containment.step(around.estimate, *NOBODY)
             if reading is not None:
                 events.append(self._refuse_wall(reading, tick, settings))
                 return events
-        if self._left == 0:
+        if outcome is Outcome.READY:
             events += self._end_activation(around, settings)
+        elif outcome is not Outcome.GOES_ON:
+            events.append(self._ask(outcome, attempt, around, settings))
         return events
+
+    def _ask(self, outcome: Outcome, attempt: Attempt, around: Surroundings, settings: Settings) -> Event:
+        """A confirmation or hands off is asked for, or was asked for and did not come."""
+        tick, handshake, off = around.estimate.tick, settings.handshake, settings.let_go
+        if outcome is Outcome.CONFIRM:
+            values: Values = {"source": attempt.source, "feedback": handshake.feedback, "window": handshake.window}
+            return Event(Kind.CONFIRM_ASKED, tick, values)
+        if outcome is Outcome.UNCONFIRMED:
+            values = {"source": attempt.source, "limit": handshake.window}
+            return self._refuse(Kind.REFUSED_UNCONFIRMED, tick, settings, values)
+        values = {"force": around.felt, "limit": off.force, "within": off.within}
+        if outcome is Outcome.LET_GO:
+            return Event(Kind.LET_GO_ASKED, tick, values)
+        return self._refuse(Kind.REFUSED_STILL_HELD, tick, settings, values)
+
+    def _give_up(self) -> None:
+        """The attempt ends without a cause to refuse it."""
+        self.phase = Phase.OFF
+        self._attempt = None
+        self._containment.leave()
 
     def _end_activation(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
@@ -230,6 +276,7 @@ class FreeDrive:
         self._posture = tuple(around.estimate.q.tolist())
         if not settings.sequence.on:
             return [self._enter(around, settings)]
+        self._attempt = None
         self.phase = Phase.SEQUENCE
         self._total = self._left = ticks(settings.sequence.period)
         self._sequence = Sequence(seen(around), settings, self._joints, self._rated)
@@ -271,6 +318,7 @@ class FreeDrive:
 
     def _enter(self, around: Surroundings, settings: Settings) -> Event:
         self.phase = Phase.HELD if self._held else Phase.PERIOD
+        self._attempt = None
         self._sequence = None
         self._pressed = -1
         self.use_wrench = around.wrench_ok
@@ -389,6 +437,7 @@ class FreeDrive:
 
     def _end(self, kind: Kind, settings: Settings) -> None:
         self.phase = Phase.OFF
+        self._attempt = None
         self.use_wrench = False
         self.baseline = ZEROS
         self._sequence = None
@@ -398,9 +447,16 @@ class FreeDrive:
         self.caught = False
         self._containment.leave()
         self._verdict.waiting = False
-        self._blocked = self._held
+        self._blocked = self._held or bool(self._signal.source)
         if TABLE[kind].cool_down:
             self._cool = self._cool_total = ticks(settings.free_drive.cool_down)
+
+
+def _started(attempt: Attempt, tick: int) -> Event:
+    values: Values = {"period": attempt.total * TICK}
+    if attempt.source == BUTTON.source:
+        return Event(Kind.ACTIVATION_STARTED, tick, values)
+    return Event(Kind.SIGNAL_SEEN, tick, {"source": attempt.source, **values})
 
 
 def seen(around: Surroundings) -> Seen:

@@ -48,6 +48,7 @@ class Inputs:
     commands: tuple[Command, ...] = ()
     settings: dict[str, float | bool | str] = field(default_factory=dict)
     program: Program | None = None  # a program to load
+    high: frozenset[int] = frozenset()  # digital inputs that are high
 
 
 NOTHING = Inputs()

@@ -49,12 +49,16 @@ def _flange_speed(view: View, _: Gauge) -> tuple[float, str]:
     return _size(x, y, z), "flange"
 
 
+def beyond_gravity(estimate: Estimate) -> float:
+    """What the flange's accelerometer feels beyond gravity [m/s²]."""
+    x, y, z = estimate.a_F.tolist()
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
+    gx, gy, gz = estimate.g_B.tolist()
+    return _size(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz)
+
+
 def _flange_acceleration(view: View, _: Gauge) -> tuple[float, str]:
-    """What the accelerometer feels beyond gravity."""
-    x, y, z = view.estimate.a_F.tolist()
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = view.estimate.R_BF.tolist()
-    gx, gy, gz = view.estimate.g_B.tolist()
-    return _size(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz), "flange"
+    return beyond_gravity(view.estimate), "flange"
 
 
 def _tcp_speed(view: View, _: Gauge) -> tuple[float, str]:

@@ -1,62 +1,31 @@
 """The one settings schema: every period and limit with default, range, unit, requirement and a line of text."""
 
 import hashlib
-from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import msgspec
 from msgspec import Meta
 
-from pendant.modes import TICK_RATE
+from pendant.schema import Limit, Row, Section, SettingError, Value, ticks
+from pendant.schema import limit as _limit
+from pendant.schema import number as _number
+from pendant.schema import switch as _switch
+from pendant.signal_settings import Handshake, LetGo, Signals
 
-Value = float | bool | str
-
-
-class SettingError(ValueError):
-    """A setting that does not exist, or a value that it does not allow."""
-
-    def __init__(self, name: str, value: object, allowed: str) -> None:
-        super().__init__(f"{name}: {value!r} is not allowed; allowed: {allowed}")
-        self.name = name
-        self.value = value
-        self.allowed = allowed
-
-
-class Row(NamedTuple):
-    """What a page or a document shows of a setting."""
-
-    name: str  # dotted
-    default: Value
-    low: float | None  # range, None for switches
-    high: float | None
-    unit: str
-    id: str  # requirement
-    text: str
-    locked: bool  # a limit: not changed in FREE_DRIVE and RUN
-
-
-def _number(low: float, high: float, unit: str, ident: str, text: str, locked: bool = True) -> Meta:
-    return Meta(ge=low, le=high, description=text, extra={"unit": unit, "id": ident, "locked": locked})
-
-
-def _switch(ident: str, text: str, locked: bool = True) -> Meta:
-    return Meta(description=text, extra={"unit": "", "id": ident, "locked": locked})
-
-
-def _limit(low: float, high: float, unit: str, ident: str, text: str) -> Meta:
-    """Of a `Limit`: the range of its `max`."""
-    return Meta(description=text, extra={"unit": unit, "id": ident, "low": low, "high": high})
-
-
-class Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Base of all sections."""
-
-
-class Limit(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """One cell of the table of limits (FD-25)."""
-
-    max: float
-    time: Annotated[float, _number(0.0, 2.0, "s", "FD-12a", "allowed time beyond")] = 0.0
-    on: Annotated[bool, _switch("FD-25", "checked")] = True
+__all__ = [
+    "Limit",
+    "Row",
+    "Section",
+    "SettingError",
+    "Settings",
+    "Value",
+    "apply",
+    "describe",
+    "digest",
+    "find",
+    "ticks",
+    "value_of",
+]
 
 
 class Operation(Limit, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -69,6 +38,7 @@ class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     """From the signal to entry."""
 
     period: Annotated[float, _number(0.0, 15.0, "s", "FD-7", "how long the signal must be present without a break")] = 1.0
+    sum_presences: Annotated[bool, _switch("FD-7", "presences add up; a gap up to 1 s does not begin afresh")] = False
 
 
 class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -278,7 +248,10 @@ class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
+    signals: Signals = Signals()
     activation: Activation = Activation()
+    handshake: Handshake = Handshake()
+    let_go: LetGo = LetGo()
     sequence: Sequence = Sequence()
     free_drive: FreeDrive = FreeDrive()
     hold: Hold = Hold()
@@ -291,11 +264,6 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     static: Static = Static()
     joint_control: JointControl = JointControl()
     contact: ContactUse = ContactUse()
-
-
-def ticks(seconds: float) -> int:
-    """Whole control ticks of a period, rounded to the nearest."""
-    return round(seconds * TICK_RATE)
 
 
 def _rows(section: type[Section], prefix: str) -> list[Row]:

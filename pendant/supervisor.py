@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
+from pendant.calls import Calls
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import ContactMonitor
 from pendant.containment import Containment
@@ -102,6 +104,8 @@ class Supervisor:
         self._reduced = Reduced()
         self._safeguard = False  # the safety input is open
         self._stopping = Stopping()
+        self._calls = Calls(n_joints)
+        self._holding = False  # the arm was held in the last tick
         self._still = Stillness()
         self._mean = WrenchMean()
         self._sensors = JointSensors()
@@ -128,6 +132,7 @@ class Supervisor:
         still = (self._still.count, self._still.joint, self._still.speed)
         devices = (self._enabling.memory, self._reduced.memory, self._safeguard, self._stopping.memory)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
+        own += (self._calls.memory, self._holding)
         lost = self._sensors.lost
         return (self.settings, *own, *devices, self._mean.memory, lost, self._sequencer.memory, self._free.memory)
 
@@ -136,6 +141,8 @@ class Supervisor:
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
         self._feel(estimate, events)
+        if self._calls.commands:
+            inputs = replace(inputs, commands=inputs.commands + self._calls.commands)
         if inputs.commands:
             self._safety_inputs(estimate, inputs.commands, events)
             self._safety_commands(estimate, inputs.commands, events)
@@ -160,11 +167,14 @@ class Supervisor:
             events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
         events += self._sensors.step(estimate, self._joints)
         self._enabling.step(inputs, self._silence)
-        self._free.sense(self._button.held)
         self._still.step(estimate, self._slow)
         self._static = self._still.count >= self._static_ticks
         events += self._stopping.step(estimate, self._still.count, self._static_ticks)
-        return self._mean.step(estimate)
+        wrench = self._mean.step(estimate)
+        calls, state = self._calls, self._sequencer.state
+        events += calls.step(estimate, inputs, wrench, self._holding, self.settings, state, self._button.held)
+        self._free.sense(self._button.held, calls.signal)
+        return wrench
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
@@ -360,7 +370,8 @@ class Supervisor:
         events.append(Event(Kind.PROGRAM_PAUSED, tick, values))
 
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
-        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip)
+        calls = self._calls
+        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, calls.hand_off, calls.force)
         for event in self._free.step(around, self.settings):
             self._take_effect(event, events)
 
@@ -398,6 +409,7 @@ class Supervisor:
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
         self._checksum = limits_checksum(self.settings)
+        self._calls.refresh(self.settings)
         self._silence = ticks(self.settings.hold.silence)
         self._slow = self.settings.static.speed
         self._static_ticks = ticks(self.settings.static.time)
@@ -427,6 +439,7 @@ class Supervisor:
         free = self._free
         sequencer = self._sequencer
         law = self._law()
+        self._holding = law is Law.HOLD and not free.caught
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
         robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
         key = (*robot, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)

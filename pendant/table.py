@@ -101,6 +101,29 @@ TABLE: dict[Kind, Row] = {
         "Held for {value:.2f} s. Hold the button for {limit:.2f} s.",
         ("value", "limit"),
     ),
+    Kind.SIGNAL_SEEN: _info("Free-drive: {source}", "Go on for {period:.1f} s.", ("source", "period")),
+    Kind.CONFIRM_ASKED: _info(
+        "Free-drive: confirm",
+        "Let go; after {feedback:.1f} s, push it or press the button within {window:.0f} s.",
+        ("source", "feedback", "window"),
+    ),
+    Kind.REFUSED_UNCONFIRMED: _refused(
+        "Free-drive refused: not confirmed", "Nobody confirmed the {source} within {limit:.0f} s.", ("source", "limit")
+    ),
+    Kind.LET_GO_ASKED: _info(
+        "Free-drive: let go",
+        "{force:.0f} N; hands off, to below {limit:.0f} N in {within:.1f} s.",
+        ("force", "limit", "within"),
+    ),
+    Kind.REFUSED_STILL_HELD: _refused(
+        "Free-drive refused: let go",
+        "Still {force:.0f} N after {within:.1f} s, limit {limit:.0f} N. Let go before the check.",
+        ("force", "limit", "within"),
+    ),
+    # In every mode (FD-6a)
+    Kind.PUSHED: _info(
+        "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
+    ),
     Kind.ENTERED: Row(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),

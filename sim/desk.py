@@ -28,6 +28,7 @@ class Wishes:
             ours.commands + theirs.commands,
             ours.settings | theirs.settings,
             theirs.program or ours.program,
+            ours.high | theirs.high,
         )
         configured = other.configured or self.configured
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes, configured)

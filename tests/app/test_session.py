@@ -85,7 +85,6 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         ({"program": {"steps": [{"kind": "joint", "q": [0.0]}]}}, "s.yaml: program"),
         ({"timeline": [{"at": 2.0, "do": "tap", "control": "reset"}]}, "timeline[0].at = 2.0: below the duration, 2 s"),
         ({"timeline": [{"at": 0, "do": "press", "control": "confirm"}]}, "timeline[0]: FD-8: not available yet (planned)"),
-        ({"timeline": [{"at": 0, "do": "input", "input": 1, "high": True}]}, "timeline[0]: FD-5: not available yet (planned)"),
         (
             {"timeline": [{"at": 0, "do": "bump", "for": 0.1, "part": "knee", "force": [1, 0, 0]}]},
             "timeline[0].part = knee: one of foot, base,",

@@ -279,7 +279,7 @@ def test_bad_settings_are_refused_one_by_one() -> None:
     bench.step(Inputs(settings={"free_drive.period": 99.0, "fence.on": True, "free_drive.gain": 2}))
     assert [event.kind for event in bench.last.events] == [Kind.SETTING_REFUSED, Kind.SETTING_REFUSED, Kind.SETTING_CHANGED]
     assert bench.last.events[0].values["reason"] == "a number from 0.5 to 30 s"
-    assert str(bench.last.events[1].values["reason"]).startswith("one of activation.period, ")
+    assert str(bench.last.events[1].values["reason"]).startswith("one of signals.button, ")
     assert bench.supervisor.settings == apply(START, {"free_drive.gain": 2.0})
 
 

@@ -135,7 +135,8 @@ def test_the_situation_is_what_its_name_says(name: str) -> None:
 def test_situations_cover_every_mode_phase_safety_and_law() -> None:
     seen = [agree(stream, SHORT)[-1] for stream, _, _ in SITUATIONS.values()]
     assert {item[0] for item in seen} == set(Mode)
-    assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE}
+    # the sequence has a sweep of its own below; attempts by hand and their confirmation are in test_signals
+    assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE, Phase.FEEDBACK, Phase.CONFIRM, Phase.LET_GO}
     assert {item[1] for item in seen} == set(Safety)
     assert {item[3] for item in seen} == set(Law)
     assert {item[4] for item in seen} == set(ProgramState)

@@ -50,6 +50,9 @@ EXAMPLE: Values = {
     "unit": "rad/s",
     "value": 12.345,
     "wall": "step down",
+    "feedback": 0.5,
+    "window": 10.0,
+    "within": 2.0,
     "way": "+x -y -z",
     "distance": 12.34,
 }
@@ -64,6 +67,8 @@ EFFECTS = {
     Kind.REFUSED_MODE: Effect.NO_ENTRY,
     Kind.REFUSED_SENSORS: Effect.NO_ENTRY,
     Kind.REFUSED_MOVING: Effect.NO_ENTRY,
+    Kind.REFUSED_UNCONFIRMED: Effect.NO_ENTRY,
+    Kind.REFUSED_STILL_HELD: Effect.NO_ENTRY,
     Kind.LEFT_PERIOD: Effect.LEAVE,
     Kind.LEFT_RESTART: Effect.LEAVE,
     Kind.LEFT_PRESS: Effect.LEAVE,

@@ -59,7 +59,7 @@ RANGES = [
     ("push_back", 2.0, 50.0),
     ("safety_period", 0.1, 10.0),
     ("redefine_period", 0.1, 10.0),
-    ("averaging_period", 0.1, 10.0),
+    ("averaging_period", 0.02, 10.0),
     ("step", 0.002, 0.5),
     ("activation_size", 0.05, 10.0),
     ("operation_size", 0.05, 10.0),

@@ -1,0 +1,254 @@
+"""Sources of the activation signal and what follows it, through the supervisor (FD-5 to FD-8a)."""
+
+from typing import Any
+
+import pytest
+
+from pendant.decision import Decision
+from pendant.events import Kind
+from pendant.inputs import Button, Command, Inputs
+from pendant.modes import Mode, Phase
+from pendant.settings import Settings, apply
+from pendant.supervisor import Supervisor
+from tests.pendant.estimates import estimate
+
+HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
+LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
+NOTHING = Inputs()
+
+
+class Bench:
+    """A supervisor that has stood untouched for half a second; settings by dotted name with __ for the dot."""
+
+    def __init__(self, untouched: dict[str, Any] | None = None, **settings: float | bool) -> None:
+        self.supervisor = Supervisor(apply(Settings(), {k.replace("__", "."): v for k, v in settings.items()}), 6)
+        self.tick = 0
+        self.kinds: list[Kind] = []
+        self.last: Decision
+        self.run(0.5, **(untouched or {}))
+
+    def run(self, seconds: float, inputs: Inputs = NOTHING, **values: Any) -> Decision:
+        for _ in range(round(seconds * 500)):
+            self.tick += 1
+            value = estimate(**values)
+            value.tick = self.tick
+            self.last = self.supervisor.step(value, inputs)
+            self.kinds += [event.kind for event in self.last.events]
+        return self.last
+
+
+BY_HAND: dict[str, tuple[str, dict[str, Any]]] = {
+    "signals.push.on": ("push", {"force": 20.0}),
+    "signals.twist.on": ("twist", {"torque": 4.0}),
+    "signals.joints.on": ("push felt by joints", {"tau_ext": 9.0, "wrench_valid": False}),
+    "signals.force_step.on": ("force step", {"force": 20.0}),
+    "signals.turn.on": ("turned joint", {"q": [0.0, 0.0, 0.0, 0.0, 0.0, 0.01]}),
+}
+"""Switch: name of the source, and what the arm feels."""
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_a_signal_by_hand_enters_once_the_hand_is_off(name: str) -> None:
+    """FD-5, FD-8a: activation period, let go, sequence."""
+    source, felt = BY_HAND[name]
+    valid = {key: value for key, value in felt.items() if key == "wrench_valid"}
+    bench = Bench(valid, **{name.replace(".", "__"): True})
+    bench.run(0.9, **felt)
+    assert (bench.last.phase, bench.kinds) == (Phase.ACTIVATION, [Kind.SIGNAL_SEEN])
+    bench.run(0.2, **felt)
+    assert bench.last.phase is Phase.LET_GO
+    assert bench.kinds[-1] is Kind.LET_GO_ASKED
+    bench.run(0.5, **valid)
+    assert bench.last.phase is Phase.SEQUENCE
+    bench.run(1.0, **valid)
+    assert bench.last.mode is Mode.FREE_DRIVE
+    assert source
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_without_its_switch_nothing_happens(name: str) -> None:
+    """FD-5."""
+    felt = BY_HAND[name][1]
+    bench = Bench({key: value for key, value in felt.items() if key == "wrench_valid"})
+    bench.run(3.0, **felt)
+    assert (bench.last.phase, bench.kinds) == (Phase.OFF, [])
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_a_hand_that_stays_is_refused_and_counts_again_after_an_absence(name: str) -> None:
+    """FD-8a: 2 s; FD-7: 0.2 s and the cool-down."""
+    felt = BY_HAND[name][1]
+    valid = {key: value for key, value in felt.items() if key == "wrench_valid"}
+    bench = Bench(valid, **{name.replace(".", "__"): True, "signals__push__told": True})
+    bench.run(3.2, **felt)
+    assert Kind.REFUSED_STILL_HELD in bench.kinds
+    bench.run(3.0, **felt)
+    assert bench.last.phase is Phase.OFF
+
+
+@pytest.mark.parametrize(
+    ("settings", "felt", "seen"),
+    [
+        ({}, {"force": 15.5}, True),
+        ({}, {"force": 14.5}, False),
+        ({}, {"force": 81.0}, False),
+        ({}, {"force": 20.0, "torque": 2.4}, True),
+        ({}, {"force": 20.0, "torque": 2.6}, False),
+        ({"z": -1.0}, {"force": [0.0, 0.0, -20.0]}, True),
+        ({"z": -1.0}, {"force": [0.0, 0.0, 20.0]}, False),
+        ({"z": -1.0, "flange_axes": True}, {"force": [0.0, 0.0, -20.0]}, True),
+        ({"z": -1.0}, {"force": [11.0, 0.0, -20.0]}, True),
+        ({"z": -1.0}, {"force": [12.0, 0.0, -20.0]}, False),
+        ({"z": -1.0, "off_axis": 10.0}, {"force": [11.0, 0.0, -20.0]}, False),
+        ({"z": 1.0, "band": True}, {"force": [20.0, 0.0, 11.0]}, True),
+        ({"z": 1.0, "band": True}, {"force": [20.0, 0.0, 12.0]}, False),
+        ({"radius": 0.05}, {"force": 20.0, "torque": [0.0, 0.9, 0.0]}, True),
+        ({"radius": 0.05}, {"force": 20.0, "torque": [0.0, 1.1, 0.0]}, False),
+        ({"radius": 0.05, "place_z": 0.1}, {"force": 20.0, "torque": [0.0, 1.1, 0.0]}, True),
+    ],
+)
+def test_which_push_is_a_signal(settings: dict[str, float | bool], felt: dict[str, Any], seen: bool) -> None:
+    """FD-6: size, torque, cone, band, off-axis force, place."""
+    bench = Bench(**{"signals__push__on": True, **{f"signals__push__{name}": value for name, value in settings.items()}})
+    bench.run(0.5, **felt)
+    assert (bench.last.phase is Phase.ACTIVATION) is seen
+
+
+def test_torque_must_have_been_calm_for_its_period() -> None:
+    """FD-6: the torque period is its own."""
+    bench = Bench(signals__push__on=True, signals__push__torque_period=0.3)
+    bench.run(0.2, force=20.0, torque=5.0)
+    bench.run(0.3, force=20.0)
+    assert bench.last.phase is Phase.OFF
+    bench.run(0.1, force=20.0)
+    assert bench.last.phase is Phase.ACTIVATION
+
+
+def test_a_steady_offset_is_no_push_and_nothing_is_felt_without_the_sensor() -> None:
+    """Pushes are changes from the untouched state; FD-12."""
+    bench = Bench({"force": 20.0}, signals__push__on=True)
+    bench.run(2.0, force=20.0)
+    assert bench.kinds == []
+    bench.run(0.5, force=20.0, wrench_valid=False)
+    bench.run(2.0, force=60.0, wrench_valid=False)
+    assert bench.kinds == []
+
+
+@pytest.mark.parametrize(
+    ("length", "gap", "whole"), [(0.15, 0.15, True), (0.05, 0.15, False), (0.4, 0.15, False), (0.15, 0.5, False)]
+)
+def test_pushes_in_a_row(length: float, gap: float, whole: bool) -> None:
+    """FD-5f: limits on each length and gap."""
+    bench = Bench(signals__pattern__on=True)
+    for _ in range(2):
+        bench.run(length, force=25.0)
+        bench.run(gap)
+    bench.run(0.3)
+    assert (bench.last.phase is Phase.ACTIVATION) is whole
+    bench.run(2.2)
+    assert (bench.last.mode is Mode.FREE_DRIVE) is whole
+
+
+@pytest.mark.parametrize(("length", "whole"), [(0.02, True), (0.2, False)])
+def test_a_tap(length: float, whole: bool) -> None:
+    """FD-5i."""
+    bench = Bench(signals__tap__on=True)
+    bench.run(length, acceleration=8.0)
+    bench.run(0.15)
+    assert (bench.last.phase is Phase.ACTIVATION) is whole
+
+
+def test_a_slow_rise_is_no_force_step() -> None:
+    """FD-5h."""
+    bench = Bench(signals__force_step__on=True)
+    for tenth in range(20):
+        bench.run(0.05, force=float(tenth))
+    assert bench.kinds == []
+
+
+def test_digital_inputs_activate_and_leave() -> None:
+    """FD-5b, FD-17."""
+    bench = Bench(signals__digital=True, signals__leaving=True)
+    bench.run(2.2, Inputs(high=frozenset({0})))
+    assert bench.last.mode is Mode.FREE_DRIVE
+    bench.run(0.01, Inputs(high=frozenset({1})))
+    assert bench.last.mode is Mode.TEACH
+    assert bench.kinds[-1] is Kind.DEACTIVATED
+
+
+@pytest.mark.parametrize(
+    ("summing", "gap", "entered"), [(False, 0.1, False), (True, 0.1, True), (True, 0.9, True), (True, 1.1, False)]
+)
+def test_presences_may_add_up(summing: bool, gap: float, entered: bool) -> None:
+    """FD-7: a gap up to 1 s does not begin afresh, a longer one does."""
+    bench = Bench(activation__sum_presences=summing)
+    bench.run(0.6, HOLD)
+    bench.run(0.002, LET_GO)
+    bench.run(gap - 0.002)
+    bench.run(0.5, HOLD)
+    assert (bench.last.phase is Phase.SEQUENCE) is entered
+
+
+def confirmed(**settings: float | bool) -> Bench:
+    """A bench that has just been asked to confirm a held button, which is let go then."""
+    bench = Bench(handshake__on=True, **settings)
+    bench.run(1.002, HOLD)
+    assert bench.kinds[-1] is Kind.CONFIRM_ASKED
+    return bench
+
+
+def test_a_second_press_confirms() -> None:
+    """FD-8."""
+    bench = confirmed()
+    assert bench.last.phase is Phase.FEEDBACK
+    bench.run(0.002, LET_GO)
+    bench.run(0.6)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(0.21, HOLD)
+    assert bench.last.phase is Phase.SEQUENCE
+
+
+def test_the_first_press_still_held_is_no_confirmation() -> None:
+    """FD-8: and none in time refuses, with its cause."""
+    bench = confirmed(handshake__feedback=0.0)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(2.9, HOLD)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(0.12, HOLD)
+    assert bench.last.phase is Phase.OFF
+    assert bench.kinds[-1] is Kind.REFUSED_UNCONFIRMED
+
+
+def test_too_short_a_confirmation_is_none_and_a_push_must_let_go() -> None:
+    """FD-8, FD-8a."""
+    bench = confirmed(signals__push__on=True)
+    bench.run(0.002, LET_GO)
+    bench.run(0.6)
+    bench.run(0.1, force=20.0)
+    bench.run(0.5)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(0.4, force=20.0)
+    assert bench.last.phase is Phase.LET_GO
+    bench.run(0.3)
+    assert bench.last.phase is Phase.SEQUENCE
+
+
+@pytest.mark.parametrize("phase", [Phase.FEEDBACK, Phase.CONFIRM])
+def test_the_deactivation_signal_and_another_mode_end_an_attempt(phase: Phase) -> None:
+    """FD-1, FD-17."""
+    for inputs, kind in (
+        (Inputs(commands=(Command.LEAVE_FREE_DRIVE,)), Kind.DEACTIVATED),
+        (Inputs(commands=(Command.NORMAL,)), Kind.REFUSED_MODE),
+    ):
+        bench = confirmed(handshake__feedback=0.5 if phase is Phase.FEEDBACK else 0.0)
+        assert bench.last.phase is phase
+        bench.run(0.002, inputs)
+        assert bench.last.phase is Phase.OFF
+        assert bench.kinds[-1] is kind
+
+
+def test_a_push_is_told_in_every_mode() -> None:
+    """FD-6a."""
+    bench = Bench(signals__push__told=True)
+    bench.run(0.5, force=[0.0, 20.0, 0.0])
+    assert bench.kinds == [Kind.PUSHED]
