@@ -23,6 +23,8 @@ HAND_STIFFNESS = 800.0  # of the virtual hand [N/m]
 HAND_DAMPING = 40.0  # of the virtual hand [N·s/m]
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
 GRAVITY = 9.81
+BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
+LUGRE_STIFFNESS, LUGRE_DAMPING = 5, 6  # where an actuator's dynamics parameters have the bristles'
 SIGN_SPEED = 0.01  # [rad/s]
 
 
@@ -54,7 +56,7 @@ class Plant:
         values = arm.transmissions
         self._stiffness, self._cubic = np.array(values.stiffness), np.array(values.stiffening)
         self._damping, self._slip_stiffness = np.array(values.damping), np.array(values.hysteresis_stiffness)
-        self._brakes = np.array(arm.limits.torque)
+        self._brakes, self._braked = np.array(arm.limits.torque), False
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
@@ -148,6 +150,8 @@ class Plant:
         if self._objects.size:
             self._move_world()
         self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
+        if braked is not self._braked:
+            self._brake(braked)
         if braked:
             self.friction_in += self._brakes
         _set_friction(self._bias, self._rubs, self.friction_in)
@@ -161,6 +165,21 @@ class Plant:
             self._warm()
         if self.fallen is not None:
             self._fall()
+
+    def _brake(self, braked: bool) -> None:
+        """Close or open the brakes: closed, the rotors sit on far stiffer bristles, which take over the torque of the soft ones.
+
+        Opened, no more than the joints' own friction is left of it.
+        """
+        factor = BRAKE_STIFFNESS if braked else 1.0 / BRAKE_STIFFNESS
+        values, at = self.model.actuator_dynprm, self.model.actuator_actadr[self._rubs]
+        held = values[self._rubs, LUGRE_STIFFNESS] * self.data.act[at]
+        if not braked:
+            held = np.clip(held, -self.friction_in, self.friction_in)
+        values[self._rubs, LUGRE_STIFFNESS] *= factor
+        values[self._rubs, LUGRE_DAMPING] *= math.sqrt(factor)
+        self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
+        self._braked = braked
 
     def _touch(self, touches: Sequence[Touch]) -> None:
         data = self.data

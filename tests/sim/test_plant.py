@@ -59,6 +59,21 @@ def test_a_standing_arm_stays_where_it_is() -> None:
     assert np.abs(plant.qd).max() < 1e-5
 
 
+@pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
+def test_brakes_take_the_weight_over_within_a_fraction_of_a_millimetre_and_give_it_back(arm: Arm) -> None:
+    """Stretched out with 2 kg, the drive goes off as the brakes close; later it comes back as they open."""
+    plant = Plant(arm, Scenario(payload_true=TWO_KG, posture=[0.0, -0.2, 0.2, 0.0, 0.5, 0.0]))
+    flange = plant.model.body("flange").id
+    start, torque = plant.data.xpos[flange].copy(), gravity_torque(plant)
+    farthest = 0.0
+    for braked in (True, False):
+        for _ in range(500):
+            plant.advance(np.zeros(arm.n) if braked else torque, braked=braked)
+            farthest = max(farthest, float(np.linalg.norm(plant.data.xpos[flange] - start)))
+        assert np.abs(plant.qd).max() < 2e-3
+    assert 1e-6 < farthest < 5e-4
+
+
 def test_free_acceleration_is_force_over_mass_and_parallel() -> None:
     plant = Plant(UR5E, Scenario(payload_true=Load(mass=2.0, com=[0.0, 0.0, 0.0])))
     sensor = UR5E.sensors.force_torque
