@@ -35,14 +35,14 @@ class Phase(StrEnum):
 
     OFF = "OFF"
     ACTIVATION = "ACTIVATION"  # the signal is present, its period runs (FD-7)
-    FEEDBACK = "FEEDBACK"  # the robot asks for a confirmation (FD-8)
-    CONFIRM = "CONFIRM"  # a confirmation counts (FD-8)
-    LET_GO = "LET_GO"  # the hand that gave the signal is to leave the arm (FD-8a)
     SEQUENCE = "SEQUENCE"  # the arm is freed, to see whether it stays (FD-9)
     HELD = "HELD"  # in free-drive, button held: the period is suspended (FD-8a)
     PERIOD = "PERIOD"  # in free-drive, free-drive period runs (FD-14)
     GUIDED = "GUIDED"  # in free-drive, the user moves the arm
     RESTART = "RESTART"  # in free-drive, restart period runs (FD-15)
+    FEEDBACK = "FEEDBACK"  # the robot asks for a confirmation (FD-8)
+    CONFIRM = "CONFIRM"  # a confirmation counts (FD-8)
+    LET_GO = "LET_GO"  # the hand that gave the signal is to leave the arm (FD-8a)
 
 
 class Law(StrEnum):

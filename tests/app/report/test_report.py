@@ -30,7 +30,7 @@ SESSION: dict[str, Any] = {
     "settings": {"activation.period": 0.1, "sequence.period": 0.25},
     "timeline": [
         {"at": 0.5, "do": "press", "control": "free_drive"},
-        {"after": "mode FREE_DRIVE", "delay": 0.1, "do": "push", "for": 0.6, "force": [0.0, 20.0, 0.0]},
+        {"after": "mode FREE_DRIVE", "delay": 0.1, "do": "push", "for": 0.2, "force": [0.0, 12.0, 0.0]},
         {"after": "mode FREE_DRIVE", "delay": 0.5, "do": "tap", "control": "emergency_stop"},
     ],
 }
