@@ -116,6 +116,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
         payload_configured=setup.payload_configured,
         world=world,
         walls=setup.walls,
+        soft_sensor=setup.soft_sensor,
         seed=setup.seed,
         mismatch=setup.mismatch,
     )

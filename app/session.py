@@ -28,6 +28,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     features: dict[str, Literal["on", "off"]] = {}  # by requirement id
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
+    soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     world: list[AnyObject] | str = []  # objects, or the name of a bundled world
     walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether (docs/walls.md)
 

@@ -17,7 +17,8 @@ class ContactLimits(NamedTuple):
 
     noise_force_sq: float  # difference of two samples: below, it is noise (CD-0) [N²]
     noise_acceleration_sq: float  # [m²/s⁴]
-    cosine_sq: float  # of the angle limit (CD-0)
+    opposite: bool  # directions must be opposite (CD-0)
+    cosine_sq: float  # of the angle limit
     force_sq: float  # difference rule (CD-4) [N²]
     acceleration_sq: float  # [m²/s⁴]
     ratio: float  # ratio rule: beyond minus this (CD-5) [kg]
@@ -58,6 +59,7 @@ def limits(use: ContactUse, mass: float, effective_mass: float, speed: float, mo
     return ContactLimits(
         (noisy * noise_f) ** 2,
         (noisy * noise_a) ** 2,
+        use.opposite,
         use.angle**2,
         (hard * noise_f) ** 2,
         (hard * noise_a) ** 2,

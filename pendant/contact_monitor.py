@@ -50,6 +50,7 @@ class ContactMonitor:
         self._keys: list[tuple[object, ...]] = [()] * len(SOURCES)
         self._use: ContactUse | None = None
         self._on_links = ContactUse()
+        self._used = (False,) * len(SOURCES)
         self.now = ArmPose((), (0.0, 0.0, 0.0), UNTURNED)  # where the arm is
         self._poses: list[ArmPose | None] = [None] * SIZE
 
@@ -61,13 +62,14 @@ class ContactMonitor:
         self.now = now = self._poses[tick & MASK] = ArmPose(tuple(estimate.q.tolist()), estimate.p_BT, R)
         if use is not self._use:
             self._use, self._on_links = use, for_links(use)
+            self._used = (use.tool, use.flange, use.links, use.links)
         contacts: tuple[Contact, ...] = ()
         for index, signal in enumerate(estimate.signals):
             detector = self.detectors[index]
             if signal is None and detector.history.count == 0:
                 continue
             detector.sense(signal)
-            if not on:
+            if not (on and self._used[index]):
                 detector.forget()
             elif signal is not None:
                 rules = self._on_links if SOURCES[index].in_base else use

@@ -41,14 +41,14 @@ def hard(history: History, limit: ContactLimits) -> tuple[bool, bool]:
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
     dot = fx * ax + fy * ay + fz * az
-    if dot >= 0.0:
+    if dot >= 0.0 and limit.opposite:
         return False, False
     ff = fx * fx + fy * fy + fz * fz
     aa = ax * ax + ay * ay + az * az
     if ff < limit.noise_force_sq or aa < limit.noise_acceleration_sq or dot * dot < limit.cosine_sq * ff * aa:
         return False, False
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
-    return difference, aa > limit.ratio_acceleration_sq and dot < -limit.ratio * aa
+    return difference, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa
 
 
 def instant(history: History, limit: ContactLimits) -> bool:
@@ -62,7 +62,7 @@ def instant(history: History, limit: ContactLimits) -> bool:
     fx, fy, fz = fx - mass * ax, fy - mass * ay, fz - mass * az
     ax, ay, az = ax + gx, ay + gy, az + gz
     dot = fx * ax + fy * ay + fz * az
-    if dot >= 0.0:
+    if dot >= 0.0 and limit.opposite:
         return False
     ff, aa = fx * fx + fy * fy + fz * fz, ax * ax + ay * ay + az * az
     if dot * dot < limit.cosine_sq * ff * aa:
@@ -82,7 +82,7 @@ def statistical(history: History, limit: ContactLimits) -> bool:
     fx, fy, fz = nfx - ofx, nfy - ofy, nfz - ofz
     ax, ay, az = nax - oax, nay - oay, naz - oaz
     dot = fx * ax + fy * ay + fz * az
-    if dot >= 0.0:
+    if dot >= 0.0 and limit.opposite:
         return False
     ff, aa = fx * fx + fy * fy + fz * fz, ax * ax + ay * ay + az * az
     if dot * dot < limit.cosine_sq * ff * aa:
@@ -119,7 +119,8 @@ def slow(history: History, limit: ContactLimits) -> tuple[int, bool]:
         if size < threshold + limit.payload_margin * change:
             continue
         dot = dfx * ax + dfy * ay + dfz * az
-        if dot < 0.0 and dot * dot > limit.cosine_sq * (dfx * dfx + dfy * dfy + dfz * dfz) * change * change:
+        least = limit.cosine_sq * (dfx * dfx + dfy * dfy + dfz * dfz) * change * change
+        if (dot < 0.0 or not limit.opposite) and dot * dot > least:
             return lag, False
     return 0, False
 

@@ -20,6 +20,8 @@ SUSPICIOUS = 1.5
 """Deviations of noise beyond which a sample belongs to the change."""
 SETTLED = 10
 """Ticks over which a settled force hardly changes (CD-9a)."""
+CALM = 6
+"""Ticks in a row for which that must hold: a ringing force looks settled now and then."""
 PATIENCE = 40
 """Ticks after which a change of an existing contact is judged although the force has not settled."""
 SILENCE = 250
@@ -50,7 +52,7 @@ class _Sighting(NamedTuple):
 class Detector:
     """Watches one source. Its buffers fill in every tick, its rules count only while it is switched on (CD-1, CD-4)."""
 
-    __slots__ = ("_age", "_counts", "_gone", "_pending", "_rest", "history", "silent", "touching")
+    __slots__ = ("_age", "_calm", "_counts", "_gone", "_pending", "_rest", "history", "silent", "touching")
 
     def __init__(self) -> None:
         self.history = History()
@@ -60,6 +62,7 @@ class Detector:
         self._counts = {rule: Confirmation() for rule in Rule}
         self._pending: _Sighting | None = None  # a change of an existing contact, to be judged when the force has settled
         self._age = 0  # ticks since the sighting
+        self._calm = 0  # ticks for which the force has been settled
         self._gone = 0  # ticks for which a contact's force has been gone
 
     def sense(self, signal: Signal | None) -> None:
@@ -88,7 +91,7 @@ class Detector:
             return None
         rule, length, dead = seen
         sighting = self._look_back(rule, length, limit)
-        self.silent, self._age = True, 0
+        self.silent, self._age, self._calm = True, 0, 0
         self._clear()
         if self.touching:
             self._pending = sighting
@@ -155,7 +158,8 @@ class Detector:
     def _wait(self, limit: ContactLimits) -> Finding | None:
         """A tick of silence (CD-9a); at its end the change of an existing contact is judged, and statistics start anew."""
         self._age += 1
-        settled = self._age >= SETTLED + NEW and self._settled(limit)
+        self._calm = self._calm + 1 if self._age >= SETTLED + NEW and self._settled(limit) else 0
+        settled = self._calm >= CALM
         finding = None
         if self._pending is not None and (settled or self._age >= PATIENCE):
             finding, self._pending = self._judge(self._pending, limit), None
@@ -183,7 +187,7 @@ class Detector:
         """Lost where the force is small again; else its resistance has changed."""
         assert self._rest is not None
         before = self._size(sighting.before, self._rest, limit)
-        after = self._size(self.history.mean(0, NEW), self._rest, limit)
+        after = self._size(self.history.mean(0, SETTLED + NEW), self._rest, limit)
         change = Change.RESISTANCE
         if after <= SMALL * before:
             change, self.touching, self._rest = Change.LOST, False, None

@@ -185,6 +185,7 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     tool: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its tool side")] = True
     flange: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its arm side")] = False
     links: Annotated[bool, _switch("CD-2", "on elbow and forearm, from the joints and the model")] = True
+    opposite: Annotated[bool, _switch("CD-0", "every rule but clamping asks for opposite directions")] = True
     instant: Annotated[bool, _switch("CD-3", "rule: force and acceleration of now")] = True
     difference: Annotated[bool, _switch("CD-4", "rule: differences of samples")] = True
     ratio: Annotated[bool, _switch("CD-5", "rule: ratio of force and acceleration differences")] = True

@@ -44,7 +44,7 @@ class Step:
         return self.tick / self.substeps
 
 
-def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False) -> mujoco.MjSpec:
+def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
     """The model of `arm` as `scenario` puts it up.
 
     A joint is two: the rotor `theta/<joint>`, alone in the world with the reflected inertia, and the hinge of the link
@@ -57,7 +57,6 @@ def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False
         arm: the arm's numbers.
         scenario: mounting, tool, payload and world.
         step: the physics step.
-        soft_sensor: take the demonstration stiffness of the flange sensor (CD-17).
     """
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
@@ -85,7 +84,7 @@ def build(arm: Arm, scenario: Scenario, step: Step, *, soft_sensor: bool = False
     _set_body(flange, plate)
     sensor = arm.sensors.force_torque
     if sensor is not None:
-        _add_sensor_springs(flange, sensor, soft_sensor)
+        _add_sensor_springs(flange, sensor, scenario.soft_sensor)
     flange.add_site(name="tool")
     tool = flange.add_body(name="tool")
     _set_body(tool, tool_body(scenario.tool))

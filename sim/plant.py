@@ -39,9 +39,9 @@ class Plant:
         friction_in: true friction torque limit of the input side in this tick (n,).
     """
 
-    def __init__(self, arm: Arm, scenario: Scenario, step: Step | None = None, *, soft_sensor: bool = False) -> None:
+    def __init__(self, arm: Arm, scenario: Scenario, step: Step | None = None) -> None:
         self.arm, self.scenario, self.step = arm, scenario, step or Step()
-        self.model = build(arm, scenario, self.step, soft_sensor=soft_sensor).compile()
+        self.model = build(arm, scenario, self.step).compile()
         self.data = mujoco.MjData(self.model)
         self._scratch = mujoco.MjData(self.model)
         self.friction = Friction(arm)

@@ -93,5 +93,6 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     world: list[AnyObject] = []
     walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether
+    soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     seed: int = 0
     mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)

@@ -176,6 +176,7 @@ CONTACT_SWITCHES = {
     "tool": (True, "CD-2", True),
     "flange": (False, "CD-2", True),
     "links": (True, "CD-2", True),
+    "opposite": (True, "CD-0", True),
     "instant": (True, "CD-3", True),
     "difference": (True, "CD-4", True),
     "ratio": (True, "CD-5", True),

@@ -1,0 +1,292 @@
+"""Change in contact: delay, force, kind and pose per stiffness and speed; silence in free motion; each rule; baselines.
+
+Every approach starts with free motion, with sensor noise, latency, quantisation and averaging on and a payload that is up to
+20 % wrong. Delays count from the true onset to the beginning of the tick in which the decision acts; an alarm before the
+onset is a miss. Baselines get thresholds without any alarm on tuning motion. Truth is read for scoring alone.
+"""
+
+import math
+import time
+from collections import defaultdict
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+
+from benchmarks.common import Report, main, spread
+from benchmarks.contacts import baselines
+from benchmarks.contacts.approaches import Approach, approach, link_contact
+from benchmarks.contacts.motion import Free, free
+from benchmarks.contacts.recording import TICK, Recording
+from pendant.contact import Change
+from pendant.contact_limits import limits
+from pendant.contact_rules import Rule
+from pendant.detector import Detector
+from pendant.modes import Mode
+from pendant.settings import ContactUse
+
+BARS = {  # p95 of the combination [ms] by stiffness [N/m] and speed [m/s]; None: information
+    2e5: {0.25: 7.0, 0.1: 8.0, 0.02: 12.0, 0.005: 25.0},
+    1e4: {0.25: 15.0, 0.1: 20.0, 0.02: 60.0, 0.005: 160.0},
+    1e3: {0.25: 50.0, 0.1: 90.0, 0.02: None},
+}
+FORCE_BARS = {(1e4, 0.1): 15.0, (1e4, 0.25): 25.0, (1e3, 0.25): 15.0}  # median at detection [N]
+HARD = 2e5
+POSE_TICKS = 2.0
+HAND_TRANSIENT = 280.0  # ISO/TS 15066, hand and fingers, transient contact [N]
+HAND_QUASI_STATIC = 140.0  # [N]
+DIED_OUT = 0.3  # true change of acceleration with which a slow contact is rightly called clamping [m/s²]
+RULES = {rule: {other.value: other is rule for other in Rule} for rule in Rule}
+
+
+class Outcome(NamedTuple):
+    """One approach, scored. Delays in ms, infinite for a miss."""
+
+    case: Approach
+    delay: float
+    force: float  # true, at detection [N]
+    kind_right: bool
+    pose: float  # way from the pose at contact to the true one, through the same encoders [mm]
+    rules: dict[str, float]
+    scores: dict[str, np.ndarray]
+    onset_row: int
+    rows: int
+    times: np.ndarray  # of each row against the onset [ms]
+
+
+def truth_of(recording: Recording) -> tuple[int, np.ndarray]:
+    """Row whose signals are the first to hold the contact, and times of decisions against the onset [ms]."""
+    times = 1000.0 * (np.array(recording.time) - recording.onset)
+    # A row's decision sees the tick that ended a tick before it began (the latency), averaged.
+    return int(np.searchsorted(times, 0.0)) + 1, times
+
+
+def delay_of(ticks: list[float]) -> float:
+    """Delay of the first alarm [ms]; infinite where there is none, or one before the onset."""
+    return ticks[0] if ticks and ticks[0] >= 0.0 else math.inf
+
+
+def alone(recording: Recording, rule: Rule, times: np.ndarray) -> float:
+    """Delay of one rule by itself [ms]."""
+    use = msgspec.structs.replace(ContactUse(), **RULES[rule])
+    detector = Detector()
+    for row, (signal, *_) in enumerate(recording.signals):
+        assert signal is not None
+        detector.sense(signal)
+        limit = limits(use, signal.mass, signal.effective_mass, recording.speed[row], Mode.RUN)
+        if detector.step(use, limit) is not None:
+            return delay_of([float(times[row])])
+    return math.inf
+
+
+def score(case: Approach) -> Outcome:
+    """Run and score one approach."""
+    recording = approach(case)
+    first, times = truth_of(recording)
+    found = [(1000.0 * (at - recording.onset), contact) for at, contact in recording.contacts if contact.part == "tool"]
+    delay = delay_of([at for at, _ in found])
+    force, right, pose = math.nan, False, math.nan
+    if math.isfinite(delay):
+        row = int(np.argmin(np.abs(times - delay)))
+        contact = found[0][1]
+        force = recording.force[row - 1]
+        a = np.array(recording.acceleration)
+        gone = float(np.linalg.norm(a[row - 10 : row].mean(axis=0) - a[max(0, first - 22) : first - 2].mean(axis=0)))
+        right = contact.change is Change.GAINED or (contact.change is Change.CLAMPING and gone < DIED_OUT)
+        pose = 1000.0 * math.dist(contact.pose.p_BT, recording.tip[first - 1])
+    return Outcome(
+        case,
+        delay,
+        force,
+        right,
+        pose,
+        {rule.value: alone(recording, rule, times) for rule in Rule},
+        baselines.scores(recording).by_name,
+        first,
+        len(times),
+        times,
+    )
+
+
+class Stop(NamedTuple):
+    """One approach whose program stops at the contact."""
+
+    case: Approach
+    peak: float  # true force [N]
+    impulse: float  # true force over the first 0.5 s [N·s]
+    end: float  # from the contact pose to where `contact_pose` ends [mm]
+
+
+def react(case: Approach) -> Stop:
+    """Run one approach with its program's reaction."""
+    recording = approach(case)
+    force = np.array(recording.force)
+    times = np.array(recording.time)
+    near = (times >= recording.onset - TICK) & (times < recording.onset + 0.5)
+    contact = recording.contacts[0][1] if recording.contacts else None
+    end = math.nan if contact is None else 1000.0 * math.dist(contact.pose.p_BT, recording.tip[-1])
+    return Stop(case, float(force.max()), float(force[near].sum() * TICK), end)
+
+
+def sweep(case: Approach) -> tuple[Approach, float, float, bool]:
+    """A link's contact: case, delay [ms], true force at detection [N], and whether a source of that link saw it first."""
+    recording = link_contact(case)
+    _, times = truth_of(recording)
+    found = [(1000.0 * (at - recording.onset), contact) for at, contact in recording.contacts]
+    delay = delay_of([at for at, _ in found])
+    force = recording.force[int(np.argmin(np.abs(times - delay))) - 1] if math.isfinite(delay) else math.nan
+    return case, delay, force, bool(found) and found[0][1].source == "joints"
+
+
+def quiet(case: Free) -> tuple[Free, list[str], dict[str, np.ndarray]]:
+    """False alarms of one run of free motion, and the baselines' scores."""
+    recording = free(case)
+    events = [f"{contact.part} {contact.rule} {contact.change} at {at:.2f} s" for at, contact in recording.contacts]
+    return case, events, baselines.scores(recording).by_name if case.record else {}
+
+
+def percentile(values: list[float], share: float) -> float:
+    """A percentile that a single miss spoils only where it should: the smallest value that `share` of all do not exceed."""
+    ordered = sorted(values)
+    return ordered[max(0, math.ceil(share * len(ordered)) - 1)]
+
+
+def measure(report: Report) -> None:
+    full, seed = report.options.full, report.options.seed
+    seeds = range(seed, seed + (4 if full else 1))
+    tuning, scoring, seconds = (30, 60, 120.0) if full else (4, 8, 15.0)
+    cases = [
+        Approach(stiffness, speed, angle, payload, at)
+        for stiffness, row in BARS.items()
+        for speed in row
+        for angle in (0, 50, 80)
+        for payload in (0.0, 2.0, 5.0)
+        for at in seeds
+    ]
+    outcomes = spread(score, cases)
+    quiets = spread(quiet, [Free(100 + k, seconds, True) for k in range(tuning)])
+    runs = spread(quiet, [Free(seed + k, seconds, False) for k in range(scoring)])
+    _delays(report, outcomes)
+    _baselines(report, outcomes, baselines.thresholds([baselines.Scores(scores) for _, _, scores in quiets]), tuning * seconds)
+    _silence(report, runs, seconds)
+    _reactions(
+        report,
+        [Approach(k, v, a, p, s, "stop") for k in BARS for v in (0.25, 0.1) for a in (0,) for p in (0.0, 5.0) for s in seeds],
+    )
+    _links(report, [Approach(k, v, part, 2.0, s) for k in (1e4, 2e5) for v in (0.25, 0.1) for part in (0, 1) for s in seeds])
+    report.row("detector, three rules on one source: cost a tick", cost(outcomes[0].case), "µs", at_most=20.0)
+
+
+def _delays(report: Report, outcomes: list[Outcome]) -> None:
+    """Delay, force and kind, cell by cell; each rule alone."""
+    for stiffness, speeds in BARS.items():
+        for speed, bar in speeds.items():
+            mine = [o for o in outcomes if (o.case.stiffness, o.case.speed) == (stiffness, speed)]
+            where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s"
+            delays = [o.delay for o in mine]
+            report.row(f"{where}: delay p50 (n = {len(mine)})", percentile(delays, 0.5), "ms")
+            report.row(f"{where}: delay p95", percentile(delays, 0.95), "ms", at_most=bar)
+            report.row(f"{where}: delay max", max(delays), "ms")
+            missed = sum(math.isinf(value) for value in delays)
+            report.row(f"{where}: missed", missed, "", at_most=0 if bar else None)
+            report.row(
+                f"{where}: force at detection, median",
+                float(np.nanmedian([o.force for o in mine])),
+                "N",
+                at_most=FORCE_BARS.get((stiffness, speed)),
+            )
+            for name in RULES:
+                value = percentile([o.rules[name.value] for o in mine], 0.5)
+                report.row(f"{where}: rule {name} alone, p50", value, "ms")
+            for key in ("payload", "angle"):
+                groups: dict[float, list[float]] = defaultdict(list)
+                for o in mine:
+                    groups[getattr(o.case, key)].append(o.delay)
+                text = ", ".join(f"{value:g}: {percentile(group, 0.5):.1f}" for value, group in sorted(groups.items()))
+                report.row(f"{where}: p50 by {key}", text, "ms")
+    barred = [o for o in outcomes if BARS[o.case.stiffness][o.case.speed] is not None]
+    report.row("right kind", sum(o.kind_right for o in barred) / len(barred), "", at_least=0.98)
+    hard = [o.pose / (1000.0 * o.case.speed * TICK) for o in outcomes if o.case.stiffness == HARD and o.case.speed >= 0.02]
+    report.row("pose at contact, hard, 20 mm/s and up: p95 in ticks of travel", percentile(hard, 0.95), "", at_most=POSE_TICKS)
+
+
+def _baselines(report: Report, outcomes: list[Outcome], thresholds: dict[str, np.ndarray], seconds: float) -> None:
+    """The best setting of each baseline in each cell against the combination."""
+    report.notes.append(f"baselines: thresholds without an alarm in {seconds / 3600:.2f} h of tuning motion")
+    families = ("force threshold", "CUSUM", "momentum observer")
+    for stiffness, speeds in BARS.items():
+        for speed in speeds:
+            mine = [o for o in outcomes if (o.case.stiffness, o.case.speed) == (stiffness, speed)]
+            own = percentile([o.delay for o in mine], 0.5)
+            for family in families:
+                best, best_name, missed = math.inf, "none finds half of them", 1.0
+                for name in (name for name in thresholds if name.startswith(family)):
+                    delays = []
+                    for o in mine:
+                        row = baselines.alarm(o.scores[name], thresholds[name], o.rows)
+                        delays.append(delay_of([] if row is None else [float(o.times[row])]))
+                    if percentile(delays, 0.5) < best:
+                        best, best_name = percentile(delays, 0.5), name
+                        missed = sum(math.isinf(value) for value in delays) / len(delays)
+                where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s"
+                report.row(f"{where}: {family}, best p50 ({best_name}; missed {100 * missed:.0f} %)", best, "ms")
+                bar = 0.5 if family == "momentum observer" else 1.0
+                report.row(f"{where}: own p50 over it", own / best if math.isfinite(best) else 0.0, "", at_most=bar)
+
+
+def _silence(report: Report, runs: list[tuple[Free, list[str], dict[str, np.ndarray]]], seconds: float) -> None:
+    alarms = [f"seed {case.seed}: {event}" for case, events, _ in runs for event in events]
+    report.row(f"false alarms in {len(runs) * seconds / 3600:.3f} h of free motion, all sources", len(alarms), "", at_most=0)
+    report.notes += alarms[:20]
+
+
+def _reactions(report: Report, cases: list[Approach]) -> None:
+    """Peak force and impulse with the stop action; where `contact_pose` ends."""
+    stops = spread(react, cases)
+    for stiffness in BARS:
+        for speed in (0.25, 0.1):
+            mine = [s for s in stops if (s.case.stiffness, s.case.speed) == (stiffness, speed)]
+            where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s, stop"
+            peak = max(s.peak for s in mine)
+            against = "within" if peak <= HAND_TRANSIENT else "beyond"
+            report.row(f"{where}: peak force, worst ({against} {HAND_TRANSIENT:g} N, hand, transient)", peak, "N")
+            report.row(f"{where}: impulse in 0.5 s, worst", max(s.impulse for s in mine), "N·s")
+    back = spread(react, [case._replace(react="contact_pose") for case in cases if case.stiffness == HARD])
+    report.row("hard contacts: back to the contact pose, worst", max(s.end for s in back), "mm", at_most=0.5)
+
+
+def _links(report: Report, cases: list[Approach]) -> None:
+    """Contacts of elbow and forearm, which the flange sensor cannot see."""
+    results = spread(sweep, cases)
+    for part, name in enumerate(("elbow", "forearm")):
+        for stiffness in (1e4, 2e5):
+            for speed in (0.25, 0.1):
+                mine = [r for r in results if (r[0].angle, r[0].stiffness, r[0].speed) == (part, stiffness, speed)]
+                where = f"{name}, {stiffness:g} N/m at {1000 * speed:g} mm/s"
+                report.row(f"{where}: delay p50", percentile([r[1] for r in mine], 0.5), "ms")
+                report.row(f"{where}: force at detection, median", float(np.nanmedian([r[2] for r in mine])), "N")
+                report.row(f"{where}: missed", sum(math.isinf(r[1]) for r in mine), "", at_most=0)
+    report.row("links: seen by the joints first", sum(r[3] for r in results) / len(results), "")
+
+
+def cost(case: Approach) -> float:
+    """Median of 9 [µs a tick]: hard, soft and slow rule on the signals of one approach."""
+    recording = approach(case)
+    use = msgspec.structs.replace(ContactUse(), instant=False, ratio=False)
+    signals = [signals[0] for signals in recording.signals]
+    first = signals[0]
+    assert first is not None
+    limit = limits(use, first.mass, first.effective_mass, 0.0, Mode.RUN)
+    times = []
+    for _ in range(9):
+        detector = Detector()
+        begin = time.perf_counter()
+        for signal in signals:
+            detector.sense(signal)
+            detector.step(use, limit)
+        times.append((time.perf_counter() - begin) / len(signals))
+    return 1e6 * float(np.median(times))
+
+
+if __name__ == "__main__":
+    main("contact", measure)

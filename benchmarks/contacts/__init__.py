@@ -1,0 +1,1 @@
+"""Recordings of contacts and of free motion, and the baselines that the contact bench compares with."""
