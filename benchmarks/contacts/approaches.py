@@ -151,7 +151,7 @@ def link_contact(case: Approach) -> Recording:
     """A sweep of the base that meets a block with the elbow (`angle` 0) or the forearm (`angle` 1), behind the sensor."""
     rng = np.random.default_rng([case.seed, case.angle, 9])
     for _ in range(40):
-        q = np.array([rng.uniform(-2, 2), rng.uniform(-1.4, -0.8), rng.uniform(0.6, 1.2), rng.uniform(-2, -1), -1.57, 0.0])
+        q = np.array([rng.uniform(-2, 2), rng.uniform(-1.0, -0.5), rng.uniform(0.4, 1.2), rng.uniform(-2, -1), -1.57, 0.0])
         kinematics(q)
         model = probe().dynamics
         model.recursion.run(q, np.zeros((3, 6)), np.zeros(3))
@@ -161,7 +161,7 @@ def link_contact(case: Approach) -> Recording:
         if radius < 0.2 or point[2] < 0.3:
             continue
         rate = case.speed / radius
-        sweep = rate * 0.8 + 0.5
+        sweep = rate * 0.8 + 1.2  # the tubes stand out sideways from the joints' axes
         c, s = np.cos(sweep), np.sin(sweep)
         place = np.array([c * point[0] - s * point[1], s * point[0] + c * point[1], point[2]])
         heading = float(np.arctan2(place[1], place[0]))
