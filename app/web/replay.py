@@ -1,6 +1,5 @@
 """The web app showing a recording: time line, speed, contact log and plots; nothing is simulated."""
 
-import threading
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -12,11 +11,9 @@ from viser import uplot
 from app.events_file import Line
 from app.log.playback import Player, snapshot_at
 from app.web import style, svg
-from app.web.guard import Guard
 from app.web.html import Html
-from app.web.operator import Operator
 from app.web.scene import Scene
-from app.web.server import FRAME, quiet
+from app.web.site import Site
 from app.web.svg import Colour
 from app.web.words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
 from pendant.table import Severity
@@ -33,7 +30,7 @@ SECONDS = {"x": uplot.Scale(time=False)}
 NOWHERE = "Jump to ..."
 
 
-class Replay:
+class Replay(Site):
     """A web app that shows one log.
 
     Args:
@@ -43,35 +40,31 @@ class Replay:
     """
 
     def __init__(self, player: Player, meshes: Mapping[str, bytes], host: str, port: int) -> None:
+        super().__init__(host, port)
         self.player = player
-        self._host = f"[{host}]" if ":" in host else host
         self._set = -1.0  # where we have put the slider ourselves
+        self._before = time.monotonic()
+        self._frame, self._marked = 0, -1.0
         log = player.log
-        self.guard = Guard(Operator())
-        with self.guard.installed(), quiet():
-            self.server = viser.ViserServer(host=host, port=port, verbose=False)
-        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         self.scene = Scene(self.server, log.arm, log.scenario, meshes, snapshot_at(log, 0, 0))
         self._controls()
         self._plots()
         for control in (self.play, self.line, self.speed, self.goto):
             self.guard.for_anyone(control)
         self.guard.open(self.server, frozenset(), lambda client: None)
-        self._closing = threading.Event()
-        self._painter = threading.Thread(target=self._paint, name="replay-painter", daemon=True)
-        self._painter.start()
+        self.start_drawing()
 
-    @property
-    def url(self) -> str:
-        """Where the page is."""
-        return f"http://{self._host}:{self.server.get_port()}"
-
-    def close(self) -> None:
-        """Stop serving."""
-        self._closing.set()
-        self._painter.join()
-        with quiet():
-            self.server.stop()
+    def draw(self) -> bool:
+        """Let the recording go on by what has passed since the last picture; there is always a next one."""
+        now = time.monotonic()
+        self.player.advance(now - self._before)
+        self._before = now
+        self.show()
+        self._frame += 1
+        if self._frame % FRAMES_A_PLOT == 0 and self._marked != self.player.time:
+            self._marked = self.player.time
+            self._mark()
+        return True
 
     def show(self) -> None:
         """Bring picture, time line and numbers to the player's time."""
@@ -169,19 +162,6 @@ class Replay:
             spike = np.zeros(len(data[0]))
             spike[at] = max(float(np.nanmax(line)) for line in data[1:])
             handle.data = (*data, spike)
-
-    def _paint(self) -> None:
-        due, before, frame, marked = time.monotonic(), time.monotonic(), 0, -1.0
-        while not self._closing.wait(due - time.monotonic()):
-            now = time.monotonic()
-            due = max(due + FRAME, now)
-            self.player.advance(now - before)
-            before = now
-            self.show()
-            frame += 1
-            if frame % FRAMES_A_PLOT == 0 and marked != self.player.time:
-                marked = self.player.time
-                self._mark()
 
 
 def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:

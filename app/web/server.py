@@ -1,13 +1,9 @@
-"""The web app as a whole: one viser server behind the guard, one thread that draws."""
+"""The web app as a whole: the page of a running loop."""
 
 import functools
-import io
 import socket
-import threading
-import time
 import webbrowser
 from collections.abc import Mapping
-from contextlib import redirect_stdout
 
 import viser
 
@@ -15,33 +11,26 @@ from app.bad_input import BadInput
 from app.library import mesh_path
 from app.web.control import Control
 from app.web.docks import Docks
-from app.web.guard import LOOPBACK, Guard
+from app.web.guard import LOOPBACK
 from app.web.hand import Hand
-from app.web.operator import Operator
 from app.web.running import Running
 from app.web.scene import TOOL, Scene, frames_of
+from app.web.site import Site
 from sim.arm import Arm
 from sim.scenario import Scenario
-
-FRAME = 1.0 / 60.0
-"""Time between two pictures [s]."""
 
 FRAMES_A_PANEL = 4
 """The pendant is brought up to date with every so many pictures."""
 
 
-class Served:
+class Served(Site):
     """A running web app."""
 
     def __init__(self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], host: str, port: int) -> None:
+        super().__init__(host, port, brand_color=(25, 113, 194))
         self._loop = loop
-        self._host = f"[{host}]" if ":" in host else host
-        self.guard = Guard(Operator())
-        with self.guard.installed(), quiet():
-            self.server = viser.ViserServer(host=host, port=port, verbose=False)
-        self.server.gui.configure_theme(
-            show_logo=False, show_share_button=False, control_width="medium", brand_color=(25, 113, 194)
-        )
+        self._shown = -1  # tick of the last picture
+        self._frame = 0
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
         self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
         self.docks = Docks(self.server, self.guard, loop, self.hand, arm)
@@ -54,42 +43,29 @@ class Served:
         self.scene.on_tool = functools.partial(self._make_draggable, "tool")
         draggable = frozenset({TOOL, *(node.name for node in self.scene.draggable.values())})
         self.guard.open(self.server, draggable, self._let_go)
-        self._closing = threading.Event()
-        self._painter = threading.Thread(target=self._paint, name="web-painter", daemon=True)
-        self._painter.start()
-
-    @property
-    def url(self) -> str:
-        """Where the page is."""
-        return f"http://{self._host}:{self.server.get_port()}"
+        self.start_drawing()
 
     def close(self) -> None:
         """Stop serving; connections are closed, and what they held is released."""
-        self._closing.set()
-        self._painter.join()
         self.server.get_event_loop().call_soon_threadsafe(self.control.close)
-        with quiet():
-            self.server.stop()
+        super().close()
 
-    def _paint(self) -> None:
-        frame = 0
-        shown = -1
-        due = time.monotonic()
-        while not self._closing.wait(due - time.monotonic()):
-            due = max(due + FRAME, time.monotonic())
-            try:
-                snapshot = self._loop.latest()
-            except RuntimeError as failure:
-                self.panel.fail(str(failure))
-                return
-            if snapshot.tick != shown:
-                self.scene.show(snapshot)
-                shown = snapshot.tick
-                self.docks.plots.show(snapshot)
-            if frame % FRAMES_A_PANEL == 0:
-                self.docks.show(snapshot)
-                self.server.get_event_loop().call_soon_threadsafe(self.control.show)
-            frame += 1
+    def draw(self) -> bool:
+        """Show what is new of the loop; False once it has failed."""
+        try:
+            snapshot = self._loop.latest()
+        except RuntimeError as failure:
+            self.panel.fail(str(failure))
+            return False
+        if snapshot.tick != self._shown:
+            self.scene.show(snapshot)
+            self._shown = snapshot.tick
+            self.docks.plots.show(snapshot)
+        if self._frame % FRAMES_A_PANEL == 0:
+            self.docks.show(snapshot)
+            self.control.show()
+        self._frame += 1
+        return True
 
     async def _welcome(self, client: viser.ClientHandle) -> None:
         self.control.welcome(client)
@@ -156,11 +132,6 @@ def free_port(host: str, port: int | None, usual: int) -> int:
             raise
         return 0
     return usual if port is None else port
-
-
-def quiet() -> redirect_stdout[io.StringIO]:
-    """viser announces itself and its end on the terminal, also when it is told not to."""
-    return redirect_stdout(io.StringIO())
 
 
 def must_be_free(host: str, port: int) -> None:

@@ -23,8 +23,7 @@ Join = Callable[[], RawClient]
 def still(loop: FakeLoop) -> Iterator[Served]:
     """A web app whose painter does not run, so that the test alone brings the pendant up to date."""
     app = serve(loop, ARM, Scenario())
-    app._closing.set()
-    app._painter.join()
+    app.stop_drawing()
     yield app
     app.close()
 

@@ -36,8 +36,7 @@ TOUCH = {
 @pytest.fixture
 def still(loop: FakeLoop) -> Iterator[Served]:
     app = serve(loop, ARM, Scenario())
-    app._closing.set()
-    app._painter.join()
+    app.stop_drawing()
     yield app
     app.close()
 

@@ -28,8 +28,7 @@ def still(loop: FakeLoop) -> Iterator[Served]:
     loop.latest = lambda: snapshot(loop)  # type: ignore[method-assign]
     loop.scenario = WORLD
     app = serve(loop, ARM, WORLD)
-    app._closing.set()
-    app._painter.join()
+    app.stop_drawing()
     yield app
     app.close()
 

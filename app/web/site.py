@@ -1,0 +1,82 @@
+"""A page that is served: viser behind the guard, and what is drawn on it, again and again."""
+
+import asyncio
+import io
+import logging
+from abc import ABC, abstractmethod
+from concurrent.futures import Future
+from contextlib import redirect_stdout
+from typing import Any
+
+import viser
+
+from app.web.guard import Guard
+from app.web.operator import Operator
+
+FRAME = 1.0 / 60.0
+"""Time between two pictures [s]."""
+
+
+class Site(ABC):
+    """One viser server with its guard, drawn on by viser's own event loop.
+
+    viser wakes the connection of a client from whatever thread draws, and there is a moment in which that fails: with
+    clients at the page nothing may be drawn from another thread.
+
+    Args:
+        host, port: where to listen.
+        theme: of viser's `configure_theme`.
+    """
+
+    def __init__(self, host: str, port: int, **theme: Any) -> None:
+        self._host = f"[{host}]" if ":" in host else host
+        self.guard = Guard(Operator())
+        with self.guard.installed(), quiet():
+            self.server = viser.ViserServer(host=host, port=port, verbose=False)
+        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", **theme)
+        self._still = asyncio.Event()
+
+    @property
+    def url(self) -> str:
+        """Where the page is."""
+        return f"http://{self._host}:{self.server.get_port()}"
+
+    @abstractmethod
+    def draw(self) -> bool:
+        """Bring the page up to date; False when there will be nothing new any more."""
+
+    def start_drawing(self) -> None:
+        """Draw a picture each FRAME from now on."""
+        self._painter = asyncio.run_coroutine_threadsafe(self._paint(), self.server.get_event_loop())
+        self._painter.add_done_callback(_tell)
+
+    def stop_drawing(self) -> None:
+        """Draw no more. Raises what drawing failed with."""
+        self.server.get_event_loop().call_soon_threadsafe(self._still.set)
+        self._painter.result()
+
+    def close(self) -> None:
+        """Stop serving; connections are closed. Raises what drawing failed with."""
+        try:
+            self.stop_drawing()
+        finally:
+            with quiet():
+                self.server.stop()
+
+    async def _paint(self) -> None:
+        clock = asyncio.get_running_loop().time
+        due = clock()
+        while not self._still.is_set() and self.draw():
+            due = max(due + FRAME, clock())
+            await asyncio.sleep(due - clock())
+
+
+def _tell(painter: Future[None]) -> None:
+    """A page that stands still must not look as if the arm did."""
+    if not painter.cancelled() and (failure := painter.exception()):
+        logging.getLogger(__name__).error("the page is no longer drawn", exc_info=failure)
+
+
+def quiet() -> redirect_stdout[io.StringIO]:
+    """viser announces itself and its end on the terminal, also when it is told not to."""
+    return redirect_stdout(io.StringIO())
