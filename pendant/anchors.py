@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from pendant.pose import Vector
+from pendant.pose import Vector, dot
 from pendant.walls import Policy, Wall
 
 MOVED = 0.005
@@ -69,7 +69,7 @@ class Anchor:
         x, y, z = stay.user_force
         least = self._wall.push_back
         # A hand drives a part or holds it; the inertia of a wrong payload that gathers speed looks like a force against it.
-        driving = _dot(stay.user_force, stay.moved) >= 0.0
+        driving = dot(stay.user_force, stay.moved) >= 0.0
         return self._decide(stay, driving and x * x + y * y + z * z >= least * least)
 
     def _stepwise(self, stay: Stay, pushed: bool) -> bool:
@@ -115,12 +115,12 @@ class Anchor:
 
     def _user(self, stay: Stay, pushed: bool) -> bool:
         """VW-5: once a user has moved the part a set distance away from the wall."""
-        away = -_dot(stay.moved, stay.outward)
+        away = -dot(stay.moved, stay.outward)
         if stay.exceeded:
             self._away = 0.0
         elif away < 0.0:
             self._away = max(self._away + away, 0.0)
-        elif pushed and _dot(stay.user_force, stay.outward) < 0.0:
+        elif pushed and dot(stay.user_force, stay.outward) < 0.0:
             self._away += away
         if self._away >= self._wall.step:
             self.local, self._away = stay.local, 0.0
@@ -136,7 +136,3 @@ def _against(stay: Stay) -> float:
         return 0.0
     x, y, z = stay.moved
     return -(x * fx + y * fy + z * fz) / size
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -6,7 +6,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from pendant.anchors import Anchor, Stay
-from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, finite, product, rotation, seen_from, turned, turned_back
+from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, dot, finite, product, rotation, seen_from, turned, turned_back
 from pendant.resistance import Guard, closeness, resisting
 from pendant.settings import ticks
 from pendant.walls import AnyBorder, Measure, Policy, Reaction, Wall
@@ -154,7 +154,7 @@ class Barrier:
         drift = 0.0
         lies = (anchor, factor, reference)
         if lies != self._lies and self._lies is not None:
-            drift = distance - self._before - _dot(outward, moved)
+            drift = distance - self._before - dot(outward, moved)
         self._lies, self._before, self._part = lies, distance, place
         exceeded = distance > 0.0
         near, force, consequence, anchored = 0.0, ORIGIN, _NONE, False
@@ -249,7 +249,3 @@ class Barrier:
 
 _NONE, _HOLD = Consequence.NONE, Consequence.HOLD  # looked up in every tick
 _LEAVING = {Reaction.STAY: Consequence.LEAVE, Reaction.LEAVE: Consequence.LEAVE, Reaction.STOP: Consequence.STOP}
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -8,7 +8,7 @@ import math
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
-from pendant.pose import ORIGIN, Vector, turned, turned_back
+from pendant.pose import ORIGIN, Vector, dot, flat, norm, turned, turned_back
 from pendant.residual import upward
 
 SETTLING = 1.5
@@ -59,11 +59,11 @@ class Hand:
         """
         self._up = upward(estimate.g_B.tolist())
         force: Vector = (baseline[0], baseline[1], baseline[2])
-        self._residual = _dot(force, self._up)
+        self._residual = dot(force, self._up)
         self._payload = self._residual - min(max(self._residual, -OFFSET), OFFSET)
         self._doubt = DOUBT * abs(self._payload)
         offset = _less(force, self._payload, self._up)
-        self._baseline = turned_back(_matrix(estimate), offset)  # an offset of the sensor turns with the flange
+        self._baseline = turned_back(flat(estimate.R_BF), offset)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
         self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
         self._by_sensor: Vector = ORIGIN
@@ -81,37 +81,28 @@ class Hand:
         """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
         up = self._up
         joints = _minus(_triple(estimate.F_joints.tolist()), self._felt)
-        along = _dot(joints, up)
+        along = dot(joints, up)
         self._slow_joints += _SLOW * (along - self._slow_joints)
         self._by_joints = _nearer(self._by_joints, _less(joints, self._slow_joints, up), _JOINTS)
         residual = self._slow_joints
-        user = self._by_joints if _size(self._by_joints) >= FELT_BY_JOINTS else ORIGIN
+        user = self._by_joints if norm(self._by_joints) >= FELT_BY_JOINTS else ORIGIN
         if use_wrench:
             measured = _triple(estimate.F_user.tolist()[:3])
-            change = _minus(_less(measured, self._payload, up), turned(_matrix(estimate), self._baseline))
+            change = _minus(_less(measured, self._payload, up), turned(flat(estimate.R_BF), self._baseline))
             self.change = change
-            along = _dot(change, up)
+            along = dot(change, up)
             self._slow += _SLOW * (along - self._slow)
             self._by_sensor = _nearer(self._by_sensor, _less(change, self._slow, up), _SENSOR)
             residual = self._residual + self._slow
-            if user is ORIGIN or _size(self._by_sensor) >= FELT_BY_JOINTS:
+            if user is ORIGIN or norm(self._by_sensor) >= FELT_BY_JOINTS:
                 user = self._by_sensor
-        self.user = user if _size(user) >= self._doubt else ORIGIN
+        self.user = user if norm(user) >= self._doubt else ORIGIN
         self.payload = (residual * up[0], residual * up[1], residual * up[2])
-
-
-def _matrix(estimate: Estimate) -> tuple[float, float, float, float, float, float, float, float, float]:
-    (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
-    return a, b, c, d, e, f, g, h, i
 
 
 def _triple(values: list[float]) -> Vector:
     x, y, z = values
     return x, y, z
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _minus(a: Vector, b: Vector) -> Vector:
@@ -126,7 +117,3 @@ def _less(a: Vector, along: float, up: Vector) -> Vector:
 def _nearer(a: Vector, b: Vector, share: float) -> Vector:
     """From `a` a share of the way to `b`."""
     return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
-
-
-def _size(a: Vector) -> float:
-    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])

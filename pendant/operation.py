@@ -13,7 +13,7 @@ from pendant.events import Kind, Values
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
-from pendant.pose import Vector, turned_back
+from pendant.pose import flat, norm, turned_back
 from pendant.residual import Split
 from pendant.settings import Settings, ticks
 
@@ -78,7 +78,7 @@ class Operation:
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
         self._since: Reference = reference(estimate, False)
-        self._offset = turned_back(_matrix(estimate), (baseline[0], baseline[1], baseline[2]))
+        self._offset = turned_back(flat(estimate.R_BF), (baseline[0], baseline[1], baseline[2]))
         self._on = settings.unexplained
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
@@ -118,9 +118,7 @@ class Operation:
                 return lost
         else:
             self._stepped, self.suspect = 0, False
-        change = hand.change
-        size = math.sqrt(change[0] * change[0] + change[1] * change[1] + change[2] * change[2])
-        parts = Split(0.0, 0.0, size, 0.0) if use_wrench else None
+        parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
         beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
@@ -130,7 +128,7 @@ class Operation:
     def _moved(self, estimate: Estimate, hand: Hand, driven: bool) -> Ending | None:
         """Motion that nobody causes."""
         vx, vy, vz = estimate.v_F.tolist()[:3]
-        self._motion = math.sqrt(vx * vx + vy * vy + vz * vz)
+        self._motion = norm((vx, vy, vz))
         x, y, z = hand.user
         least = self._on.force
         if self._motion < self._on.speed or driven or x * x + y * y + z * z >= least * least:
@@ -148,7 +146,7 @@ class Operation:
         weight = mass * GRAVITY
         if weight < LEAST:
             return None
-        turn = _matrix(estimate)
+        turn = flat(estimate.R_BF)
         fx, fy, fz = estimate.F_user.tolist()[:3]
         rest = turned_back(turn, (fx, fy, fz))
         wx, wy, wz = estimate.w_sensor.tolist()[:3]
@@ -161,7 +159,7 @@ class Operation:
         before = shares[0]
         shares[:-1] = shares[1:]
         shares[-1] = share
-        across = _size((missing[0] - share * needed[0], missing[1] - share * needed[1], missing[2] - share * needed[2]))
+        across = norm((missing[0] - share * needed[0], missing[1] - share * needed[1], missing[2] - share * needed[2]))
         if not self._stepped:
             jump = share - before
             began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
@@ -190,12 +188,3 @@ def way_back(then: tuple[float, ...], now: tuple[float, ...], joints: tuple[str,
     turns = [(math.degrees(a - b), joint) for a, b, joint in zip(then, now, joints, strict=True)]
     told = sorted((turn for turn in turns if abs(turn[0]) >= 0.5), key=lambda turn: -abs(turn[0]))
     return ", ".join(f"{joint} {angle:+.1f}°" for angle, joint in told[:4])
-
-
-def _matrix(estimate: Estimate) -> tuple[float, float, float, float, float, float, float, float, float]:
-    (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
-    return a, b, c, d, e, f, g, h, i
-
-
-def _size(a: Vector) -> float:
-    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendant.pose import Vector
+from pendant.pose import Vector, dot
 from pendant.solids import Field, Signed
 
 TOLERANCE = 1e-6  # of the mesh's extent: a vertex this far beyond a face's plane is still taken for convex
@@ -85,7 +85,7 @@ def _outside(faces: list[Face], point: Vector) -> Signed:
     x, y, z = point
     least, best = math.inf, (0.0, 0.0, 0.0, 0.0)
     for normal, offset, edges in faces:
-        height = _dot(normal, point) - offset
+        height = dot(normal, point) - offset
         if height <= 0.0 or height >= least:
             continue
         over = True
@@ -143,7 +143,7 @@ def _joined(
             corners.add(start)
             if group[owner[end, start]] != root:
                 edges.append(_edge(vertices[start], vertices[end], normal))
-    return Face(normal, max(_dot(normal, vertices[corner]) for corner in corners), tuple(edges))
+    return Face(normal, max(dot(normal, vertices[corner]) for corner in corners), tuple(edges))
 
 
 def _edge(start: Vector, end: Vector, normal: Vector) -> Edge:
@@ -187,7 +187,3 @@ def _normal(vertices: tuple[Vector, ...], face: tuple[int, ...], number: int) ->
     if length <= 1e-9 * extent * extent:
         raise ValueError(f"faces[{number}]: its corners lie on a line, allowed: a face with an area")
     return nx / length, ny / length, nz / length
-
-
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

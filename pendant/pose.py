@@ -3,6 +3,10 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]  # wxyz
 Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a matrix, row by row
@@ -45,6 +49,23 @@ def quaternion(R: Rotation) -> Quaternion:
     w, x, y, z = rows[squares.index(max(squares))]
     size = math.sqrt(w * w + x * x + y * y + z * z)
     return w / size, x / size, y / size, z / size
+
+
+def flat(matrix: Array) -> Rotation:
+    """A rotation matrix (3, 3), row by row."""
+    a, b, c, d, e, f, g, h, i = matrix.ravel().tolist()
+    return a, b, c, d, e, f, g, h, i
+
+
+def dot(a: Vector, b: Vector) -> float:
+    """The inner product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def norm(v: Vector) -> float:
+    """The length."""
+    x, y, z = v
+    return math.sqrt(x * x + y * y + z * z)
 
 
 def turned(R: Rotation, v: Vector) -> Vector:
