@@ -96,6 +96,7 @@ class Recorder:
         self._truth_type = layout.record(layout.width(TRUTH, n), 0)
         self._vectors = layout.width(STATE, n) - 2 * len(AT) - SINGLES  # numbers that come as arrays
         self._offset = self._last = 0
+        self._full = 1  # the first tick goes by itself, so that a log can be shown as soon as it is there
         self._begin()
         self._settings.append((0, simulation.settings))
         self._queue: queue.Queue[Block | None] = queue.Queue(AHEAD)
@@ -129,8 +130,9 @@ class Recorder:
             if event.kind is Kind.SETTING_CHANGED:
                 self._settings.append((tick, simulation.settings))
         self._count = k + 1
-        if self._count == BLOCK:
+        if self._count == self._full:
             self._hand_over()
+            self._full = BLOCK
 
     def close(self) -> None:
         """Write what is left and the end of the file.

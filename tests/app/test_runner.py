@@ -5,9 +5,11 @@ from typing import Any
 import pytest
 
 from app.checked import convert, load
+from app.coverage import claiming
 from app.prepare import prepare
 from app.runner import Outcome, run, simulate
 from app.session import Session, bundled, find
+from benchmarks import determinism
 from pendant.modes import Mode
 from tests.app.fakes import FakeSimulation
 
@@ -81,8 +83,15 @@ def test_same_session_and_seed_give_the_same_bytes(tmp_path: Path) -> None:
     assert bytes_of(first) != bytes_of(other)
 
 
-@pytest.mark.parametrize("name", bundled("sessions"))
-def test_every_bundled_session_meets_its_expectations(name: str, tmp_path: Path) -> None:
+def test_bundled_sessions_give_the_same_bytes_again_also_in_real_time() -> None:
+    assert determinism.differing(list(determinism.REALTIME), realtime=True)[0] == []
+    wrong, size = determinism.differing(["control-all-terms", "enabling-device"], realtime=False)
+    assert wrong == []
+    assert size > 1000
+
+
+@pytest.mark.parametrize("name", sorted(set(bundled("sessions")) - set(claiming())))
+def test_a_bundled_session_without_a_switch_meets_its_expectations(name: str, tmp_path: Path) -> None:
     session = load(find(name), Session)
     outcome = really(session, tmp_path)
     assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []

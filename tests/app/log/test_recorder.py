@@ -2,11 +2,7 @@
 
 import importlib
 import math
-import os
 import random
-import signal
-import subprocess
-import sys
 import time
 from collections import Counter
 from pathlib import Path
@@ -21,11 +17,13 @@ from mcap_ros2.decoder import DecoderFactory
 
 from app.checked import BadInput, convert
 from app.log import foxglove
+from app.log.playback import Player
 from app.log.reader import Log, read, repair
 from app.log.recorder import Recorder
 from app.prepare import prepare
 from app.runner import record, simulate
 from app.session import Session
+from benchmarks import crash
 from pendant.inputs import NOTHING
 from sim.desk import Wishes
 
@@ -74,7 +72,7 @@ def test_the_public_library_finds_every_channel_at_its_rate(recorded: Path) -> N
     assert counts["/settings"] == 2  # at the start, and as changed
     assert counts["/events"] == counts["/log"] >= 3
     assert times == [2_000_000 * tick for tick in range(1, 751)]
-    assert len(summary.chunk_indexes) == 6
+    assert len(summary.chunk_indexes) == 7  # the first tick by itself, then quarters of a second
 
 
 def test_a_ros_decoder_reads_the_same_numbers(recorded: Path, log: Log) -> None:
@@ -195,34 +193,11 @@ def test_an_arrow_points_along_its_force(vector: tuple[float, float, float]) -> 
     assert along == pytest.approx([each / size for each in vector], abs=1e-12)
 
 
-RUN = """
-import sys
-from pathlib import Path
-from app.checked import convert
-from app.prepare import prepare
-from app.runner import record
-from app.session import Session
-session = convert({"title": "killed", "duration": 600.0, "world": "table"}, Session, "s.yaml")
-prepared = prepare(session, "s.yaml")
-print("ready", flush=True)
-record(session, prepared, Path(sys.argv[1]), progress=lambda seconds: print(seconds, flush=True))
-"""
-
-
 def test_a_killed_process_leaves_all_but_the_last_second(tmp_path: Path) -> None:
     chance = random.Random(6)
-    for k in range(2):
-        out = tmp_path / str(k)
-        child = subprocess.Popen([sys.executable, "-c", RUN, str(out)], stdout=subprocess.PIPE, text=True)
-        assert child.stdout is not None
-        while not child.stdout.readline().startswith("1.0"):
-            pass
-        time.sleep(chance.uniform(0.0, 0.5))
-        os.kill(child.pid, signal.SIGKILL)
-        told = [line for line in child.stdout.read().splitlines() if line]
-        child.wait()
-        done = float(told[-1]) if told else 1.0
-        path = out / "log.mcap"
+    for k in range(3):
+        done = crash.kill(tmp_path / str(k), chance.uniform(0.0, 1.0))
+        path = tmp_path / str(k) / "log.mcap"
         log = read(path)
         assert not log.whole
         assert log.t[-1] >= done - 1.0
@@ -235,6 +210,20 @@ def test_a_killed_process_leaves_all_but_the_last_second(tmp_path: Path) -> None
         assert summary.statistics is not None
         assert summary.statistics.channel_message_counts[1] == len(log.ticks)
         assert read(path).whole
+
+
+def test_killed_at_once_it_holds_the_first_tick(tmp_path: Path) -> None:
+    simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
+    path, copy = tmp_path / "log.mcap", tmp_path / "copy.mcap"
+    with Recorder(path, simulation, "t") as recorder:
+        recorder.see(simulation, simulation.tick(IDLE))
+        while not (log := _opened(path)) or not log.pictures:
+            time.sleep(0.01)
+        copy.write_bytes(path.read_bytes())
+    log = read(copy)
+    assert not log.whole
+    assert log.ticks.tolist() == [1]
+    assert Player(log).end == pytest.approx(0.002)
 
 
 def test_cut_anywhere_it_opens_or_says_why_not(recorded: Path, tmp_path: Path) -> None:
