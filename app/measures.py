@@ -185,5 +185,7 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
         case Value():
             return ValueWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Displacement():
-            return DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+            found = DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+            found.ends_alone = expectation.measure == "final"
+            return found
     raise AssertionError(f"{type(expectation).__name__} is planned, and app.prepare.prepare refuses it")

@@ -16,7 +16,7 @@ def point_of(snapshot: Snapshot, joints: list[str], part: str, point: Sequence[f
         point: in the part's frame [m].
     """
     row = -1 if part in ("flange", "tool") else 0 if part == "foot" else 1 + joints.index(part)
-    x, y, z, w, i, j, k = (float(number) for number in snapshot.truth_links[row])
+    x, y, z, w, i, j, k = snapshot.truth_links[row].tolist()
     a, b, c = point
     # Rotation by the unit quaternion (w, v): p + 2 w t + 2 v x t with t = v x p; by hand, since it runs every tick.
     tx, ty, tz = j * c - k * b, k * a - i * c, i * b - j * a

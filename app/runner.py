@@ -1,6 +1,5 @@
 """Runs a session without a window: as fast as it goes, or in real time; the same either way, and the same for a seed."""
 
-import functools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -39,6 +38,24 @@ class Simulated(Protocol):
     def snapshot(self) -> Snapshot:
         """A copy of the tick done last."""
         ...
+
+
+class Copy:
+    """One snapshot a tick for all who look, and none where nobody does."""
+
+    def __init__(self, simulation: Simulated) -> None:
+        self._simulation = simulation
+        self._made: Snapshot | None = None
+
+    def fresh(self) -> None:
+        """Say that a tick was done."""
+        self._made = None
+
+    def made(self) -> Snapshot:
+        """The snapshot of the tick done last."""
+        if self._made is None:
+            self._made = self._simulation.snapshot()
+        return self._made
 
 
 @dataclass(slots=True)
@@ -99,19 +116,21 @@ def run(
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
     watches = [watch(expectation, joints) for expectation in session.expectations]
-    outcome = Outcome(seconds=session.duration)
+    outcome, copy = Outcome(seconds=session.duration), Copy(simulation)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
-        for tick in range(1, ticks(session.duration) + 1):
+        last = ticks(session.duration)
+        for tick in range(1, last + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
-            snapshot = functools.cache(simulation.snapshot)  # one copy a tick, and none where nobody looks
+            copy.fresh()
             for each in watches:
-                each.see(tick, decision, snapshot)
+                if tick >= each.due or tick == last:
+                    each.see(tick, decision, copy.made)
             see(decision)
             file.write(tick, decision.events)
             outcome.events += decision.events
-            if not outcome.modes or outcome.modes[-1][1] != decision.mode:
+            if not outcome.modes or outcome.modes[-1][1] is not decision.mode:
                 outcome.modes.append((tick * TICK, decision.mode))
             if tick % ticks(0.1) == 0:
                 progress(tick * TICK)

@@ -18,9 +18,9 @@ from app.actions import (
     triple,
 )
 from app.parts import point_of
-from app.triggers import Trigger
+from app.triggers import NEVER, Trigger
 from pendant.decision import Decision
-from pendant.inputs import Button, Command, Inputs
+from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.modes import TICK
 from pendant.program import Program as Steps
 from pendant.settings import ticks
@@ -79,28 +79,42 @@ class Timeline:
         self._program = program
         self._held: set[Button] = set()
         self._high: set[int] = set()  # digital inputs
+        self._waiting = [entry for entry in self._entries if entry.trigger.happened is None]
+        self._next = 0  # the next tick in which an action begins, goes on or ends
+        self._quiet = Wishes(NOTHING, (), ())  # the wishes until then
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
         """The wishes for `tick`; `snapshot` copies the tick before, and is called only where a hand grabs the arm."""
+        if tick < self._next:
+            return self._quiet
         now = _Tick()
+        self._next = NEVER
         for entry in self._entries:
             if entry.done:
                 continue
             due = entry.due()
-            if due is None or tick < due:
-                continue
-            if entry.start is None:
-                entry.start = tick
-            self._act(entry, tick - entry.start, now, snapshot)
+            if due is not None and tick >= due:
+                if entry.start is None:
+                    entry.start = tick
+                self._act(entry, tick - entry.start, now, snapshot)
+                due = NEVER if entry.done else tick + 1
+            if due is not None:
+                self._next = min(self._next, due)
         program, self._program = self._program, None
         released, commands = frozenset(now.released), tuple(now.commands)
-        inputs = Inputs(frozenset(self._held), released, commands, now.settings, program, frozenset(self._high))
+        held, high = frozenset(self._held), frozenset(self._high)
+        self._quiet = Wishes(Inputs(held=held, high=high), (), ())
+        inputs = Inputs(held, released, commands, now.settings, program, high)
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in what the robot decided in `tick`."""
-        for entry in self._entries:
+        for entry in self._waiting:
             entry.trigger.see(tick, decision)
+            if entry.trigger.happened is not None:
+                self._next = 0
+        if self._next == 0:
+            self._waiting = [entry for entry in self._waiting if entry.trigger.happened is None]
 
     def unstarted(self) -> list[tuple[int, Action]]:
         """Actions that never began, with their place in the time line: what they wait for did not happen in time."""

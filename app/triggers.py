@@ -20,6 +20,10 @@ WORDS: dict[str, tuple[str, ...]] = {
 """What may follow `after:`, and the names that each of them knows."""
 
 
+NEVER = 2**62
+"""A tick that does not come."""
+
+
 class After(msgspec.Struct, frozen=True, kw_only=True):
     """Base of what may be due relative to what the robot did.
 
@@ -92,7 +96,8 @@ class Trigger:
             return
         word, name = self._word, self._name
         if word == "event":
-            self._left -= sum(event.kind.value == name for event in decision.events)
+            for event in decision.events:
+                self._left -= event.kind.value == name
         else:
             now = decision.safety.name if word == "safety" else getattr(decision, word).value
             self._left -= now == name and self._was != name

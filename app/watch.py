@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.expectations import Happens, Never, Period, State
-from app.triggers import Trigger
+from app.triggers import NEVER, Trigger
 from pendant.decision import Decision
 from pendant.modes import TICK
 from sim.snapshot import Snapshot
@@ -21,13 +21,18 @@ class Verdict:
 
 @dataclass(slots=True)
 class Watch:
-    """Base: one expectation, followed through a run. Call `see` once a tick, with ticks counted from 1, then `verdict` once."""
+    """Base: one expectation, followed through a run. Call `see` with ticks counted from 1, then `verdict` once.
+
+    The ticks before `due` may be left out, but for the last of the run.
+    """
 
     joints: list[str]
     trigger: Trigger
     begin: int = 0  # ticks after the trigger
     end: int | None = None  # ticks after the trigger; None: the session's end
     last: int = -1  # the last tick seen
+    due: int = 0  # the next tick to be shown
+    ends_alone: bool = False  # looks at the first and the last tick of its interval, and at none between
 
     def see(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """Take in one tick; `snapshot` copies it, and is called only where the tick is in the interval and it is needed."""
@@ -38,8 +43,15 @@ class Watch:
             start = self.trigger.happened
             if start is None:
                 return
-        if start + self.begin <= tick and (self.end is None or tick <= start + self.end):
+        begin, end = start + self.begin, None if self.end is None else start + self.end
+        if begin <= tick and (end is None or tick <= end):
             self.look(tick, decision, snapshot)
+        if end is not None and tick >= end:
+            self.due = NEVER
+        elif self.ends_alone and tick >= begin:
+            self.due = NEVER if end is None else end
+        else:
+            self.due = max(begin, tick + 1)
 
     def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """Take in one tick of the interval."""
@@ -81,7 +93,7 @@ class StateWatch(Watch):
     wanted: State = field(kw_only=True)
     met: int | None = None  # first tick of the interval in which it held
     broken: int | None = None  # first in which it did not
-    seen: str = ""  # the last state in the interval, or the first wrong one
+    seen: tuple[int, Decision] | None = None  # the last tick in the interval, or the first wrong one
 
     def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
@@ -94,7 +106,7 @@ class StateWatch(Watch):
         if holds and self.met is None:
             self.met = tick
         if self.broken is None:
-            self.seen = f"mode {decision.mode.value}, phase {decision.phase.value}, safety {decision.safety.name} at {at(tick)}"
+            self.seen = tick, decision
             if not holds and wanted.by is None:
                 self.broken = tick
 
@@ -112,9 +124,13 @@ class StateWatch(Watch):
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
-        if self.wanted.by is None:
-            return self.broken is None, self.seen
-        return self.met is not None, self.seen if self.met is None else f"reached at {at(self.met)}"
+        if self.wanted.by is not None and self.met is not None:
+            return True, f"reached at {at(self.met)}"
+        passed = self.wanted.by is None and self.broken is None
+        if self.seen is None:
+            return passed, ""
+        tick, now = self.seen
+        return passed, f"mode {now.mode.value}, phase {now.phase.value}, safety {now.safety.name} at {at(tick)}"
 
 
 @dataclass(slots=True)
@@ -126,7 +142,8 @@ class EventWatch(Watch):
 
     def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
         """See `Watch.look`."""
-        self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
+        if decision.events:
+            self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
 
     def settled(self) -> bool:
         """See `Watch.settled`."""

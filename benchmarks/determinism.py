@@ -20,7 +20,7 @@ def differing(names: list[str], realtime: bool) -> tuple[list[str], int]:
         realtime: keep the pace of the clock the second time.
 
     Returns:
-        The names whose events.jsonl is not the same, and the bytes that were compared.
+        The names whose events.jsonl or figures of expectations are not the same, and the bytes that were compared.
     """
     sessions = [load(find(name), Session) for name in names]
     with TemporaryDirectory() as out:
@@ -29,10 +29,13 @@ def differing(names: list[str], realtime: bool) -> tuple[list[str], int]:
         for name, session, (once, again) in zip(names, sessions, folders, strict=True):
             jobs.append(Job(name, session, once, recorded=False))
             jobs.append(Job(name, session, again, realtime=realtime, recorded=False))
-        for _ in run_all(jobs):
-            pass
+        outcomes = dict(run_all(jobs))
         pairs = [[(folder / "events.jsonl").read_bytes() for folder in pair] for pair in folders]
-    wrong = [name for name, (once, again) in zip(names, pairs, strict=True) if once != again]
+    wrong = [
+        name
+        for place, (name, (once, again)) in enumerate(zip(names, pairs, strict=True))
+        if once != again or outcomes[2 * place].verdicts != outcomes[2 * place + 1].verdicts
+    ]
     return wrong, sum(len(once) for once, _ in pairs)
 
 

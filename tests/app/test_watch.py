@@ -182,3 +182,29 @@ def test_a_period_begun_afresh_is_another_run() -> None:
     decide = counting(100, 500, again=300)
     assert follow(Period(name="restart", length=0.4, tolerance=0.0, run=1), 900, decide).passed
     assert follow(Period(name="restart", length=1.0, tolerance=0.0, run=2), 900, decide).passed
+
+
+@pytest.mark.parametrize("end", [0.2, None])
+def test_a_final_displacement_looks_at_two_ticks_alone(end: float | None) -> None:
+    looked: list[int] = []
+
+    def picture(tick: int) -> Snapshot:
+        looked.append(tick)
+        return snapshot(tick, (0.001 * tick, 0.0, 0.0))
+
+    watched = watch(Displacement(begin=0.1, end=end, part="flange", measure="final", max=1.0), JOINTS)
+    for tick in range(1, 151):
+        if tick >= watched.due or tick == 150:
+            watched.see(tick, decision(), lambda tick=tick: picture(tick))
+    assert looked == [50, 100 if end else 150]
+    assert watched.verdict().seen == f"{0.001 * (looked[1] - 50):.6g} m at {0.002 * looked[1]:.3f} s"
+
+
+def test_a_watch_says_when_it_is_due() -> None:
+    watched = watch(Never(kind=Kind.RESET, after="mode RUN", begin=0.02, end=0.04), JOINTS)
+    due: list[int] = []
+    for tick in range(1, 40):
+        if tick >= watched.due:
+            due.append(tick)
+            watched.see(tick, decision(Mode.RUN if tick >= 3 else Mode.TEACH), lambda: snapshot(1))
+    assert due == [1, 2, 3, *range(13, 24)]
