@@ -35,7 +35,7 @@ Robot = Annotated[str | None, typer.Option(help="Arm to serve: a name that `pend
 Config = Annotated[
     Path | None, typer.Option(help="YAML file: the header of a session, without its time line.", show_default=False)
 ]
-Host = Annotated[str, typer.Option(help="Address to listen on.")]
+Host = Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 opens the page to the network.")]
 Port = Annotated[
     int | None, typer.Option(help=f"Port; 0 for any free one. Without it {PORT}, or any free one.", min=0, max=65535)
 ]
@@ -55,7 +55,12 @@ def example(*lines: str) -> str:
 
 
 @app.command(
-    epilog=example("pendant serve --open", "pendant serve --robot ur10e --port 9000", "pendant serve --config cell.yaml")
+    epilog=example(
+        "pendant serve --open",
+        "pendant serve --robot ur10e --port 9000",
+        "pendant serve --config cell.yaml",
+        "pendant serve --host 0.0.0.0",
+    )
 )
 def serve(
     robot: Robot = None,
@@ -71,8 +76,8 @@ def serve(
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     where = "serve" if config is None else config.name
-    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser) as url:
-        Console().print(f"Serving the {escape(setup.robot)} at {url}  (stop with Ctrl-C)")
+    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser) as site:
+        _announce(f"Serving the {setup.robot}", site.link, site.access.token is not None)
 
 
 @app.command(
@@ -146,8 +151,8 @@ def replay(
     """Show a recording in the web app, with a time line; nothing is simulated."""
     from app.serving import replay_until_interrupted
 
-    with replay_until_interrupted(log, host, port, PORT, open_browser) as url:
-        Console().print(f"Showing {escape(str(log))} at {url}  (stop with Ctrl-C)")
+    with replay_until_interrupted(log, host, port, PORT, open_browser) as site:
+        _announce(f"Showing {log}", site.link, site.access.token is not None)
 
 
 @app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))
@@ -224,6 +229,14 @@ def setting(text: str) -> tuple[str, float | bool | str]:
 def _source(arm: Arm) -> str:
     """Where the masses come from, without the fine print after the first semicolon; the file says the rest."""
     return " ".join(arm.masses.source.split()).partition(";")[0]
+
+
+def _announce(what: str, link: str, on_a_network: bool) -> None:
+    """Say where the page is, in one line however narrow the terminal: a link that is cut does not open."""
+    console = Console(soft_wrap=True)
+    console.print(escape(f"{what} at {link}  (stop with Ctrl-C)"))
+    if on_a_network:
+        console.print("Open to the network, unencrypted: whoever has this link can move the arm. The next start makes a new one.")
 
 
 def main() -> None:

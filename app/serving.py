@@ -13,15 +13,17 @@ from app.log.playback import Player
 from app.log.reader import read, repair
 from app.prepare import Prepared
 from app.runner import simulate
+from app.web.access import access_through, free_port
 from app.web.replay import Replay
-from app.web.server import Served, free_port, served_host
+from app.web.server import Served
 from app.web.server import serve as serve_web
+from app.web.site import Site
 from sim.loop import Loop
 
 
 @contextmanager
-def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[str]:
-    """Serve; the body runs once the page is up and gets its address; then wait for Ctrl-C or a polite end of the process.
+def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
+    """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
 
     Args:
         prepared: what to simulate.
@@ -41,7 +43,7 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
     try:
         served = _serve(loop, prepared, host, port, usual, open_browser)
         try:
-            yield served.url
+            yield served
             ended.wait()
         finally:
             served.close()
@@ -50,7 +52,7 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
 
 
 @contextmanager
-def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[str]:
+def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
     """Show a recording, as `serve_until_interrupted` serves a simulation; a log without its end is repaired first.
 
     Raises:
@@ -61,14 +63,14 @@ def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: ended.set())
-    address = served_host(host)
+    access = access_through(host)
     names = ("foot", *player.log.arm.chain.joints)
     meshes = {part: mesh_path(player.log.arm.name, part).read_bytes() for part in names}
-    shown = Replay(player, meshes, address, free_port(address, port, usual))
+    shown = Replay(player, meshes, access, free_port(access.host, port, usual))
     try:
         if open_browser:
-            webbrowser.open(shown.url)
-        yield shown.url
+            webbrowser.open(shown.link)
+        yield shown
         ended.wait()
     finally:
         shown.close()

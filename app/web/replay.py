@@ -11,6 +11,7 @@ from viser import uplot
 from app.events_file import Line
 from app.log.playback import Player, snapshot_at
 from app.web import style, svg
+from app.web.access import Access
 from app.web.html import Html
 from app.web.scene import Scene
 from app.web.site import Site
@@ -36,11 +37,12 @@ class Replay(Site):
     Args:
         player: of the log.
         meshes: a GLB file for each part that has a shape.
-        host, port: where to listen.
+        access: where to listen, and for whom.
+        port: 0 for any free one.
     """
 
-    def __init__(self, player: Player, meshes: Mapping[str, bytes], host: str, port: int) -> None:
-        super().__init__(host, port)
+    def __init__(self, player: Player, meshes: Mapping[str, bytes], access: Access, port: int) -> None:
+        super().__init__(access, port)
         self.player = player
         self._set = -1.0  # where we have put the slider ourselves
         self._before = time.monotonic()

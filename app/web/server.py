@@ -1,17 +1,15 @@
 """The web app as a whole: the page of a running loop."""
 
 import functools
-import socket
 import webbrowser
 from collections.abc import Mapping
 
 import viser
 
-from app.bad_input import BadInput
 from app.library import mesh_path
+from app.web.access import Access, access_through, must_be_free
 from app.web.control import Control
 from app.web.docks import Docks
-from app.web.guard import LOOPBACK
 from app.web.hand import Hand
 from app.web.running import Running
 from app.web.scene import TOOL, Scene, frames_of
@@ -26,8 +24,10 @@ FRAMES_A_PANEL = 4
 class Served(Site):
     """A running web app."""
 
-    def __init__(self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], host: str, port: int) -> None:
-        super().__init__(host, port, brand_color=(25, 113, 194))
+    def __init__(
+        self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], access: Access, port: int
+    ) -> None:
+        super().__init__(access, port, brand_color=(25, 113, 194))
         self._loop = loop
         self._shown = -1  # tick of the last picture
         self._frame = 0
@@ -101,44 +101,16 @@ def serve(
     """Serve the web app of a running loop.
 
     Args:
-        host: an address of this machine alone.
+        host: an address of this machine; one in a network demands a token, which is in the `link`.
         port: 0 for any free one.
 
     Raises:
-        BadInput: the host is on a network, or the port is taken.
+        BadInput: the host is no address of this machine, or the port is taken.
     """
-    host = served_host(host)
-    must_be_free(host, port)
+    access = access_through(host)
+    must_be_free(access.host, port)
     meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
-    served = Served(loop, arm, scenario, meshes, host, port)
+    served = Served(loop, arm, scenario, meshes, access, port)
     if open_browser:
-        webbrowser.open(served.url)
+        webbrowser.open(served.link)
     return served
-
-
-def served_host(host: str) -> str:
-    """The address to listen on, for `--host`. Raises BadInput: it is not of this machine alone."""
-    if host not in LOOPBACK:
-        raise BadInput("serve", "--host", host, f"one of {', '.join(LOOPBACK)}: opening it to a network is not available yet")
-    return "::1" if host == "[::1]" else host
-
-
-def free_port(host: str, port: int | None, usual: int) -> int:
-    """`port`; or without one `usual` if it is free, else 0 for any. Raises BadInput: `port` is taken."""
-    try:
-        must_be_free(host, usual if port is None else port)
-    except BadInput:
-        if port is not None:
-            raise
-        return 0
-    return usual if port is None else port
-
-
-def must_be_free(host: str, port: int) -> None:
-    """Raise BadInput when `port` is taken: viser would quietly take another."""
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except OSError:
-            raise BadInput("serve", "--port", port, "a port that is free") from None

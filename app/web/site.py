@@ -10,6 +10,7 @@ from typing import Any
 
 import viser
 
+from app.web.access import Access
 from app.web.guard import Guard
 from app.web.operator import Operator
 
@@ -24,22 +25,28 @@ class Site(ABC):
     clients at the page nothing may be drawn from another thread.
 
     Args:
-        host, port: where to listen.
+        access: where to listen, and for whom.
+        port: 0 for any free one.
         theme: of viser's `configure_theme`.
     """
 
-    def __init__(self, host: str, port: int, **theme: Any) -> None:
-        self._host = f"[{host}]" if ":" in host else host
-        self.guard = Guard(Operator())
+    def __init__(self, access: Access, port: int, **theme: Any) -> None:
+        self.access = access
+        self.guard = Guard(Operator(), access)
         with self.guard.installed(), quiet():
-            self.server = viser.ViserServer(host=host, port=port, verbose=False)
+            self.server = viser.ViserServer(host=access.host, port=port, verbose=False)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", **theme)
         self._still = asyncio.Event()
 
     @property
     def url(self) -> str:
         """Where the page is."""
-        return f"http://{self._host}:{self.server.get_port()}"
+        return self.access.address(self.server.get_port())
+
+    @property
+    def link(self) -> str:
+        """What a browser has to open: the address, with the token if one is needed."""
+        return self.access.link(self.server.get_port())
 
     @abstractmethod
     def draw(self) -> bool:

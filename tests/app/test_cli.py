@@ -61,7 +61,7 @@ def test_robots_shows_the_arms(monkeypatch: pytest.MonkeyPatch, capsys: pytest.C
         (["serve", "--port", "99999"], "--port"),
         (["serve", "--robot", "ur6"], "ur6"),
         (["serve", "--config", "nowhere.yaml"], "nowhere.yaml"),
-        (["serve", "--host", "0.0.0.0"], "0.0.0.0"),
+        (["serve", "--host", "203.0.113.7"], "203.0.113.7"),
         (["check", "bad.yaml"], "bad.yaml: duration = soon: expected a number"),
         (["check", "twice.yaml"], "twice.yaml: line 2"),
         (["check", "nan.yaml"], "nan.yaml: seed"),

@@ -14,6 +14,7 @@ from app.prepare import prepare
 from app.runner import simulate
 from app.session import Session
 from app.timeline import Timeline
+from app.web.access import HERE
 from app.web.replay import Replay
 from pendant.modes import Mode
 from sim.snapshot import Snapshot
@@ -104,7 +105,7 @@ def test_a_log_without_a_tick_is_refused(played: tuple[Log, dict[int, Snapshot]]
 @pytest.fixture
 def replay(player: Player) -> Iterator[Replay]:
     parts = ("foot", *player.log.arm.chain.joints)
-    shown = Replay(player, {part: mesh_path("ur5e", part).read_bytes() for part in parts}, "127.0.0.1", 0)
+    shown = Replay(player, {part: mesh_path("ur5e", part).read_bytes() for part in parts}, HERE, 0)
     yield shown
     shown.close()
 

@@ -35,10 +35,13 @@ def until(true: Callable[[], bool], what: str, seconds: float = 5.0) -> None:
 class RawClient:
     """One connection."""
 
-    def __init__(self, url: str, origin: str | None = None, camera: bool = True) -> None:
+    def __init__(self, url: str, origin: str | None = None, camera: bool = True, cookie: str | None = None) -> None:
         named = None if origin is None else Origin(origin)
         address = url.replace("http", "ws", 1)
-        self.socket: ClientConnection = connect(address, subprotocols=[VERSION], origin=named, max_size=None, proxy=None)
+        more = None if cookie is None else {"Cookie": cookie}
+        self.socket: ClientConnection = connect(
+            address, subprotocols=[VERSION], origin=named, max_size=None, proxy=None, additional_headers=more
+        )
         if camera:
             self.send(**CAMERA)
 

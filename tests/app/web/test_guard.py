@@ -14,8 +14,10 @@ import viser._messages as wire
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
-from app.web import guard as guard_module
-from app.web.guard import MAX_BYTES, MAX_CLIENTS, VISER_VERSION, Gate
+from app.web import gate as gate_module
+from app.web.door import MAX_CLIENTS
+from app.web.gate import MAX_BYTES, Gate
+from app.web.guard import VISER_VERSION
 from app.web.messages import Camera, Drag, Hold, Part, Update, Upload
 from app.web.server import Served
 from pendant.inputs import Button, Command
@@ -366,7 +368,7 @@ def test_one_client_too_many_is_refused(served: Served, join: Join) -> None:
     assert turned_away.value.response.status_code == 503
     assert f"at most {MAX_CLIENTS} clients" in turned_away.value.response.body.decode()
     first[0].close()
-    until(lambda: len(served.guard._gates) == MAX_CLIENTS - 1, "a place is free")
+    until(lambda: len(served.guard.door.inside) == MAX_CLIENTS - 1, "a place is free")
     RawClient(served.url).close()
 
 
@@ -382,7 +384,7 @@ def test_connections_are_counted_at_the_door(served: Served) -> None:
 
 
 def test_a_flood_is_read_slowly(served: Served, join: Join, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guard_module, "MAX_RATE", 20)
+    monkeypatch.setattr(gate_module, "MAX_RATE", 20)
     client, other = join(), join()
     for _ in range(200):
         client.send(type="ShareUrlRequest")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from app.web.access import HERE
 from app.web.server import Served
 from app.web.site import Site
 from pendant.inputs import Command
@@ -17,7 +18,7 @@ class Sketch(Site):
     """A page that notes who draws it, `most` times; then drawing fails, or ends."""
 
     def __init__(self, most: int, failure: Exception | None = None) -> None:
-        super().__init__("127.0.0.1", 0)
+        super().__init__(HERE, 0)
         self.painters: list[int | None] = []
         self._most, self._failure = most, failure
         self.start_drawing()

@@ -7,8 +7,8 @@ import pytest
 
 from app.teaching import Lesson
 from app.web.ghost import limbs
-from app.web.guard import MAX_FILE
 from app.web.server import Served
+from app.web.takes import MAX_FILE
 from pendant.inputs import Command
 from pendant.modes import Mode
 from pendant.program import JointMove
