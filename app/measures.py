@@ -11,7 +11,7 @@ from app.watch import EventWatch, PeriodWatch, StateWatch, Watch, at
 from pendant.decision import Decision
 from pendant.modes import TICK
 from pendant.settings import ticks
-from sim.snapshot import Snapshot
+from sim.glance import Scored
 from sim.touch import Triple
 
 UNITS = {
@@ -33,7 +33,7 @@ SLIDING = 0.05
 """Friction is compared above this speed [rad/s]: a standing joint has none of its own."""
 
 
-def control_error(now: Snapshot, quantity: str, joint: int) -> float:
+def control_error(now: Scored, quantity: str, joint: int) -> float:
     """Size of an error of the joint control against the truth: for scoring alone."""
     estimate = now.estimate
     if quantity == "tracking_error":
@@ -94,9 +94,9 @@ class ValueWatch(BoundsWatch):
     wanted: Value = field(kw_only=True)
     place: Triple | None = None  # of the flange, a tick before
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
-        now = snapshot()
+        now = glance()
         estimate = now.estimate
         match self.wanted.of:
             case "flange_speed":
@@ -137,16 +137,16 @@ class DisplacementWatch(BoundsWatch):
     wanted: Displacement = field(kw_only=True)
     place: Triple | None = None  # of the part, at the interval's begin
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
-        now = point_of(snapshot(), self.joints, self.wanted.part)
+        now = point_of(glance(), self.joints, self.wanted.part)
         if self.place is None:
             self.place = now
-        way = [b - a for a, b in zip(self.place, now, strict=True)]
-        along = self.wanted.along
-        distance = math.hypot(*way)
-        if along is not None:
-            distance = sum(a * b for a, b in zip(way, along, strict=True)) / math.hypot(*along)
+        (x, y, z), (i, j, k), along = now, self.place, self.wanted.along
+        if along is None:
+            distance = math.hypot(x - i, y - j, z - k)
+        else:
+            distance = ((x - i) * along[0] + (y - j) * along[1] + (z - k) * along[2]) / math.hypot(*along)
         if self.wanted.measure == "final":
             self.low = self.high = (distance, tick)
         else:

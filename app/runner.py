@@ -18,6 +18,7 @@ from pendant.events import Event
 from pendant.modes import TICK, Mode
 from pendant.settings import ticks
 from sim.desk import Wishes
+from sim.glance import Scored
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
 
@@ -39,23 +40,9 @@ class Simulated(Protocol):
         """A copy of the tick done last."""
         ...
 
-
-class Copy:
-    """One snapshot a tick for all who look, and none where nobody does."""
-
-    def __init__(self, simulation: Simulated) -> None:
-        self._simulation = simulation
-        self._made: Snapshot | None = None
-
-    def fresh(self) -> None:
-        """Say that a tick was done."""
-        self._made = None
-
-    def made(self) -> Snapshot:
-        """The snapshot of the tick done last."""
-        if self._made is None:
-            self._made = self._simulation.snapshot()
-        return self._made
+    def glance(self) -> Scored:
+        """What scoring reads of the tick done last, good until the next."""
+        ...
 
 
 @dataclass(slots=True)
@@ -116,17 +103,16 @@ def run(
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
     watches = [watch(expectation, joints) for expectation in session.expectations]
-    outcome, copy = Outcome(seconds=session.duration), Copy(simulation)
+    outcome = Outcome(seconds=session.duration)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
         last = ticks(session.duration)
         for tick in range(1, last + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
-            copy.fresh()
             for each in watches:
                 if tick >= each.due or tick == last:
-                    each.see(tick, decision, copy.made)
+                    each.see(tick, decision, simulation.glance)
             see(decision)
             file.write(tick, decision.events)
             outcome.events += decision.events

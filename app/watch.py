@@ -7,7 +7,7 @@ from app.expectations import Happens, Never, Period, State
 from app.triggers import NEVER, Trigger
 from pendant.decision import Decision
 from pendant.modes import TICK
-from sim.snapshot import Snapshot
+from sim.glance import Scored
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Watch:
     due: int = 0  # the next tick to be shown
     ends_alone: bool = False  # looks at the first and the last tick of its interval, and at none between
 
-    def see(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
-        """Take in one tick; `snapshot` copies it, and is called only where the tick is in the interval and it is needed."""
+    def see(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """Take in one tick; `glance` reads it, and is called only where the tick is in the interval and it is needed."""
         self.last = tick
         start = self.trigger.happened
         if start is None:
@@ -45,7 +45,7 @@ class Watch:
                 return
         begin, end = start + self.begin, None if self.end is None else start + self.end
         if begin <= tick and (end is None or tick <= end):
-            self.look(tick, decision, snapshot)
+            self.look(tick, decision, glance)
         if end is not None and tick >= end:
             self.due = NEVER
         elif self.ends_alone and tick >= begin:
@@ -53,7 +53,7 @@ class Watch:
         else:
             self.due = max(begin, tick + 1)
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """Take in one tick of the interval."""
         raise NotImplementedError
 
@@ -95,7 +95,7 @@ class StateWatch(Watch):
     broken: int | None = None  # first in which it did not
     seen: tuple[int, Decision] | None = None  # the last tick in the interval, or the first wrong one
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
         wanted = self.wanted
         holds = (
@@ -140,7 +140,7 @@ class EventWatch(Watch):
     wanted: Happens | Never = field(kw_only=True)
     found: list[int] = field(default_factory=list)
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
         if decision.events:
             self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
@@ -171,7 +171,7 @@ class PeriodWatch(Watch):
     began: int | None = None
     before: int = 0  # the remainder a tick before
 
-    def look(self, tick: int, decision: Decision, snapshot: Callable[[], Snapshot]) -> None:
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
         left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
         if self.began is not None and (left is None or left > self.before):

@@ -20,6 +20,7 @@ from sim.desk import Wishes
 from sim.dynamics import Dynamics
 from sim.estimator import Estimator
 from sim.frames import rotation_from_rpy
+from sim.glance import Glance
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario
@@ -75,6 +76,7 @@ class Simulation:
         self._decision: Decision | None = None
         self._braked = False  # by the last decision
         self._estimate: Estimate | None = None
+        self._glance = Glance(self)
 
     def _load(self) -> Body:
         return self._carried + load_body(self.configured)
@@ -157,6 +159,10 @@ class Simulation:
         if name not in self.arm.chain.joints:
             raise KeyError(f"joint {name!r}: there are {', '.join(self.arm.chain.joints)}")
         return self.arm.chain.joints.index(name)
+
+    def glance(self) -> Glance:
+        """What scoring reads of the last tick, in place."""
+        return self._glance
 
     def snapshot(self) -> Snapshot:
         """What pictures and logs need of the last tick, copied.

@@ -1,0 +1,94 @@
+"""What scoring reads of the tick done last, in place: a copy of everything, each tick, would cost more than a recording."""
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.estimate import Estimate
+
+if TYPE_CHECKING:
+    from sim.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+
+class Scored(Protocol):
+    """What scoring reads of a tick: of a `Glance`, or of a `sim.snapshot.Snapshot`, which says shapes, units and frames."""
+
+    @property
+    def estimate(self) -> Estimate:
+        """What the controller knew."""
+        ...
+
+    @property
+    def truth_links(self) -> Array:
+        """Poses (n + 2, 7) of foot, links and flange."""
+        ...
+
+    @property
+    def truth_payload_mass(self) -> float:
+        """Mass of what is attached [kg]."""
+        ...
+
+    @property
+    def wanted_q(self) -> Array:
+        """Reference (n,) of the tracking laws [rad]; empty in free-drive."""
+        ...
+
+    @property
+    def truth_q(self) -> Array:
+        """Output angles (n,) [rad]."""
+        ...
+
+    @property
+    def truth_friction(self) -> Array:
+        """Friction (n,) of both sides [N·m]."""
+        ...
+
+    @property
+    def truth_tau_J(self) -> Array:
+        """Transmission torque (n,) [N·m]."""
+        ...
+
+
+class Glance:
+    """`Scored` of a running simulation; what it gives changes with the next tick."""
+
+    def __init__(self, simulation: "Simulation") -> None:
+        self._simulation = simulation
+
+    @property
+    def estimate(self) -> Estimate:
+        """See `Scored.estimate`."""
+        return self._simulation.estimate
+
+    @property
+    def truth_links(self) -> Array:
+        """See `Scored.truth_links`."""
+        return self._simulation.plant.poses()
+
+    @property
+    def truth_payload_mass(self) -> float:
+        """See `Scored.truth_payload_mass`."""
+        return self._simulation.plant.load.mass
+
+    @property
+    def wanted_q(self) -> Array:
+        """See `Scored.wanted_q`."""
+        return self._simulation.controller.references.wanted()
+
+    @property
+    def truth_q(self) -> Array:
+        """See `Scored.truth_q`."""
+        return self._simulation.plant.q
+
+    @property
+    def truth_friction(self) -> Array:
+        """See `Scored.truth_friction`."""
+        return self._simulation.plant.sliding_friction()
+
+    @property
+    def truth_tau_J(self) -> Array:
+        """See `Scored.truth_tau_J`."""
+        return self._simulation.plant.tau_J
