@@ -8,6 +8,7 @@ from msgspec import Meta
 from app.triggers import After
 from pendant.events import Kind
 from pendant.modes import Mode, Phase
+from pendant.table import TABLE
 from sim.arm import NotNegative, Positive
 from sim.scenario import Vector
 
@@ -73,17 +74,29 @@ class State(Expectation, tag="state", frozen=True, kw_only=True):
             raise ValueError(f"to = {self.end} must come after from = {self.begin}")
 
 
-class Happens(During, tag="event", frozen=True, kw_only=True):
-    """An event of a kind happens in the interval, at least `times` times."""
+class OfEvents(During, frozen=True, kw_only=True):
+    """Base of what looks for events of a kind, those alone that carry these words: `values: {parameter: flange speed}`."""
 
     kind: Kind
+    values: dict[str, str] = msgspec.field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that events of the kind carry such values."""
+        super().__post_init__()
+        keys = TABLE[self.kind].keys
+        for name in self.values:
+            if name not in keys:
+                raise ValueError(f"values: {self.kind.value} carries no {name}; it carries {', '.join(keys) or 'none'}")
+
+
+class Happens(OfEvents, tag="event", frozen=True, kw_only=True):
+    """An event of a kind happens in the interval, at least `times` times."""
+
     times: Annotated[int, Meta(ge=1)] = 1
 
 
-class Never(During, tag="no_event", frozen=True, kw_only=True):
+class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
     """No event of a kind happens in the interval."""
-
-    kind: Kind
 
 
 class Bounds(During, frozen=True, kw_only=True):

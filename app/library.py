@@ -21,26 +21,26 @@ def tools() -> list[str]:
     return _names("tools")
 
 
-def load_arm(name_or_path: str | Path) -> Arm:
-    """The arm of that name, or of the file at that path.
+def load_arm(name_or_path: str | Path, where: str = "robots") -> Arm:
+    """The arm of that name, or of the file at that path; `where` names the file or option that asks for it.
 
     Raises:
         BadInput: no such arm, or its file does not make sense.
     """
-    path = _path(name_or_path, "robots", "robot")
+    path = _path(name_or_path, "robots", "robot", where)
     arm = load(path, Arm)
     for field, value, allowed in problems(arm):
         raise BadInput(path.name, field, value, allowed)
     return arm
 
 
-def load_tool(name_or_path: str | Path) -> Tool:
-    """The tool of that name, or of the file at that path.
+def load_tool(name_or_path: str | Path, where: str = "tools") -> Tool:
+    """The tool of that name, or of the file at that path; `where` names the file or option that asks for it.
 
     Raises:
         BadInput: no such tool, or its file does not make sense.
     """
-    return load(_path(name_or_path, "tools", "tool"), Tool)
+    return load(_path(name_or_path, "tools", "tool", where), Tool)
 
 
 def mesh_path(arm_name: str, link: str) -> Path:
@@ -60,7 +60,7 @@ def _names(folder: str) -> list[str]:
     return sorted(path.stem for path in (ASSETS / folder).glob("*.yaml"))
 
 
-def _path(name_or_path: str | Path, folder: str, what: str) -> Path:
+def _path(name_or_path: str | Path, folder: str, what: str, where: str) -> Path:
     """A shipped name wins over a file of that name; what looks like a path is one."""
     text = str(name_or_path)
     if text in _names(folder):
@@ -68,4 +68,4 @@ def _path(name_or_path: str | Path, folder: str, what: str) -> Path:
     path = Path(name_or_path)
     if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
         return path
-    raise BadInput(folder, what, text, f"expected one of {', '.join(_names(folder))}, or the path of a YAML file")
+    raise BadInput(where, what, text, f"expected one of {', '.join(_names(folder))}, or the path of a YAML file")

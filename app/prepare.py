@@ -17,7 +17,7 @@ from app.session import Session, Setup, World, bundled, folder
 from pendant.containment import PARTS, TETHER
 from pendant.program import Program as Steps
 from pendant.program import misfit
-from pendant.settings import SettingError, Settings, apply, describe
+from pendant.settings import MaintainLimits, OperationLimits, SettingError, Settings, apply, describe
 from pendant.walls import AnyBorder, problem
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
@@ -42,13 +42,21 @@ FEATURES: dict[str, dict[str, float | bool]] = {
         "signals.force_step.on": False,
         "signals.tap.on": False,
     },
-    "FD-6": {"signals.push.angle": 90.0, "signals.push.torque_limit": 20.0, "signals.push.radius": 0.0},
+    "FD-6": {  # no axis is any direction, no radius any place
+        "signals.push.x": 0.0,
+        "signals.push.y": 0.0,
+        "signals.push.z": 0.0,
+        "signals.push.torque_limit": 20.0,
+        "signals.push.radius": 0.0,
+    },
     "FD-7": {"activation.period": 0.0},
     "FD-8": {"handshake.on": False},
     "FD-8a": {"let_go.on": False},
     "FD-9": {"sequence.on": False},
+    "FD-13": dict.fromkeys([f"limits.maintain.{name}.on" for name in MaintainLimits.__struct_fields__], False),
     "FD-14": {"free_drive.period": 30.0},  # longer than a session: nothing ends by itself
     "FD-15": {"free_drive.restart_period": 30.0},
+    "FD-18": dict.fromkeys([f"limits.operation.{name}.on" for name in OperationLimits.__struct_fields__], False),
     "AF-2": {"joint_control.adaptive": False},
     "AF-4": {"joint_control.feed_forward": False},
     "AF-7": {"joint_control.friction": False},
@@ -81,7 +89,7 @@ def prepare(setup: Setup, where: str) -> Prepared:
     Raises:
         BadInput: what the fields say does not fit together, or is not available yet.
     """
-    arm = load_arm(setup.robot)
+    arm = load_arm(setup.robot, where)
     if setup.posture is not None:
         _check_posture(setup.posture, arm, where)
     _check_features(setup.features, where)
@@ -111,7 +119,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
     return Scenario(
         mounting=MOUNTINGS[setup.mounting] if isinstance(setup.mounting, str) else setup.mounting,
         posture=setup.posture,
-        tool=load_tool(setup.tool) if isinstance(setup.tool, str) else setup.tool,
+        tool=load_tool(setup.tool, where) if isinstance(setup.tool, str) else setup.tool,
         payload_true=setup.payload_true,
         payload_configured=setup.payload_configured,
         world=world,

@@ -142,8 +142,10 @@ class EventWatch(Watch):
 
     def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """See `Watch.look`."""
-        if decision.events:
-            self.found += [tick for event in decision.events if event.kind == self.wanted.kind]
+        wanted = self.wanted
+        for event in decision.events:
+            if event.kind == wanted.kind and all(event.values.get(name) == word for name, word in wanted.values.items()):
+                self.found.append(tick)
 
     def settled(self) -> bool:
         """See `Watch.settled`."""
@@ -152,9 +154,11 @@ class EventWatch(Watch):
     def expected(self) -> str:
         """See `Watch.expected`."""
         wanted = self.wanted
+        words = ", ".join(f"{name} {word}" for name, word in wanted.values.items())
+        event = f"event {wanted.kind.value}{f' ({words})' if words else ''}"
         if isinstance(wanted, Never):
-            return f"no event {wanted.kind.value} {self.span()}"
-        return f"event {wanted.kind.value}{f' {wanted.times} times' if wanted.times > 1 else ''} {self.span()}"
+            return f"no {event} {self.span()}"
+        return f"{event}{f' {wanted.times} times' if wanted.times > 1 else ''} {self.span()}"
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""

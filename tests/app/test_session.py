@@ -57,12 +57,12 @@ def test_a_whole_header_reaches_the_scenario() -> None:
 @pytest.mark.parametrize(
     ("fields", "says"),
     [
-        ({"robot": "ur6"}, "ur6"),
+        ({"robot": "ur6"}, "s.yaml: robot = ur6: expected one of"),
         ({"posture": [0.0] * 5}, "s.yaml: posture = [0.0, 0.0, 0.0, 0.0, 0.0]: 6 joint angles, base to wrist_3"),
         ({"posture": [0.0, 9.0, 0.0, 0.0, 0.0, 0.0]}, "posture[1] = 9.0: -6.28319 .. 6.28319 rad (shoulder of ur5e)"),
         ({"settings": {"free_drive.periode": 1}}, "settings.free_drive.periode"),
         ({"settings": {"free_drive.period": 99}}, "settings.free_drive.period = 99.0: a number from 0.5 to 30 s"),
-        ({"features": {"FD-13": "off"}}, "features.FD-13: FD-13: not available yet (planned)"),
+        ({"features": {"FD-16": "off"}}, "features.FD-16: FD-16: not available yet (planned)"),
         ({"features": {"FD-99": "off"}}, "features = FD-99: the id of a requirement"),
         ({"features": {"XX-1": "on"}}, "features = XX-1: the id of a requirement"),
         ({"world": "kitchen"}, "world = kitchen: a list of objects, or one of table, workshop"),
@@ -144,6 +144,10 @@ def test_what_does_not_fit_is_refused_by_field(fields: dict[str, Any], says: str
         ({"expectations": [{"expect": "displacement", "from": 2, "to": 1, "max": 1}]}, "to = 1.0 must come after from = 2.0"),
         ({"expectations": [{"expect": "displacement", "along": [0, 0, 0], "max": 1}]}, "is no direction"),
         ({"expectations": [{"expect": "event", "kind": "nothing"}]}, "expectations[0].kind = nothing"),
+        (
+            {"expectations": [{"expect": "event", "kind": "entered", "values": {"parameter": "flange speed"}}]},
+            "values: entered carries no parameter; it carries from, gain",
+        ),
         ({"seed": -1}, "seed = -1"),
         ({"duration": 0}, "duration = 0"),
         ({"mismatch": "off"}, "mismatch = off"),

@@ -95,6 +95,15 @@ def test_an_event_must_be_in_its_interval(at: int, passed: bool) -> None:
     assert not follow(Happens(kind=Kind.RESET, begin=1.0, end=2.0), 1500, decide).passed
 
 
+def test_events_are_told_apart_by_their_words() -> None:
+    decide = lambda tick: happened(Kind.SIGNAL_SEEN, tick, source="push", period=1.0) if tick == 3 else decision()
+    assert follow(Happens(kind=Kind.SIGNAL_SEEN, values={"source": "push"}), 10, decide).passed
+    assert follow(Never(kind=Kind.SIGNAL_SEEN, values={"source": "twist"}), 10, decide).passed
+    verdict = follow(Happens(kind=Kind.SIGNAL_SEEN, values={"source": "twist"}), 10, decide)
+    assert not verdict.passed
+    assert verdict.expected.startswith("event signal_seen (source twist) from")
+
+
 def test_events_are_counted() -> None:
     decide = lambda tick: happened(Kind.NOT_YET, tick) if tick in (3, 7) else decision()
     assert follow(Happens(kind=Kind.NOT_YET, times=2), 10, decide).passed
