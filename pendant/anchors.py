@@ -53,7 +53,7 @@ class Anchor:
         self._track: list[tuple[float, float, float, float]] = []  # average: place, way against the residual
         self._next = 0
         self._length = averaging_ticks
-        self._sums = [0.0, 0.0, 0.0, 0.0]
+        self._sums = (0.0, 0.0, 0.0, 0.0)
         decide: dict[Policy, Callable[[Stay, bool], bool]] = {
             Policy.STEPWISE: self._stepwise,
             Policy.AVERAGE: self._average,
@@ -94,22 +94,22 @@ class Anchor:
         A hand that guides in steady motion needs hardly any force: it counts for the safety period after it was last felt.
         """
         self._left = stay.safety_ticks if pushed else max(self._left - 1, 0)
-        entry = (*stay.local, _against(stay))
-        sums = self._sums
-        if len(self._track) < self._length:
-            self._track.append(entry)
-            for k in range(4):
-                sums[k] += entry[k]
+        x, y, z = stay.local
+        against = _against(stay)
+        track = self._track
+        sx, sy, sz, sum_against = self._sums
+        if len(track) < self._length:
+            track.append((x, y, z, against))
         else:
-            oldest = self._track[self._next]
-            self._track[self._next] = entry
+            ox, oy, oz, before = track[self._next]
+            track[self._next] = (x, y, z, against)
             self._next = (self._next + 1) % self._length
-            for k in range(4):
-                sums[k] += entry[k] - oldest[k]
-        somebody = (self._left > 0 or sums[3] >= MOVED) and not stay.in_band
-        count = len(self._track)
+            sx, sy, sz, sum_against = sx - ox, sy - oy, sz - oz, sum_against - before
+        sx, sy, sz, sum_against = self._sums = (sx + x, sy + y, sz + z, sum_against + against)
+        somebody = (self._left > 0 or sum_against >= MOVED) and not stay.in_band
+        count = len(track)
         if self._clear >= count and (somebody or self._wall.literal):
-            self.local = (sums[0] / count, sums[1] / count, sums[2] / count)
+            self.local = (sx / count, sy / count, sz / count)
             return True
         return False
 

@@ -151,14 +151,14 @@ class Barrier:
             self._guard, self._part, self._before = Guard(distance), place, distance
         x, y, z = self._part
         moved = (px - x, py - y, pz - z)
-        drift = 0.0
-        lies = (anchor, factor, reference)
-        if lies != self._lies and self._lies is not None:
-            drift = distance - self._before - dot(outward, moved)
+        lay, lies, before = self._lies, (anchor, factor, reference), self._before
         self._lies, self._before, self._part = lies, distance, place
         exceeded = distance > 0.0
         near, force, consequence, anchored = 0.0, ORIGIN, _NONE, False
         if distance > -border.band or exceeded or self._guard.place > 0.0:
+            drift = 0.0
+            if lay is not None and lies != lay:
+                drift = distance - before - dot(outward, moved)
             near = closeness(distance, border.band)
             beyond = self._guard.step(distance, drift)
             fx, fy, fz = around.user_force

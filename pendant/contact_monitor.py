@@ -10,7 +10,7 @@ from pendant.detector import Detector, Finding
 from pendant.estimate import Estimate
 from pendant.history import MASK, SIZE
 from pendant.modes import Mode
-from pendant.pose import UNTURNED, Rotation, turned
+from pendant.pose import UNTURNED, flat, turned
 from pendant.settings import ContactUse
 from pendant.signal import Signal
 
@@ -57,9 +57,8 @@ class ContactMonitor:
     def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
         """One tick: buffers always, rules while `on` (CD-1, CD-4)."""
         tick = estimate.tick
-        a, b, c, d, e, f, g, h, i = estimate.R_BF.ravel().tolist()
-        R: Rotation = (a, b, c, d, e, f, g, h, i)
-        self.now = now = self._poses[tick & MASK] = ArmPose(tuple(estimate.q.tolist()), estimate.p_BT, R)
+        x, y, z = estimate.tcp.tolist()[:3]
+        self.now = now = self._poses[tick & MASK] = ArmPose(tuple(estimate.q.tolist()), (x, y, z), flat(estimate.R_BF))
         if use is not self._use:
             self._use, self._on_links = use, for_links(use)
             self._used = (use.tool, use.flange, use.links, use.links)

@@ -4,10 +4,9 @@ Every rule but clamping asks for opposite directions: in free motion the carried
 acceleration parallel, whatever its mass; a contact of the carried part makes them opposite (spec/contact.md, "Sign").
 """
 
-from enum import StrEnum
-
 from pendant.contact_limits import ContactLimits
 from pendant.history import History, Six
+from pendant.word import Word
 
 STEP = 3
 """Ticks between the two samples of a difference (CD-4)."""
@@ -23,7 +22,7 @@ LAGS = (20, 60, 200)
 """Ages of the stored means that the newest is held against (CD-8): steep changes show early, flat ones in the long run."""
 
 
-class Rule(StrEnum):
+class Rule(Word):
     """Which rule saw it (CD-10)."""
 
     INSTANT = "instant"

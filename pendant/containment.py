@@ -41,7 +41,7 @@ def tether(walls: Walls) -> Wall:
 class Containment:
     """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
 
-    __slots__ = ("_borders", "_enclosure", "_frames", "_measured", "_parts", "_reading", "_turned")
+    __slots__ = ("_borders", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned")
 
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
@@ -54,6 +54,7 @@ class Containment:
         self._enclosure: Enclosure | None = None  # walls hold, or will
         self._reading: tuple[Reading, ...] = ()
         self._parts: tuple[str, ...] = ()
+        self._points: dict[str, Part] = {}  # where they were in the last step
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
 
@@ -90,7 +91,9 @@ class Containment:
         """
         if self._enclosure is None:
             return None
-        parts = {name: _point(name, estimate) for name in self._parts}
+        parts = self._points
+        for name in self._parts:
+            parts[name] = _point(name, estimate)
         references = self._frames
         if self._turned:
             (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
@@ -100,12 +103,12 @@ class Containment:
         self._reading = self._enclosure.step(Around(parts, references, user, payload, measures))
         return worst(self._reading)
 
-    def states(self, estimate: Estimate) -> tuple[WallState, ...]:
+    def states(self) -> tuple[WallState, ...]:
         """What the last step found, for the law and for pictures; without a wall that could not be told."""
         states: list[WallState] = []
         for border, distance, outward, near, exceeded, _, force, _ in self._reading:
             if distance < math.inf:
-                p = _point(border.part, estimate).p
+                p = self._points[border.part].p
                 states.append(WallState(border.name, border.part, p, distance, outward, near, exceeded, force))
         return tuple(states)
 

@@ -1,7 +1,8 @@
 """What the supervisor decides in one tick: the only thing that the control law and every interface read from it."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
+
+import msgspec
 
 from pendant.contact import Contact
 from pendant.enabling import Grip
@@ -34,8 +35,7 @@ class WallState(NamedTuple):
     force: Vector  # on the part [N]
 
 
-@dataclass(frozen=True, slots=True)
-class Decision:
+class Decision(msgspec.Struct, frozen=True):
     """The supervisor's decision for one tick."""
 
     mode: Mode

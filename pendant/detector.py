@@ -52,10 +52,11 @@ class _Sighting(NamedTuple):
 class Detector:
     """Watches one source. Its buffers fill in every tick, its rules count only while it is switched on (CD-1, CD-4)."""
 
-    __slots__ = ("_age", "_calm", "_counts", "_gone", "_pending", "_rest", "history", "silent", "touching")
+    __slots__ = ("_age", "_begun", "_calm", "_counts", "_gone", "_pending", "_rest", "history", "silent", "touching")
 
     def __init__(self) -> None:
         self.history = History()
+        self._begun = False  # there is something to forget
         self.touching = False  # in contact, as far as is known
         self.silent = False  # after an event, until the force has settled
         self._rest: Six | None = None  # force and acceleration before contact was gained
@@ -75,6 +76,9 @@ class Detector:
 
     def forget(self) -> None:
         """Begin anew with what is in the buffers, free of contact as far as is known."""
+        if not self._begun:
+            return
+        self._begun = False
         self.touching, self.silent = False, False
         self._rest, self._pending = None, None
         self._clear()
@@ -83,6 +87,7 @@ class Detector:
         """One tick of the rules, after `sense`."""
         if self.history.count == 0:
             return None
+        self._begun = True
         if self.silent:
             return self._wait(limit)
         seen = self._rule(use, limit)

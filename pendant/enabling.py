@@ -29,8 +29,12 @@ class EnablingDevice:
 
     def step(self, inputs: Inputs, silence: int) -> None:
         """One tick; `silence` [ticks] as in KeepAlive."""
-        for button, alive in ((Button.ENABLING, self._middle), (Button.ENABLING_FULL, self._full)):
-            alive.step(button in inputs.held, button in inputs.released, silence)
+        middle, full, held, released = self._middle, self._full, inputs.held, inputs.released
+        if not (held or released or middle.held or full.held):
+            self._spent = False
+            return
+        middle.step(Button.ENABLING in held, Button.ENABLING in released, silence)
+        full.step(Button.ENABLING_FULL in held, Button.ENABLING_FULL in released, silence)
         self._spent = self._full.held or (self._spent and self._middle.held)
 
     @property

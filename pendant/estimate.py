@@ -60,7 +60,6 @@ class Estimate:
     degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
     lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned
-    p_BT: tuple[float, float, float] = (0.0, 0.0, 0.0)  # tool centre point [m]
     signals: tuple[Signal | None, ...] = ()  # for the contact detectors, as pendant.contact_monitor.SOURCES; None: not valid
     tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
@@ -101,7 +100,6 @@ class Estimate:
             self.degraded,
             self.lost,
             self.touched,
-            self.p_BT,
             self.signals,
             self.tcp.copy(),
             self.elbow.copy(),

@@ -157,9 +157,9 @@ class FreeDrive:
         """What the activation sequence checks, while it runs."""
         return self._sequence.monitored() if self._sequence is not None else ()
 
-    def walls(self, estimate: Estimate) -> tuple[WallState, ...]:
+    def walls(self) -> tuple[WallState, ...]:
         """Walls and areas that hold."""
-        return self._containment.states(estimate)
+        return self._containment.states()
 
     @property
     def helping(self) -> bool:

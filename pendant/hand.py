@@ -8,7 +8,7 @@ import math
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
-from pendant.pose import ORIGIN, Vector, dot, flat, norm, turned, turned_back
+from pendant.pose import ORIGIN, Vector, dot, flat, turned_back
 from pendant.residual import upward
 
 SETTLING = 1.5
@@ -79,25 +79,37 @@ class Hand:
 
     def step(self, estimate: Estimate, use_wrench: bool) -> None:
         """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
-        up = self._up
-        joints = _minus(_triple(estimate.F_joints.tolist()), self._felt)
-        along = dot(joints, up)
-        self._slow_joints += _SLOW * (along - self._slow_joints)
-        self._by_joints = _nearer(self._by_joints, _less(joints, self._slow_joints, up), _JOINTS)
-        residual = self._slow_joints
-        user = self._by_joints if norm(self._by_joints) >= FELT_BY_JOINTS else ORIGIN
+        ux, uy, uz = self._up
+        x, y, z = estimate.F_joints.tolist()
+        x0, y0, z0 = self._felt
+        x, y, z = x - x0, y - y0, z - z0
+        self._slow_joints = residual = self._slow_joints + _SLOW * (x * ux + y * uy + z * uz - self._slow_joints)
+        bx, by, bz = self._by_joints
+        bx += _JOINTS * (x - residual * ux - bx)
+        by += _JOINTS * (y - residual * uy - by)
+        bz += _JOINTS * (z - residual * uz - bz)
+        self._by_joints = (bx, by, bz)
+        user, size = self._by_joints, math.sqrt(bx * bx + by * by + bz * bz)
+        felt = size >= FELT_BY_JOINTS
         if use_wrench:
-            measured = _triple(estimate.F_user.tolist()[:3])
-            change = _minus(_less(measured, self._payload, up), turned(flat(estimate.R_BF), self._baseline))
-            self.change = change
-            along = dot(change, up)
-            self._slow += _SLOW * (along - self._slow)
-            self._by_sensor = _nearer(self._by_sensor, _less(change, self._slow, up), _SENSOR)
-            residual = self._residual + self._slow
-            if user is ORIGIN or norm(self._by_sensor) >= FELT_BY_JOINTS:
-                user = self._by_sensor
-        self.user = user if norm(user) >= self._doubt else ORIGIN
-        self.payload = (residual * up[0], residual * up[1], residual * up[2])
+            turn, (ox, oy, oz), payload = flat(estimate.R_BF), self._baseline, self._payload
+            x, y, z, _, _, _ = estimate.F_user.tolist()
+            x -= payload * ux + turn[0] * ox + turn[1] * oy + turn[2] * oz
+            y -= payload * uy + turn[3] * ox + turn[4] * oy + turn[5] * oz
+            z -= payload * uz + turn[6] * ox + turn[7] * oy + turn[8] * oz
+            self.change = (x, y, z)
+            self._slow = slow = self._slow + _SLOW * (x * ux + y * uy + z * uz - self._slow)
+            residual = self._residual + slow
+            sx, sy, sz = self._by_sensor
+            sx += _SENSOR * (x - slow * ux - sx)
+            sy += _SENSOR * (y - slow * uy - sy)
+            sz += _SENSOR * (z - slow * uz - sz)
+            self._by_sensor = (sx, sy, sz)
+            by_sensor = math.sqrt(sx * sx + sy * sy + sz * sz)
+            if not felt or by_sensor >= FELT_BY_JOINTS:
+                user, size, felt = self._by_sensor, by_sensor, True
+        self.user = user if felt and size >= self._doubt else ORIGIN
+        self.payload = (residual * ux, residual * uy, residual * uz)
 
 
 def _triple(values: list[float]) -> Vector:
@@ -105,15 +117,6 @@ def _triple(values: list[float]) -> Vector:
     return x, y, z
 
 
-def _minus(a: Vector, b: Vector) -> Vector:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
 def _less(a: Vector, along: float, up: Vector) -> Vector:
     """`a` without `along` in the direction `up`."""
     return a[0] - along * up[0], a[1] - along * up[1], a[2] - along * up[2]
-
-
-def _nearer(a: Vector, b: Vector, share: float) -> Vector:
-    """From `a` a share of the way to `b`."""
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])

@@ -7,6 +7,9 @@ SIZE = 512
 
 MASK = SIZE - 1
 
+SUMMED = 256
+"""Samples that sums begin with when nobody has asked for any so far: more than the longest window of any rule."""
+
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -15,34 +18,50 @@ class History:
 
     Beside each sample stands the sum of all samples up to it (three of force, three of acceleration, and the squares of both
     sizes), so a mean or a variance over any window is one difference, and a tick costs the same whatever the windows are.
+    Sums are made when they are asked for: a detector that is off only keeps the samples.
     """
 
-    __slots__ = ("_at", "_samples", "_squares", "_sums", "count")
+    __slots__ = ("_at", "_behind", "_samples", "_squares", "_sums", "count")
 
     def __init__(self) -> None:
         self._samples: list[Signal] = [Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
         self._sums: list[Six] = [(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
         self._squares: list[tuple[float, float]] = [(0.0, 0.0)] * SIZE
         self._at = 0  # where the newest stands
+        self._behind = 0  # newest samples that are not in the sums yet
         self.count = 0  # samples since the last gap, at most SIZE - 1
 
     def push(self, signal: Signal) -> None:
         """Take one sample."""
-        fx, fy, fz, ax, ay, az = signal[:6]
-        sx, sy, sz, tx, ty, tz = self._sums[self._at]
-        ff, aa = self._squares[self._at]
         self._at = at = (self._at + 1) & MASK
         self._samples[at] = signal
-        self._sums[at] = (sx + fx, sy + fy, sz + fz, tx + ax, ty + ay, tz + az)
-        self._squares[at] = (ff + fx * fx + fy * fy + fz * fz, aa + ax * ax + ay * ay + az * az)
+        self._behind += 1
         if self.count < MASK:
             self.count += 1
+
+    def _sum_up(self) -> None:
+        """Bring the sums up to the newest sample."""
+        behind = self._behind
+        if behind > SUMMED:  # nobody listened for long
+            behind = self.count = min(self.count, SUMMED)
+            self._sums[(self._at - behind) & MASK] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            self._squares[(self._at - behind) & MASK] = (0.0, 0.0)
+        sx, sy, sz, tx, ty, tz = self._sums[(self._at - behind) & MASK]
+        ff, aa = self._squares[(self._at - behind) & MASK]
+        for age in range(behind - 1, -1, -1):
+            at = (self._at - age) & MASK
+            fx, fy, fz, ax, ay, az = self._samples[at][:6]
+            sx, sy, sz, tx, ty, tz = sx + fx, sy + fy, sz + fz, tx + ax, ty + ay, tz + az
+            ff, aa = ff + fx * fx + fy * fy + fz * fz, aa + ax * ax + ay * ay + az * az
+            self._sums[at] = (sx, sy, sz, tx, ty, tz)
+            self._squares[at] = (ff, aa)
+        self._behind = 0
 
     def gap(self) -> None:
         """A sample is missing: what was before it counts no more."""
         self._sums[self._at] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self._squares[self._at] = (0.0, 0.0)
-        self.count = 0
+        self.count = self._behind = 0
 
     def sample(self, age: int) -> Signal:
         """The sample of `age` ticks ago, 0 <= age < count."""
@@ -50,6 +69,8 @@ class History:
 
     def mean(self, age: int, length: int) -> Six:
         """Mean force [N] and acceleration [m/s²] of `length` samples, the newest of them `age` ticks old."""
+        if self._behind:
+            self._sum_up()
         sums = self._sums
         a, b, c, d, e, f = sums[(self._at - age) & MASK]
         u, v, w, x, y, z = sums[(self._at - age - length) & MASK]

@@ -1,12 +1,12 @@
 """What the user, the inputs and the program ask for in one tick. Web app, session file and test make the same value."""
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from pendant.program import Program
+from pendant.word import Word
 
 
-class Button(StrEnum):
+class Button(Word):
     """A control of the pendant that is held (FD-23: a keep-alive)."""
 
     FREE_DRIVE = "free_drive"
@@ -14,7 +14,7 @@ class Button(StrEnum):
     ENABLING_FULL = "enabling_device_full"  # pressed beyond it
 
 
-class Command(StrEnum):
+class Command(Word):
     """A control of the pendant that acts once."""
 
     EMERGENCY_STOP = "emergency_stop"

@@ -1,6 +1,8 @@
 """Robot mode, safety mode, free-drive phase and control law: the words every interface shares (FD-1)."""
 
-from enum import IntEnum, StrEnum
+from enum import IntEnum
+
+from pendant.word import Word
 
 TICK_RATE = 500
 """Control ticks a second, as the flange sensor of a UR e-Series (facts/contact-and-joints.md 1.7)."""
@@ -9,7 +11,7 @@ TICK = 1.0 / TICK_RATE
 """Length of a control tick in s."""
 
 
-class Mode(StrEnum):
+class Mode(Word):
     """Robot mode (FD-1). Exactly one holds."""
 
     NORMAL = "NORMAL"  # holding still
@@ -30,7 +32,7 @@ class Safety(IntEnum):
     EMERGENCY_STOP = 5
 
 
-class Phase(StrEnum):
+class Phase(Word):
     """Where free-drive stands. `OFF` and the phases up to entry leave the robot mode as it is."""
 
     OFF = "OFF"
@@ -45,7 +47,7 @@ class Phase(StrEnum):
     LET_GO = "LET_GO"  # the hand that gave the signal is to leave the arm (FD-8a)
 
 
-class Law(StrEnum):
+class Law(Word):
     """Which control law the decision asks for."""
 
     HOLD = "HOLD"  # keep the posture

@@ -146,20 +146,19 @@ class Operation:
         weight = mass * GRAVITY
         if weight < LEAST:
             return None
-        turn = flat(estimate.R_BF)
-        fx, fy, fz = estimate.F_user.tolist()[:3]
-        rest = turned_back(turn, (fx, fy, fz))
-        wx, wy, wz = estimate.w_sensor.tolist()[:3]
-        needed = (rest[0] + wx, rest[1] + wy, rest[2] + wz)  # what the configured load needs in this motion
-        offset = self._offset
-        missing = (rest[0] - offset[0], rest[1] - offset[1], rest[2] - offset[2])
-        square = needed[0] ** 2 + needed[1] ** 2 + needed[2] ** 2
-        share = (missing[0] * needed[0] + missing[1] * needed[1] + missing[2] * needed[2]) / max(square, 1e-9)
+        fx, fy, fz, _, _, _ = estimate.F_user.tolist()
+        rx, ry, rz = turned_back(flat(estimate.R_BF), (fx, fy, fz))
+        wx, wy, wz, _, _, _ = estimate.w_sensor.tolist()
+        nx, ny, nz = rx + wx, ry + wy, rz + wz  # what the configured load needs in this motion
+        ox, oy, oz = self._offset
+        mx, my, mz = rx - ox, ry - oy, rz - oz  # what is missing of it
+        square = nx * nx + ny * ny + nz * nz
+        share = (mx * nx + my * ny + mz * nz) / max(square, 1e-9)
         shares = self._shares
         before = shares[0]
         shares[:-1] = shares[1:]
         shares[-1] = share
-        across = norm((missing[0] - share * needed[0], missing[1] - share * needed[1], missing[2] - share * needed[2]))
+        across = norm((mx - share * nx, my - share * ny, mz - share * nz))
         if not self._stepped:
             jump = share - before
             began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)

@@ -70,23 +70,27 @@ def _elbow_speed(view: View, _: Gauge) -> tuple[float, str]:
 
 
 def _joint_speed(view: View, _: Gauge) -> tuple[float, str]:
-    speeds = [abs(value) for value in view.estimate.qd.tolist()]
-    fastest = max(speeds)
-    return fastest, view.joints[speeds.index(fastest)]
+    speeds = view.estimate.qd.tolist()
+    fastest, slowest = max(speeds), min(speeds)
+    if fastest >= -slowest:
+        return fastest, view.joints[speeds.index(fastest)]
+    return -slowest, view.joints[speeds.index(slowest)]
 
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
-    worst, part, high, value = -1.0, "", 0.0, 0.0
-    base = gauge.base
-    loads = view.estimate.tau_J.tolist()
-    for joint, torque in enumerate(view.estimate.tau_ext.tolist()):
-        limit = base * view.scale[joint] + view.share * abs(loads[joint])
-        size = abs(torque - view.since.torques[joint])
+    worst, at, high, value = -1.0, 0, 0.0, 0.0
+    base, share, joint = gauge.base, view.share, 0
+    for torque, load, scale, before in zip(
+        view.estimate.tau_ext.tolist(), view.estimate.tau_J.tolist(), view.scale, view.since.torques, strict=True
+    ):
+        limit = base * scale + share * abs(load)
+        size = abs(torque - before)
         if size > worst * limit:
-            worst, part, high, value = size / limit, view.joints[joint], limit, size
+            worst, at, high, value = size / limit, joint, limit, size
+        joint += 1
     gauge.high = high
-    return value, part
+    return value, view.joints[at]
 
 
 def _payload_force(view: View, _: Gauge) -> tuple[float, str]:

@@ -446,7 +446,7 @@ class Supervisor:
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
-        walls = () if free.phase is Phase.OFF else free.walls(estimate)
+        walls = () if free.phase is Phase.OFF else free.walls()
         changing = events or periods or walls
         if self._decision is not None and not changing and key == self._key:
             return self._decision

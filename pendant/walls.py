@@ -11,6 +11,7 @@ from msgspec import Meta
 from pendant.modes import TICK
 from pendant.pose import ORIGIN, Quaternion, Vector, rotation, turned_back
 from pendant.shapes import AnyShape, Coordinate
+from pendant.word import Word
 
 Period = Annotated[float, Meta(ge=0.1, le=10.0)]  # [s]
 Factor = Annotated[float, Meta(ge=0.05, le=10.0)]
@@ -45,7 +46,7 @@ class Start(StrEnum):
     ACTIVATION = "activation"  # with the activation period
 
 
-class Measure(StrEnum):
+class Measure(Word):
     """What a size or a period can depend on (VW-3, VW-8)."""
 
     REACH = "reach"  # distance of the flange from the base's origin [m]

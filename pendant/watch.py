@@ -23,9 +23,14 @@ def motion_ok(estimate: Estimate) -> bool:
 
 
 def _finite(estimate: Estimate) -> bool:
-    total = sum(estimate.q.tolist()) + sum(estimate.qd.tolist()) + sum(estimate.tau_ext.tolist())
-    total += sum(estimate.theta.tolist()) + sum(estimate.theta_d.tolist()) + sum(estimate.tau_J.tolist())
-    return math.isfinite(total + sum(estimate.v_F.tolist()))
+    values = estimate.q.tolist()
+    values += estimate.qd.tolist()
+    values += estimate.tau_ext.tolist()
+    values += estimate.theta.tolist()
+    values += estimate.theta_d.tolist()
+    values += estimate.tau_J.tolist()
+    values += estimate.v_F.tolist()
+    return math.isfinite(sum(values))
 
 
 def wrench_ok(estimate: Estimate) -> bool:

@@ -66,7 +66,7 @@ class Estimator:
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None
         self._ways = np.ones((len(WAYS), n), dtype=bool)
-        self._torques, self._deflection = np.zeros((2, n)), np.zeros(n)
+        self._surplus, self._stiction, self._deflection = np.zeros((3, n))
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
         self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
@@ -178,7 +178,7 @@ class Estimator:
     def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
-        surplus, stiction = self._torques
+        surplus, stiction = self._surplus, self._stiction
         if use is not self._use:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]

@@ -81,10 +81,11 @@ class FreeDriveLaw:
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
         hand = self._hand
-        hand[:] = 0.0
         if estimate.wrench_valid and decision.gain > 0.0:
             cap, gain = decision.force_cap, decision.gain
             _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
+        else:
+            hand[:] = 0.0
         if with_friction:
             felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
             rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
@@ -116,9 +117,10 @@ def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> No
     size = math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
     share = cap / size if size > cap else 1.0
     for i in range(torque.size):
+        asked = 0.0
         for j in range(6):
-            hand[0, i] += jacobian[j, i] * wrench[j]
-        hand[1, i] = share * hand[0, i]
+            asked += jacobian[j, i] * wrench[j]
+        hand[0, i], hand[1, i] = asked, share * asked
         torque[i] += gain * hand[1, i]
 
 

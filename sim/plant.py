@@ -12,15 +12,14 @@ from sim.arm import Arm
 from sim.chain import load_body
 from sim.frames import quaternion_from_matrix
 from sim.friction import Friction
+from sim.hands import Hands
 from sim.model import SENSORS, Step, build
 from sim.objects import SNAP_REST, SNAP_SLIP, set_contact_stiffness
 from sim.scenario import Load, Moving, Scenario, SnapFit, TwoFrictions
-from sim.touch import ZERO, Pull, Touch, Triple
+from sim.touch import Touch
 
 Array = NDArray[np.float64]
 
-HAND_STIFFNESS = 800.0  # of the virtual hand [N/m]
-HAND_DAMPING = 40.0  # of the virtual hand [N·s/m]
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
 GRAVITY = 9.81
 BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
@@ -45,7 +44,7 @@ class Plant:
         self.data = mujoco.MjData(self.model)
         self._scratch = mujoco.MjData(self.model)
         self.friction = Friction(arm)
-        model, joints = self.model, arm.chain.joints
+        model, data, joints = self.model, self.data, arm.chain.joints
         self._at_q = np.array([model.joint(f"q/{name}").qposadr[0] for name in joints])
         self._at_theta = np.array([model.joint(f"theta/{name}").qposadr[0] for name in joints])
         self._springs = np.array([model.tendon(f"spring/{name}").id for name in joints])
@@ -76,12 +75,13 @@ class Plant:
         at = (self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state)
         self._addresses = np.stack(at)
         self._bias = model.actuator_biasprm
-        self.touched: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...] = ()
+        # MuJoCo's own arrays: asking for one costs as much as a kernel.
+        self._state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
+        self._applied, self._measured = data.qfrc_applied, data.history
+        self.hands = Hands(model, data, self._parts)
         self.load = scenario.payload_true
         self.fallen: Array | None = None
         self._fall_speed = np.zeros(3)
-        self._pushed: set[int] = set()
-        self._six = np.empty(6)
         self.tick = 0
         self._place(np.array(scenario.posture if scenario.posture is not None else arm.chain.home))
 
@@ -145,8 +145,7 @@ class Plant:
         Raises:
             KeyError: a touch names a part that does not exist; `parts` has those that do.
         """
-        model, data = self.model, self.data
-        self._touch(touches)
+        self.hands.apply(touches)
         if self._objects.size:
             self._move_world()
         self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
@@ -154,10 +153,9 @@ class Plant:
             self._brake(braked)
         if braked:
             self.friction_in += self._brakes
-        _set_friction(self._bias, self._rubs, self.friction_in)
-        _scatter(data.qfrc_applied, self._dof_theta, motor_torque)
-        mujoco.mj_step(model, data, nstep=self.step.substeps)
-        _mean(data.history, self._history, self.flange)
+        _drive(self._bias, self._rubs, self.friction_in, self._applied, self._dof_theta, motor_torque)
+        mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
+        _mean(self._measured, self._history, self.flange)
         self._read()
         self.tick += 1
         _add_loss(self._heat, self.friction_in, self.theta_d)
@@ -180,47 +178,6 @@ class Plant:
         values[self._rubs, LUGRE_DAMPING] *= math.sqrt(factor)
         self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
         self._braked = braked
-
-    def _touch(self, touches: Sequence[Touch]) -> None:
-        data = self.data
-        for body in self._pushed:
-            data.xfrc_applied[body] = 0.0
-        self._pushed.clear()
-        if not touches:
-            self.touched = ()
-            return
-        seen = []
-        for touch in touches:
-            body = self._parts[touch.part]
-            point = _point(data.xpos, data.xmat, body, _floats(touch.point))
-            if isinstance(touch, Pull):
-                force, torque = self._hand_force(touch, body, point), ZERO
-            else:
-                force, torque = _floats(touch.force), _floats(touch.torque)
-            _push(data.xfrc_applied, data.xipos, body, point, force, torque)
-            self._pushed.add(body)
-            seen.append((touch.part, point, force, torque))
-        self.touched = tuple(seen)
-
-    def _hand_force(self, pull: Pull, body: int, point: Triple) -> Triple:
-        """Spring and damper of the virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
-        vx, vy, vz = self._velocity(body, point)
-        (x, y, z), (px, py, pz) = pull.target, point
-        fx = HAND_STIFFNESS * (x - px) - HAND_DAMPING * vx
-        fy = HAND_STIFFNESS * (y - py) - HAND_DAMPING * vy
-        fz = HAND_STIFFNESS * (z - pz) - HAND_DAMPING * vz
-        size = math.sqrt(fx * fx + fy * fy + fz * fz)
-        share = pull.cap / size if size > pull.cap else 1.0
-        return fx * share, fy * share, fz * share
-
-    def _velocity(self, body: int, point: Triple) -> Triple:
-        """True linear velocity in W of a point of a MuJoCo body [m/s]."""
-        mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_BODY, body, self._six, 0)
-        return _speed_at(self._six, self.data.xpos, body, point)
-
-    def velocity(self, body: int, point: Array) -> Array:
-        """True linear velocity (3,) in W of a point (3,) of a MuJoCo body [m/s]."""
-        return np.array(self._velocity(body, _floats(point)))
 
     def _move_world(self) -> None:
         """Drive moving objects, let snap-fits go, choose the friction under the tool: what objects need once a tick."""
@@ -274,7 +231,7 @@ class Plant:
         if self.load.mass == 0.0:
             return
         position = self.data.xipos[self._payload].copy()
-        self._fall_speed = self.velocity(self._parts["flange"], position)
+        self._fall_speed = self.hands.velocity(self._parts["flange"], position)
         orientation = self.data.xquat[self._payload].copy()
         self.attach(Load(mass=0.0))
         self.fallen = np.concatenate([position, orientation])
@@ -323,51 +280,10 @@ class Plant:
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""
-        data = self.data
-        state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
-        _gather(*state, self._addresses, *self._springs_of, self.q, self.theta, self.qd, self.theta_d, self.tau_J)
+        _gather(*self._state, self._addresses, *self._springs_of, self.q, self.theta, self.qd, self.theta_d, self.tau_J)
 
 
 # Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
-
-
-def _floats(three: Sequence[float] | Array) -> Triple:
-    x, y, z = three
-    return float(x), float(y), float(z)
-
-
-@numba.njit(cache=True)
-def _point(xpos, xmat, body, point):
-    p, R = xpos[body], xmat[body]
-    x, y, z = point
-    return (
-        p[0] + R[0] * x + R[1] * y + R[2] * z,
-        p[1] + R[3] * x + R[4] * y + R[5] * z,
-        p[2] + R[6] * x + R[7] * y + R[8] * z,
-    )
-
-
-@numba.njit(cache=True)
-def _push(applied, centres, body, point, force, torque) -> None:
-    c, w = centres[body], applied[body]
-    x, y, z = point[0] - c[0], point[1] - c[1], point[2] - c[2]
-    for k in range(3):
-        w[k] += force[k]
-        w[3 + k] += torque[k]
-    w[3] += y * force[2] - z * force[1]
-    w[4] += z * force[0] - x * force[2]
-    w[5] += x * force[1] - y * force[0]
-
-
-@numba.njit(cache=True)
-def _speed_at(six, xpos, body, point):
-    p = xpos[body]
-    x, y, z = point[0] - p[0], point[1] - p[1], point[2] - p[2]
-    return (
-        six[3] + six[1] * z - six[2] * y,
-        six[4] + six[2] * x - six[0] * z,
-        six[5] + six[0] * y - six[1] * x,
-    )
 
 
 @numba.njit(cache=True)
@@ -400,15 +316,10 @@ def _sliding(motor_speed, speed, inner, coulomb, viscous):
 
 
 @numba.njit(cache=True)
-def _set_friction(bias, rows, torque) -> None:
+def _drive(bias, rows, friction, applied, at, torque) -> None:
     for i in range(rows.size):
-        bias[rows[i], 3] = bias[rows[i], 4] = torque[i]
-
-
-@numba.njit(cache=True)
-def _scatter(target, at, values) -> None:
-    for i in range(at.size):
-        target[at[i]] = values[i]
+        bias[rows[i], 3] = bias[rows[i], 4] = friction[i]
+        applied[at[i]] = torque[i]
 
 
 @numba.njit(cache=True)

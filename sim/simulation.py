@@ -66,7 +66,7 @@ class Simulation:
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
-        self.contact_sources = ContactSources(self.dynamics, self.tcp, arm.chain.elbow)
+        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow)
         joints, rated = tuple(arm.chain.joints), tuple(arm.limits.torque)
         self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario))
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
@@ -182,7 +182,7 @@ class Simulation:
             plant.payload_pose(),
             plant.load.mass,
             self.configured.mass,
-            plant.touched,
+            plant.hands.touched,
             self.controller.references.wanted(),
             plant.q.copy(),
             plant.sliding_friction(),

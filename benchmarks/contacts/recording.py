@@ -42,7 +42,8 @@ class Recording:
         self.signals.append(estimate.signals)
         self.momentum.append(momentum(simulation, estimate))
         self.q.append(estimate.q.tolist())
-        self.tip.append(estimate.p_BT)
+        x, y, z = estimate.tcp.tolist()[:3]
+        self.tip.append((x, y, z))
         self.speed.append(estimate.v_tcp)
         self.force.append(contact_force(simulation))
         self.acceleration.append(simulation.plant.flange[12:15].tolist())

@@ -22,7 +22,7 @@ def estimates(source: int, stream: list[Signal | None]) -> list[Estimate]:
     for k, signal in enumerate(stream, 1):
         now = estimate(tick=k)
         now.R_BF, now.q = QUARTER, np.full(6, 0.001 * k)
-        now.p_BT = (0.0002 * k, 0.0, 0.5)
+        now.tcp = np.array([0.0002 * k, 0.0, 0.5, 0.0, 0.0, 0.0])
         now.signals = tuple(signal if index == source else None for index in range(len(SOURCES)))
         result.append(now)
     return result

@@ -210,7 +210,7 @@ def test_parts_and_references_are_where_the_estimate_says() -> None:
     containment.begin(Start.ACTIVATION, Walls(tether=False))
     containment.begin(Start.SEQUENCE, Walls(tether=False))
     assert containment.step(seen, *NOBODY) is None
-    found = {state.name: state for state in containment.states(seen)}
+    found = {state.name: state for state in containment.states()}
     assert found["elbow"].distance == pytest.approx(-0.1)
     assert found["world"].distance == pytest.approx(0.2 - 0.35)  # x of the world is y of the base here
     assert found["world"].outward == pytest.approx((0.0, 1.0, 0.0))
@@ -222,7 +222,7 @@ def test_parts_and_references_are_where_the_estimate_says() -> None:
     turned.R_BF = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     containment.step(turned, *NOBODY)
     # the box has turned about the flange with the frame that it lies in, and left the elbow behind: at (0.1, 0.3, 0.5) now
-    found = {state.name: state for state in containment.states(turned)}
+    found = {state.name: state for state in containment.states()}
     assert found["elbow"].distance == pytest.approx(math.hypot(0.3 - 0.1, 0.3 - 0.1))
 
 
@@ -244,7 +244,7 @@ def test_a_size_follows_posture_and_payload(measure: Measure, seen: Estimate, fa
     containment = Containment((wall,), {})
     containment.begin(Start.SEQUENCE, Walls(tether=False))
     containment.step(seen, *NOBODY)
-    (state,) = containment.states(seen)
+    (state,) = containment.states()
     assert state.distance == pytest.approx(-0.2 * factor)
 
 
@@ -254,7 +254,7 @@ def test_what_cannot_be_told_is_refused_and_not_drawn() -> None:
     reading = containment.step(estimate(), *NOBODY)
     assert reading is not None
     assert facts(reading) == {"wall": "gone", "part": "flange", "distance": 0.0, "way": "unknown"}
-    assert containment.states(estimate()) == ()
+    assert containment.states() == ()
     assert containment.places() == ()
 
 

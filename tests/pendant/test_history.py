@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.history import MASK, SIZE, History
+from pendant.history import MASK, SIZE, SUMMED, History
 from pendant.signal import Signal
 
 numbers = st.floats(-100.0, 100.0, allow_nan=False)
@@ -47,6 +47,7 @@ def test_a_day_of_samples_leaves_no_error_that_counts() -> None:
     old._squares[0] = (4.3e7 * 2900.0, 4.3e7 * 86.0)
     for row in rows.tolist():
         old.push(Signal(*row))
+        old.mean(0, 1)
     assert old.mean(8, 30) == pytest.approx(fresh.mean(8, 30), abs=1e-6)
     mean = fresh.mean(8, 30)
     assert old.variances(8, 30, mean) == pytest.approx(fresh.variances(8, 30, mean), abs=1e-4)
@@ -59,3 +60,20 @@ def test_what_lies_before_a_gap_counts_no_more() -> None:
     history.push(Signal(*[1.0] * 6))
     assert history.count == 1
     assert history.mean(0, 1) == (1.0,) * 6
+
+
+@pytest.mark.parametrize("unasked", [1, 2, SUMMED - 1, SUMMED, SUMMED + 1, MASK, SIZE, 3 * SIZE + 5])
+def test_sums_that_were_not_asked_for_are_made_up_for(unasked: int) -> None:
+    rng = np.random.default_rng(unasked)
+    rows = rng.normal(0.0, 5.0, (60 + unasked, 6))
+    history = filled(rows[:60].tolist())
+    history.mean(0, 5)
+    for row in rows[60:].tolist():
+        history.push(Signal(*row))
+    assert history.mean(30, 25) == pytest.approx(rows[::-1][30:55].mean(axis=0), abs=1e-9)
+    assert history.count == (60 + unasked if unasked <= SUMMED else SUMMED)
+    history.push(Signal(*[7.0] * 6))
+    assert history.mean(0, 1) == pytest.approx([7.0] * 6)
+    mean = history.mean(1, 20)
+    assert mean == pytest.approx(rows[::-1][:20].mean(axis=0), abs=1e-9)
+    assert history.variances(1, 20, mean)[0] == pytest.approx(rows[::-1][:20, :3].var(axis=0).mean(), abs=1e-7)

@@ -1,7 +1,6 @@
 """The supervisor: numbers in its events, settings at run time, programs, one decision a tick."""
 
 import pickle
-from dataclasses import FrozenInstanceError
 
 import pytest
 
@@ -52,7 +51,7 @@ def test_an_idle_tick_gives_the_same_decision_again() -> None:
 
 def test_decisions_do_not_change() -> None:
     decision = Bench().step()
-    with pytest.raises(FrozenInstanceError):
+    with pytest.raises(AttributeError, match="immutable"):
         decision.mode = Mode.RUN  # type: ignore[misc]
     event = Event(Kind.RESET, 0)
     with pytest.raises(AttributeError):

@@ -82,7 +82,7 @@ def test_the_tool_centre_point_is_where_it_is() -> None:
     plant = sim.plant
     body = plant.model.body("flange").id
     tip = plant.data.xpos[body] + plant.data.xmat[body].reshape(3, 3) @ TOOL.tcp
-    assert sim.snapshot().estimate.p_BT == pytest.approx(tip, abs=5e-4)
+    assert sim.snapshot().estimate.tcp[:3] == pytest.approx(tip, abs=5e-4)
 
 
 def test_the_effective_mass_is_that_of_the_links_at_the_flange() -> None:

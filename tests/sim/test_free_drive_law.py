@@ -1,8 +1,7 @@
 """Free-drive law: what the hand asks for, what is taken off it, and that nothing drives an arm that nobody touches."""
 
-from dataclasses import replace
-
 import numpy as np
+from msgspec.structs import replace
 
 from pendant.decision import WallState
 from pendant.modes import Law, Phase

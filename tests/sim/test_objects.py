@@ -113,7 +113,7 @@ def impact(stiffness: float, explicit: bool, substeps: int = 8) -> np.ndarray:
             mujoco.mj_comVel(model, data)
             point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ [0.0, 0.0, TIP]
             depth = max(0.0, surface - point[2])
-            sink = -plant.velocity(body, point)[2]
+            sink = -plant.hands.velocity(body, point)[2]
             force = stiffness * depth + 2.0 * DAMPING_RATIO * stiffness**0.5 * sink if depth > 0.0 else 0.0
             data.xfrc_applied[body, 2] = force
             data.xfrc_applied[body, 3:] = np.cross(point - data.xipos[body], [0.0, 0.0, force])

@@ -215,7 +215,7 @@ def test_a_push_acts_at_its_point() -> None:
     plant = Plant(UR5E, Scenario())
     plant.advance(gravity_torque(plant), (Push("elbow", (-0.2, 0.0, 0.0), (10.0, -5.0, 3.0), (0.5, 0.0, 0.0)),))
     body = plant.model.body("elbow").id
-    point = np.array(plant.touched[0][1])
+    point = np.array(plant.hands.touched[0][1])
     force, torque = plant.data.xfrc_applied[body, :3], plant.data.xfrc_applied[body, 3:]
     assert np.allclose(force, [10.0, -5.0, 3.0])
     assert np.allclose(torque, np.cross(point - plant.data.xipos[body], force) + np.array([0.5, 0.0, 0.0]), atol=0.02)
@@ -228,9 +228,9 @@ def test_the_hand_pulls_like_a_spring_and_never_beyond_its_cap() -> None:
     torque = gravity_torque(plant)
     flange = plant.data.xpos[plant.model.body("flange").id].copy()
     plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 0.02, 0.0])), 50.0),))
-    assert np.allclose(plant.touched[0][2], [0.0, 800.0 * 0.02, 0.0], atol=0.1)
+    assert np.allclose(plant.hands.touched[0][2], [0.0, 800.0 * 0.02, 0.0], atol=0.1)
     plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 9.0, 0.0])), 50.0),))
-    assert np.linalg.norm(plant.touched[0][2]) == pytest.approx(50.0)
+    assert np.linalg.norm(plant.hands.touched[0][2]) == pytest.approx(50.0)
 
 
 def test_an_unknown_part_is_an_error() -> None:

@@ -1,0 +1,118 @@
+"""What hands do to the true arm in a tick: wrenches and virtual springs at points of its parts, as MuJoCo takes them."""
+
+from collections.abc import Mapping, Sequence
+
+import mujoco
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.touch import ZERO, Pull, Touch, Triple
+
+Array = NDArray[np.float64]
+
+STIFFNESS = 800.0  # of a virtual hand [N/m]
+DAMPING = 40.0  # of a virtual hand [N·s/m]
+
+
+class Hands:
+    """Applies touches to the bodies of a model.
+
+    Attributes:
+        touched: what acted in the last tick: part, point in W [m], force [N] and torque [N·m] in W.
+
+    Args:
+        model, data: MuJoCo's.
+        parts: number of the body that each part is.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, parts: Mapping[str, int]) -> None:
+        self._parts = parts
+        self._roots = model.body_rootid
+        self._motion = (data.cvel, data.subtree_com)
+        self._poses = (data.xpos, data.xmat, data.xipos)
+        self._applied = data.xfrc_applied
+        self._pushed: set[int] = set()
+        self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
+
+    def apply(self, touches: Sequence[Touch]) -> None:
+        """Put the wrenches of a tick into `xfrc_applied`.
+
+        Raises:
+            KeyError: a touch names a part that does not exist.
+        """
+        if self._pushed:
+            for body in self._pushed:
+                self._applied[body] = 0.0
+            self._pushed.clear()
+        if not touches:
+            self.touched = ()
+            return
+        seen = []
+        for touch in touches:
+            body = self._parts[touch.part]
+            if isinstance(touch, Pull):
+                hold = (_floats(touch.point), _floats(touch.target), float(touch.cap))
+                point, force = _pull(self._poses, self._motion, self._roots[body], body, *hold, self._applied)
+                torque = ZERO
+            else:
+                force, torque = _floats(touch.force), _floats(touch.torque)
+                point = _push(self._poses, body, _floats(touch.point), force, torque, self._applied)
+            self._pushed.add(body)
+            seen.append((touch.part, point, force, torque))
+        self.touched = tuple(seen)
+
+    def velocity(self, body: int, point: Array) -> Array:
+        """True linear velocity (3,) in W of a point (3,) in W of a body [m/s]."""
+        return np.array(_velocity(*self._motion, self._roots[body], body, _floats(point)))
+
+
+def _floats(three: Sequence[float] | Array) -> Triple:
+    x, y, z = three
+    return float(x), float(y), float(z)
+
+
+# Numba: arrays are written in place.
+
+
+@numba.njit(cache=True)
+def _velocity(cvel, tree_com, root, body, point):
+    """MuJoCo keeps a body's motion as angular and linear velocity at the centre of mass of its tree."""
+    wx, wy, wz, vx, vy, vz = cvel[body]
+    x, y, z = point[0] - tree_com[root, 0], point[1] - tree_com[root, 1], point[2] - tree_com[root, 2]
+    return vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x
+
+
+@numba.njit(cache=True)
+def _push(poses, body, local, force, torque, applied):
+    """Add a wrench at a point of a body; returns the point in W."""
+    positions, orientations, centres = poses
+    p, R, c, w = positions[body], orientations[body], centres[body], applied[body]
+    x, y, z = local
+    px = p[0] + R[0] * x + R[1] * y + R[2] * z
+    py = p[1] + R[3] * x + R[4] * y + R[5] * z
+    pz = p[2] + R[6] * x + R[7] * y + R[8] * z
+    x, y, z = px - c[0], py - c[1], pz - c[2]
+    w[0] += force[0]
+    w[1] += force[1]
+    w[2] += force[2]
+    w[3] += torque[0] + y * force[2] - z * force[1]
+    w[4] += torque[1] + z * force[0] - x * force[2]
+    w[5] += torque[2] + x * force[1] - y * force[0]
+    return px, py, pz
+
+
+@numba.njit(cache=True)
+def _pull(poses, motion, root, body, local, target, cap, applied):
+    """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
+    nothing = (0.0, 0.0, 0.0)
+    point = _push(poses, body, local, nothing, nothing, applied)
+    vx, vy, vz = _velocity(motion[0], motion[1], root, body, point)
+    fx = STIFFNESS * (target[0] - point[0]) - DAMPING * vx
+    fy = STIFFNESS * (target[1] - point[1]) - DAMPING * vy
+    fz = STIFFNESS * (target[2] - point[2]) - DAMPING * vz
+    size = np.sqrt(fx * fx + fy * fy + fz * fz)
+    share = cap / size if size > cap else 1.0
+    force = (fx * share, fy * share, fz * share)
+    _push(poses, body, local, force, nothing, applied)
+    return point, force
