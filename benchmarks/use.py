@@ -1,6 +1,7 @@
 """Use: a hand guides the flange with 15 to 40 N right after entry; how far it comes in 3 s, and whether anything gets in its way.
 
-The hand is a spring to a point that walks away along a straight line, its force capped. Truth is read for scoring alone.
+A hand is a spring to a point that walks away along a straight line, its force capped; or it pushes with the whole force all the
+time, along that line. Truth is read for scoring alone.
 """
 
 from typing import NamedTuple
@@ -16,13 +17,13 @@ from pendant.settings import Settings, apply
 from pendant.table import LEAVING, TABLE
 from sim.desk import Wishes
 from sim.simulation import Simulation
-from sim.touch import Pull
+from sim.touch import Pull, Push, Touch
 
 WAY = 0.3  # [m] free of singularities and limits, as a user would choose it
 SECONDS = 3.0
 
 
-class Push(NamedTuple):
+class Guiding(NamedTuple):
     """One guided push."""
 
     case: Case
@@ -30,14 +31,15 @@ class Push(NamedTuple):
     pace: float  # of the hand [m/s]
     walls: bool
     sensor: bool
+    steady: bool  # the whole force all the time
 
 
 class Result(NamedTuple):
     """What came of it."""
 
-    push: Push
+    push: Guiding
     entered: bool
-    way: float  # of the flange [mm]
+    way: float  # of the flange, at most [mm]
     left: str  # kind of an involuntary leaving
     caught: int  # times that a wall held the arm
 
@@ -62,7 +64,7 @@ def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
     return None
 
 
-def measure_push(push: Push) -> Result:
+def measure_push(push: Guiding) -> Result:
     """Enter, then guide at once."""
     rng = np.random.default_rng([push.case.seed, push.case.number, 9])
     settings: Settings = apply(SETTINGS, {"walls.on": push.walls})
@@ -75,37 +77,39 @@ def measure_push(push: Push) -> Result:
             break
     entered = device.tick(RELEASE).mode is Mode.FREE_DRIVE
     start = flange(device)
-    target, pace = start / 1000.0, 0.0
+    target, pace, way = start / 1000.0, 0.0, 0.0
     events: list[Event] = []
-    for _ in range(round(500 * SECONDS)):
+    for tick in range(round(500 * SECONDS)):
         pace = min(pace + 0.002 * 1.0, push.pace)  # a quarter of a second to get going
         target = target + 0.002 * pace * direction
-        pull = Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), push.force)
-        events += device.tick(Wishes(IDLE.inputs, (pull,), ())).events
-    way = float(np.linalg.norm(flange(device) - start))
+        touch: Touch = Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), push.force)
+        if push.steady:
+            touch = Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 50.0, 1.0) * push.force * direction).tolist()))
+        events += device.tick(Wishes(IDLE.inputs, (touch,), ())).events
+        way = max(way, float(np.linalg.norm(flange(device) - start)))
     left = [event.kind.value for event in events if TABLE[event.kind].effect in LEAVING]
     return Result(push, entered, way, ", ".join(left), sum(event.kind is Kind.WALL_REACHED for event in events))
 
 
-def pushes(report: Report, sensor: bool, walls: bool, count: int) -> list[Push]:
+def pushes(report: Report, sensor: bool, walls: bool, count: int, steady: bool = False) -> list[Guiding]:
     """Right payloads of 0 to 5 kg, forces and paces at random."""
     cases, _ = draw(report.options.seed + 500, -(-count // len(MOUNTINGS)), "sensor" if sensor else "no sensor")
     rng = np.random.default_rng([report.options.seed, 5])
-    made: list[Push] = []
+    made: list[Guiding] = []
     for case in cases[:count]:
         mass = float(rng.uniform(0.0, 5.0))
         force, pace = float(rng.uniform(15.0, 40.0)), float(rng.uniform(0.12, 0.3))
-        made.append(Push(case._replace(true=mass, configured=mass), force, pace, walls, sensor))
+        made.append(Guiding(case._replace(true=mass, configured=mass), force, pace, walls, sensor, steady))
     return made
 
 
 def measure(report: Report) -> None:
     """Fill the report."""
     count = 500 if report.options.full else 32
-    plans = ((True, True, count), (True, False, count // 2))
-    for sensor, walls, number in plans:
-        results = [r for r in spread(measure_push, pushes(report, sensor, walls, number)) if r.left != "no way"]
-        label = f"walls {'on' if walls else 'off'}"
+    plans = ((True, True, count, False), (True, False, count // 2, False), (True, True, count // 2, True))
+    for sensor, walls, number, steady in plans:
+        results = [r for r in spread(measure_push, pushes(report, sensor, walls, number, steady)) if r.left != "no way"]
+        label = f"walls {'on' if walls else 'off'}{', whole force all the time' if steady else ''}"
         entered = [r for r in results if r.entered]
         report.row(f"{label}: {len(results)} pushes, entered", len(entered) / len(results), "")
         far = sum(r.way >= 200.0 for r in entered) / len(entered)

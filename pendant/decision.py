@@ -12,6 +12,7 @@ from pendant.modes import Law, Mode, Phase, Safety
 from pendant.pose import Vector
 from pendant.program import Move, ProgramState
 from pendant.reduced import SpeedLimits
+from pendant.soft_limits import Damping
 
 
 class Remaining(NamedTuple):
@@ -56,4 +57,5 @@ class Decision(msgspec.Struct, frozen=True):
     walls: tuple[WallState, ...] = ()  # that hold
     grip: Grip | None = None  # of the enabling device, None where none is used
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
+    damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     limits: str = ""  # checksum of all limits

@@ -20,6 +20,7 @@ from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, ticks
+from pendant.soft_limits import Damping
 from pendant.sources import BUTTON, NONE, Presence
 from pendant.table import TABLE, Effect
 from pendant.walls import Start
@@ -160,6 +161,11 @@ class FreeDrive:
     def walls(self) -> tuple[WallState, ...]:
         """Walls and areas that hold."""
         return self._containment.states()
+
+    @property
+    def damping(self) -> Damping | None:
+        """Where free motion is resisted before a limit on its speed (FD-12b)."""
+        return None if self._operation is None else self._operation.damping
 
     @property
     def helping(self) -> bool:

@@ -16,6 +16,7 @@ from pendant.parameters import Monitor, Reference, View, reference
 from pendant.pose import flat, norm, turned_back
 from pendant.residual import Split
 from pendant.settings import Settings, ticks
+from pendant.soft_limits import Damping, SoftLimits
 
 STEP = 2
 """A payload comes or goes within so many ticks."""
@@ -55,6 +56,7 @@ class Operation:
         "_rated",
         "_shares",
         "_since",
+        "_soft",
         "_stepped",
         "suspect",
     )
@@ -79,6 +81,7 @@ class Operation:
         self._joints, self._rated = joints, rated
         self._since: Reference = reference(estimate, False)
         self._offset = turned_back(flat(estimate.R_BF), (baseline[0], baseline[1], baseline[2]))
+        self._soft = SoftLimits(settings)
         self._on = settings.unexplained
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
@@ -101,7 +104,12 @@ class Operation:
             self._offset,
             self._since,
         )
-        return (*own, self._monitor.memory)
+        return (*own, self._monitor.memory, self._soft.memory)
+
+    @property
+    def damping(self) -> Damping | None:
+        """Where motion is resisted, None while nothing is (FD-12b)."""
+        return self._soft.damping
 
     def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
         """One tick; its joint values are finite.
@@ -118,8 +126,10 @@ class Operation:
                 return lost
         else:
             self._stepped, self.suspect = 0, False
+        soft = self._soft
+        soft.step(estimate)
         parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0))
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.share))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))

@@ -29,6 +29,7 @@ class View(NamedTuple):
     joints: tuple[str, ...]
     scale: tuple[float, ...]  # of the joint torque limits, for each joint
     share: float  # of a joint's load torque by which its limit rises
+    speed_share: float = 1.0  # of the limits on speed that is left (FD-12b)
 
 
 Reader = Callable[[View, Gauge], tuple[float, str]]
@@ -61,20 +62,30 @@ def _flange_acceleration(view: View, _: Gauge) -> tuple[float, str]:
     return beyond_gravity(view.estimate), "flange"
 
 
-def _tcp_speed(view: View, _: Gauge) -> tuple[float, str]:
+def _tcp_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.speed_share
     return view.estimate.v_tcp, "tcp"
 
 
-def _elbow_speed(view: View, _: Gauge) -> tuple[float, str]:
+def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.speed_share
     return view.estimate.v_elbow, "elbow"
 
 
+<<<<<<< HEAD
 def _joint_speed(view: View, _: Gauge) -> tuple[float, str]:
     speeds = view.estimate.qd.tolist()
     fastest, slowest = max(speeds), min(speeds)
     if fastest >= -slowest:
         return fastest, view.joints[speeds.index(fastest)]
     return -slowest, view.joints[speeds.index(slowest)]
+=======
+def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.speed_share
+    speeds = [abs(value) for value in view.estimate.qd.tolist()]
+    fastest = max(speeds)
+    return fastest, view.joints[speeds.index(fastest)]
+>>>>>>> 703bf2a (Resist motion in free-drive before a limit on its speed, and lower the limit for heavy loads and long drifts)
 
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:

@@ -150,6 +150,21 @@ class Limits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     operation: OperationLimits = OperationLimits()
 
 
+class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Resistance in free-drive before the operation limits on speed."""
+
+    on: Annotated[bool, _switch("FD-12b", "motion is resisted before a limit on its speed")] = True
+    onset: Annotated[float, _number(0.1, 0.9, "", "FD-12b", "share of a limit from which on motion is resisted")] = 0.5
+    force: Annotated[float, _number(10.0, 300.0, "N", "FD-12b", "resistance of tool and elbow at their limits")] = 120.0
+    torque: Annotated[float, _number(0.05, 1.0, "of rated", "FD-12b", "resistance of a joint at its limit")] = 0.7
+    payload: Annotated[bool, _switch("FD-12b", "the limits fall with the configured payload and tool")] = True
+    payload_share: Annotated[float, _number(0.0, 0.5, "1/kg", "FD-12b", "a limit is divided by 1 plus this for each kg")] = 0.05
+    drift: Annotated[bool, _switch("FD-12b", "the limits fall for what moves on about the same way")] = True
+    drift_time: Annotated[float, _number(0.2, 30.0, "s", "FD-12b", "for so long it may")] = 2.0
+    drift_share: Annotated[float, _number(0.1, 1.0, "", "FD-12b", "share of the limits that is left then")] = 0.5
+    hard: Annotated[bool, _switch("FD-12b", "payload and drift lower the limits that end free-drive, too")] = False
+
+
 class Static(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """When the arm counts as standing still."""
 
@@ -261,6 +276,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     reduced: ReducedLimits = ReducedLimits()
     limits: Limits = Limits()
     unexplained: Unexplained = Unexplained()
+    soft: Soft = Soft()
     walls: Walls = Walls()
     static: Static = Static()
     joint_control: JointControl = JointControl()

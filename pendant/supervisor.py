@@ -441,7 +441,7 @@ class Supervisor:
         law = self._law()
         self._holding = law is Law.HOLD and not free.caught
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
-        robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
+        robot = (self._mode, self._safety, free.phase, law, free.helping, free.damping, grip, speeds)
         key = (*robot, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
@@ -470,6 +470,7 @@ class Supervisor:
             walls=walls,
             grip=grip,
             speed_limits=speeds,
+            damping=free.damping,
             limits=self._checksum,
         )
         self._key = key

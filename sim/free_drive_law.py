@@ -10,7 +10,10 @@ from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import TICK, Phase
 from pendant.pose import ORIGIN
+from sim.active_damping import ActiveDamping
 from sim.adaptive_friction import AdaptiveFriction
+from sim.arm import Arm
+from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -37,14 +40,17 @@ class FreeDriveLaw:
         share: of the friction estimate that is taken off at most.
     """
 
-    def __init__(self, dynamics: Dynamics, n: int, elbow: int) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics) -> None:
         """
         Args:
+            arm: the arm's numbers.
+            calibration: error of the constants that the controller uses.
             dynamics: the controller's rigid model.
-            n: number of joints.
-            elbow: index of the joint whose origin is the elbow.
         """
-        self._dynamics, self._elbow = dynamics, elbow
+        self._dynamics, self._elbow = dynamics, arm.chain.elbow
+        n = arm.n
+        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
@@ -60,6 +66,7 @@ class FreeDriveLaw:
         self._memory[:] = 0.0
         self._memory[2] = estimate.tau_ext
         self._turned[:] = estimate.R_BF
+        self._damping.start()
 
     def torque(
         self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction, with_friction: bool
@@ -80,16 +87,20 @@ class FreeDriveLaw:
                 _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
+        help = 1.0
+        if decision.damping is not None:
+            self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian, torque)
+            help = self._damping.help
         hand = self._hand
         if estimate.wrench_valid and decision.gain > 0.0:
-            cap, gain = decision.force_cap, decision.gain
+            cap, gain = decision.force_cap, help * decision.gain
             _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
         else:
             hand[:] = 0.0
         if with_friction:
             felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
             rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
-            _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, self.share, torque)
+            _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, help * self.share, torque)
         return torque
 
 

@@ -9,7 +9,7 @@ from sim.adaptive_friction import AdaptiveFriction
 from sim.frames import joint_frames, rotation
 from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
 from tests.sim.arms import UR5E
-from tests.sim.control import N, decision, dynamics, estimate
+from tests.sim.control import EXACT, N, decision, dynamics, estimate
 
 Q = np.array(UR5E.chain.home)
 MODEL = dynamics()
@@ -19,7 +19,7 @@ BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
 
 
 def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
-    module = FreeDriveLaw(dynamics(), N, UR5E.chain.elbow)
+    module = FreeDriveLaw(UR5E, EXACT, dynamics())
     module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
     return module
 

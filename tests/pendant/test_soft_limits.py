@@ -1,0 +1,121 @@
+"""Soft limits on speed: what they are, and when they fall (FD-12b)."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pendant.events import Kind
+from pendant.hand import Hand
+from pendant.operation import Ending, Operation
+from pendant.parameters import ZEROS
+from pendant.settings import Settings, apply
+from pendant.soft_limits import SoftLimits, hard
+from tests.pendant.estimates import estimate
+
+STILL = estimate()
+
+
+def soft(**changes: float | bool) -> SoftLimits:
+    return SoftLimits(apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()}))
+
+
+def limits(module: SoftLimits) -> tuple[float, float, float]:
+    assert module.damping is not None
+    return module.damping[:3]
+
+
+def test_they_lie_at_the_operation_limits() -> None:
+    module = soft()
+    module.step(STILL)
+    assert limits(module) == (1.5, 1.5, 3.0)
+    assert module.damping is not None
+    assert module.damping[3:] == (0.5, 120.0, 0.7)
+    assert module.share == 1.0
+
+
+def test_switched_off_nothing_is_resisted() -> None:
+    module = soft(soft__on=False)
+    module.step(STILL)
+    assert module.damping is None
+
+
+def test_a_limit_that_is_off_is_infinite() -> None:
+    every = {f"limits.operation.{name}.on": False for name in ("tcp_speed", "elbow_speed", "joint_speed")}
+    assert hard(apply(Settings(), every).limits.operation) == (math.inf, math.inf, math.inf)
+
+
+def test_they_fall_with_the_configured_payload() -> None:
+    module = soft(soft__payload_share=0.25)
+    module.step(estimate(load_mass=4.0))
+    assert limits(module) == (0.75, 0.75, 1.5)
+    without = soft(soft__payload=False)
+    without.step(estimate(load_mass=4.0))
+    assert limits(without) == (1.5, 1.5, 3.0)
+
+
+def test_they_fall_after_the_drift_time_and_rise_when_it_stands() -> None:
+    module = soft(soft__drift_time=0.2, soft__drift_share=0.4)
+    for _ in range(100):
+        module.step(estimate(speed=0.1))
+        assert limits(module)[0] == 1.5
+    module.step(estimate(speed=0.1))
+    assert limits(module) == pytest.approx((0.6, 0.6, 1.2))
+    module.step(estimate(speed=0.019))
+    assert limits(module)[0] == 1.5
+    module.step(estimate(speed=0.1))
+    assert limits(module)[0] == 1.5
+
+
+@pytest.mark.parametrize(("degrees", "falls"), [(44.0, True), (46.0, False)])
+def test_a_direction_is_about_the_same_up_to_45_degrees_from_where_it_began(degrees: float, falls: bool) -> None:
+    module = soft(soft__drift_time=0.2)
+    angle = math.radians(degrees)
+    for _ in range(60):
+        module.step(estimate(speed=[0.2, 0.0, 0.0]))
+    for _ in range(60):
+        module.step(estimate(speed=[0.2 * math.cos(angle), 0.2 * math.sin(angle), 0.0]))
+    assert (limits(module)[0] < 1.5) is falls
+
+
+def test_without_the_guard_it_may_go_on() -> None:
+    module = soft(soft__drift_time=0.2, soft__drift=False)
+    for _ in range(500):
+        module.step(estimate(speed=0.1))
+    assert limits(module)[0] == 1.5
+
+
+@given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), max_size=60), st.floats(0.0, 10.0))
+def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: list[tuple[float, float]], mass: float) -> None:
+    module = soft(soft__drift_time=0.2)
+    for x, y in ways:
+        for _ in range(4):
+            module.step(estimate(speed=[x, y, 0.0], load_mass=mass))
+            assert 0.5 * 1.5 / (1.0 + 0.05 * mass) <= limits(module)[0] * (1.0 + 1e-12)
+            assert limits(module)[0] <= 1.5
+
+
+def ended(speed: float, **changes: float | bool) -> Ending | None:
+    settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
+    now = estimate(load_mass=4.0, v_tcp=speed)
+    operation = Operation(now, settings, ZEROS, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6)
+    assert operation.damping is None
+    found = operation.step(now, Hand(now, ZEROS), True, False)
+    assert operation.damping is not None
+    return found
+
+
+def test_hard_limits_fall_too_when_asked_for() -> None:
+    assert ended(1.3) is None
+    ending = ended(1.3, soft__hard=True)
+    assert ending is not None
+    assert ending.kind is Kind.LEFT_LIMIT
+    assert ending.values["limit"] == pytest.approx(1.5 / 1.2)
+
+
+def test_memory_tells_states_apart() -> None:
+    one, other = soft(), soft()
+    one.step(STILL)
+    other.step(estimate(speed=0.2))
+    assert one.memory != other.memory
