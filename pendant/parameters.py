@@ -72,20 +72,13 @@ def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
     return view.estimate.v_elbow, "elbow"
 
 
-<<<<<<< HEAD
-def _joint_speed(view: View, _: Gauge) -> tuple[float, str]:
+def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.speed_share
     speeds = view.estimate.qd.tolist()
     fastest, slowest = max(speeds), min(speeds)
     if fastest >= -slowest:
         return fastest, view.joints[speeds.index(fastest)]
     return -slowest, view.joints[speeds.index(slowest)]
-=======
-def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.speed_share
-    speeds = [abs(value) for value in view.estimate.qd.tolist()]
-    fastest = max(speeds)
-    return fastest, view.joints[speeds.index(fastest)]
->>>>>>> 703bf2a (Resist motion in free-drive before a limit on its speed, and lower the limit for heavy loads and long drifts)
 
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
