@@ -5,7 +5,7 @@ from typing import Any
 
 import viser
 
-from app.web.messages import Hold, Part, Update, Upload
+from app.web.messages import Admitted, Hold, Part, Update, Upload
 
 MAX_FILE = 48 * 1024
 """Largest file from a client: it comes in one message."""
@@ -14,18 +14,25 @@ MAX_TEXT = 200
 """Longest text that a control takes."""
 
 LARGEST = 1e6
-"""Largest number in any message: the far plane of a camera and the pixels of a window are within it."""
+"""Largest number that is squared: the far plane of a camera and the pixels of a window are within it."""
+
+LARGEST_VALUE = 2.0**53
+"""Largest number that a control may be asked to take; its own range says the rest."""
 
 
-def bounded(value: Any) -> bool:
-    """Whether every number in a decoded message is finite, and small enough to be squared without harm."""
+def bounded(message: Admitted) -> bool:
+    """Whether every number in a decoded message is finite, and small enough to be computed with."""
+    return _within(message, LARGEST_VALUE if isinstance(message, Update) else LARGEST)
+
+
+def _within(value: Any, most: float) -> bool:
     if isinstance(value, int | float):
-        return math.isfinite(value) and abs(value) <= LARGEST
+        return math.isfinite(value) and abs(value) <= most
     if isinstance(value, dict):
-        return all(bounded(v) for v in value.values())
+        return all(_within(v, most) for v in value.values())
     if isinstance(value, tuple):
-        return all(bounded(v) for v in value)
-    return all(bounded(getattr(value, name)) for name in getattr(value, "__struct_fields__", ()))
+        return all(_within(v, most) for v in value)
+    return all(_within(getattr(value, name), most) for name in getattr(value, "__struct_fields__", ()))
 
 
 def reason_against(control: Any, message: Update | Hold | Upload | Part) -> str | None:
