@@ -84,15 +84,13 @@ def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
     worst, at, high, value = -1.0, 0, 0.0, 0.0
-    base, share, joint = gauge.base, view.share, 0
-    for torque, load, scale, before in zip(
-        view.estimate.tau_ext.tolist(), view.estimate.tau_J.tolist(), view.scale, view.since.torques, strict=True
-    ):
-        limit = base * scale + share * abs(load)
-        size = abs(torque - before)
+    base, share, scale, before = gauge.base, view.share, view.scale, view.since.torques
+    loads = view.estimate.tau_J.tolist()
+    for joint, torque in enumerate(view.estimate.tau_ext.tolist()):
+        limit = base * scale[joint] + share * abs(loads[joint])
+        size = abs(torque - before[joint])
         if size > worst * limit:
             worst, at, high, value = size / limit, joint, limit, size
-        joint += 1
     gauge.high = high
     return value, view.joints[at]
 

@@ -124,7 +124,7 @@ class Recorder:
         if simulation.tick_count % SNAPSHOT_TICKS == 1:
             plant = simulation.plant
             poses = (plant.poses(), plant.object_poses(), plant.payload_pose())
-            self._pictures.append(Picture(tick, decision, *poses, plant.load.mass, plant.touched))
+            self._pictures.append(Picture(tick, decision, *poses, plant.load.mass, plant.hands.touched))
         for event in decision.events:
             self._events.append((tick, event))
             if event.kind is Kind.SETTING_CHANGED:
@@ -190,7 +190,7 @@ class Recorder:
 
     def _take_truth(self, plant: Plant, row: np.ndarray) -> None:
         fill_truth(plant, row)
-        for _, _, force, _ in plant.touched:
+        for _, _, force, _ in plant.hands.touched:
             row[-4] += force[0]
             row[-3] += force[1]
             row[-2] += force[2]
