@@ -60,6 +60,7 @@ def example(*lines: str) -> str:
         "pendant serve --robot ur10e --port 9000",
         "pendant serve --config cell.yaml",
         "pendant serve --host 0.0.0.0",
+        "pendant serve --record logs",
     )
 )
 def serve(
@@ -68,6 +69,10 @@ def serve(
     host: Host = "127.0.0.1",
     port: Port = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    record: Annotated[
+        Path | None,
+        typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
+    ] = None,
 ) -> None:
     """Serve the web app: push the arm, hold its free-drive button, read why it stopped."""
     from app.serving import serve_until_interrupted
@@ -76,7 +81,7 @@ def serve(
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     where = "serve" if config is None else config.name
-    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser) as site:
+    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser, record) as site:
         _announce(f"Serving the {setup.robot}", site.link, site.access.token is not None)
 
 

@@ -22,7 +22,9 @@ from sim.loop import Loop
 
 
 @contextmanager
-def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
+def serve_until_interrupted(
+    prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
+) -> Iterator[Site]:
     """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
 
     Args:
@@ -31,6 +33,7 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
         port: to listen on, 0 for any free one; None: `usual` when it is free, else any.
         usual: the port that a user's bookmark knows.
         open_browser: open the page too.
+        record: record from the start, into this folder.
 
     Raises:
         BadInput: the address cannot be used.
@@ -41,7 +44,7 @@ def serve_until_interrupted(prepared: Prepared, host: str, port: int | None, usu
     loop = Loop(lambda: simulate(prepared))
     loop.start()
     try:
-        served = _serve(loop, prepared, host, port, usual, open_browser)
+        served = _serve(loop, prepared, host, port, usual, open_browser, record)
         try:
             yield served
             ended.wait()
@@ -76,12 +79,14 @@ def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int
         shown.close()
 
 
-def _serve(loop: Loop, prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool) -> Served:
+def _serve(
+    loop: Loop, prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
+) -> Served:
     if port is not None:
-        return serve_web(loop, prepared.arm, prepared.scenario, host, port, open_browser)
+        return serve_web(loop, prepared.arm, prepared.scenario, host, port, open_browser, record)
     try:
-        return serve_web(loop, prepared.arm, prepared.scenario, host, usual, open_browser)
+        return serve_web(loop, prepared.arm, prepared.scenario, host, usual, open_browser, record)
     except BadInput as taken:
         if taken.field != "--port":
             raise
-        return serve_web(loop, prepared.arm, prepared.scenario, host, 0, open_browser)
+        return serve_web(loop, prepared.arm, prepared.scenario, host, 0, open_browser, record)

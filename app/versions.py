@@ -1,5 +1,6 @@
 """What runs: the versions that a recording and a report name."""
 
+import functools
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
@@ -7,6 +8,7 @@ PACKAGES = {"pendant": "pendant-sim", "mujoco": "mujoco", "pinocchio": "pin", "n
 """Name shown -> name of the distribution."""
 
 
+@functools.cache
 def versions() -> dict[str, str]:
     """Versions by name; `source tree` for what runs without being installed."""
     found = {"python": platform.python_version()}

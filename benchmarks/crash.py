@@ -55,8 +55,8 @@ def kill(out: Path, seconds: float) -> float:
 
 def opens(path: Path) -> bool:
     """Whether `pendant replay` repairs and shows the log."""
-    with replay_until_interrupted(path, "127.0.0.1", 0, 0, False) as url:
-        with urllib.request.urlopen(url) as page:
+    with replay_until_interrupted(path, "127.0.0.1", 0, 0, False) as site:
+        with urllib.request.urlopen(site.url) as page:
             shown = page.status == 200
         os.kill(os.getpid(), signal.SIGTERM)  # the user's end
     return shown and read(path).whole

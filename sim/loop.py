@@ -57,6 +57,7 @@ class Loop:
         self._script: Script | None = None
         self.simulation = make()
         self.desk = Desk()
+        self.watch: Callable[[Simulation, Decision], None] | None = None  # shown each tick done, on the loop's thread
         self.speed = 1.0
         self.paused = False
         self.actual_rate = 0.0
@@ -149,6 +150,8 @@ class Loop:
         decision = self.simulation.tick(wishes)
         if script is not None:
             script.see(tick, decision)
+        if (watch := self.watch) is not None:
+            watch(self.simulation, decision)
         if decision.events:
             self._events.extend(decision.events)
         if self.simulation.plant.tick % SNAPSHOT_TICKS == 1:

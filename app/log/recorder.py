@@ -1,108 +1,78 @@
-"""Records a run: copies a tick's numbers on the simulation's thread, and packs, compresses and writes them on one of its own."""
+"""Records a run: copies a tick's numbers on the simulation's thread, and has them packed and written on one of its own."""
 
+import errno
 import math
 import queue
 import threading
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple
 
-import msgspec
 import numpy as np
 
 from app.checked import ABSENT, BadInput
-from app.events_file import line_of
-from app.library import mesh_path
-from app.log import foxglove, layout
-from app.log.container import Container
-from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
-from app.versions import versions
+from app.log import layout
+from app.log.block import Block, Picture
+from app.log.layout import STATE, TRUTH
+from app.log.writer import SINGLES, Writer
 from pendant.decision import Decision
 from pendant.events import Event, Kind
 from pendant.modes import Mode, Phase, Safety
 from pendant.parameters import PARAMETERS
 from pendant.program import ProgramState
-from pendant.settings import Settings, describe, digest, limits_checksum, value_of
-from pendant.table import TABLE, render
+from pendant.settings import Settings
 from sim.loop import SNAPSHOT_TICKS
 from sim.plant import Plant
 from sim.rows import fill_estimate, fill_truth
-from sim.scenario import Plane, Scenario
 from sim.simulation import Simulation
 
 BLOCK = 125
 """Ticks in a chunk: a quarter of a second."""
 
 AHEAD = 40
-"""Blocks that may wait for a slow disk before the simulation waits for it."""
-
-SINGLES = 4
-"""Numbers of /state that come one by one: speeds of tcp and elbow, gain, configured mass."""
+"""Blocks that may wait for a slow disk."""
 
 MODES = {mode: number for number, mode in enumerate(Mode)}
 SAFETIES = {safety: number for number, safety in enumerate(Safety)}
 PHASES = {phase: number for number, phase in enumerate(Phase)}
 PROGRAMS = {state: number for number, state in enumerate(ProgramState)}
 AT = {row.text: number for number, row in enumerate(PARAMETERS.values())}
-
-
-class Picture(NamedTuple):
-    """What is drawn of a tick. Poses are (7,): position [m], then quaternion wxyz, in W."""
-
-    tick: int
-    decision: Decision
-    links: np.ndarray[Any, Any]  # (n + 2, 7)
-    objects: np.ndarray[Any, Any]  # (m, 7)
-    payload: np.ndarray[Any, Any] | None
-    payload_mass: float  # [kg]
-    touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
-
-
-class Block(NamedTuple):
-    """Ticks on their way to the file."""
-
-    ticks: np.ndarray[Any, Any]  # (k,)
-    numbers: np.ndarray[Any, Any]  # (k, ...) of /state
-    codes: list[tuple[int, ...]]  # of each tick
-    singles: list[tuple[float, ...]]  # of each tick: numbers of /state that come one by one
-    truth: np.ndarray[Any, Any]  # (k, ...) of /truth
-    pictures: list[Picture]
-    events: list[tuple[int, Event]]
-    settings: list[tuple[int, Settings]]
+SLOW = OSError(errno.ETIMEDOUT, "the disk is too slow")
 
 
 class Recorder:
     """Writes log.mcap of one simulation. Call `see` after each tick, on the simulation's thread, and `close` at the end.
 
+    The first tick that it sees is the log's tick 1.
+
     Args:
         path: of the file; one that is there is replaced.
-        simulation: at its start.
+        simulation: what is to be recorded; it may have run already.
         title: of the session.
+        waits: for a disk that is too slow; otherwise that ends the recording.
 
     Raises:
         BadInput: the file cannot be written.
     """
 
-    def __init__(self, path: Path, simulation: Simulation, title: str) -> None:
+    def __init__(self, path: Path, simulation: Simulation, title: str, waits: bool = True) -> None:
         self.path = path
-        self._names = ["foot", *simulation.arm.chain.joints, "flange"]
+        self.failure: OSError | None = None  # what ended the recording before its time
+        self._waits = waits
         self._n = n = simulation.arm.n
-        self._file = Container(path, f"pendant {versions()['pendant']}")
-        try:
-            self._channels = self._declare(simulation, title)
-        except OSError as error:
-            raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
-        self._state_type = layout.record(layout.width(STATE, n), len(CODES))
-        self._truth_type = layout.record(layout.width(TRUTH, n), 0)
+        self._writer = Writer(path, simulation, title)
         self._vectors = layout.width(STATE, n) - 2 * len(AT) - SINGLES  # numbers that come as arrays
-        self._offset = self._last = 0
+        self._offset, self._last = 0, 0  # of the log's ticks over the simulation's; the log's last tick
         self._full = 1  # the first tick goes by itself, so that a log can be shown as soon as it is there
         self._begin()
         self._settings.append((0, simulation.settings))
         self._queue: queue.Queue[Block | None] = queue.Queue(AHEAD)
-        self._failure: OSError | None = None
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
+
+    @property
+    def ticks(self) -> int:
+        """Ticks seen."""
+        return self._last
 
     def __enter__(self) -> "Recorder":
         return self
@@ -113,9 +83,9 @@ class Recorder:
     def see(self, simulation: Simulation, decision: Decision) -> None:
         """Record the tick that `simulation` has just done; after a reset its ticks count on."""
         tick = self._offset + simulation.tick_count
-        if tick <= self._last:
-            self._offset = self._last
-            tick = self._offset + simulation.tick_count
+        if tick <= self._last or self._last == 0:
+            tick = self._last + 1
+            self._offset = tick - simulation.tick_count
         self._last = tick
         k = self._count
         self._ticks[k] = tick
@@ -143,8 +113,8 @@ class Recorder:
         self._hand_over()
         self._queue.put(None)
         self._thread.join()
-        if self._failure is not None:
-            raise BadInput(str(self.path), "", ABSENT, f"could not be written to its end ({self._failure.strerror})")
+        if self.failure is not None:
+            raise BadInput(str(self.path), "", ABSENT, f"could not be written to its end ({self.failure.strerror})")
 
     def _begin(self) -> None:
         n = self._n
@@ -170,7 +140,9 @@ class Recorder:
             self._events,
             self._settings,
         )
-        if self._failure is None:
+        if self.failure is None and not self._waits and self._queue.full():
+            self.failure = SLOW
+        if self.failure is None:
             self._queue.put(block)
         self._begin()
 
@@ -196,130 +168,17 @@ class Recorder:
             row[-2] += force[2]
         row[-1] = plant.load.mass
 
-    # From here on: the recorder's own thread.
-
     def _write(self) -> None:
+        """The recorder's own thread."""
         while (block := self._queue.get()) is not None:
-            if self._failure is not None:
+            if self.failure is not None:
                 continue
             try:
-                self._pack(block)
+                self._writer.pack(block)
             except OSError as error:
-                self._failure = error
-        if self._failure is None:
+                self.failure = error
+        if self.failure is None:
             try:
-                self._file.close()
+                self._writer.close()
             except OSError as error:
-                self._failure = error
-
-    def _pack(self, block: Block) -> None:
-        for tick, settings in block.settings:
-            values = {row.name: value_of(settings, row.name) for row in describe()}
-            self._say("/settings", tick, {"tick": tick, "values": values})
-        for tick, event in block.events:
-            self._say("/events", tick, msgspec.to_builtins(line_of(Event(event.kind, tick, event.values))))
-            headline, guidance = render(event)
-            text = f"{headline} {guidance}".strip()
-            self._say("/log", tick, foxglove.line(tick, TABLE[event.kind].severity, text))
-        for picture in block.pictures:
-            self._draw(picture.tick, picture)
-        if block.singles:
-            block.numbers[:, self._vectors : self._vectors + SINGLES] = block.singles
-        rows = [
-            self._records(self._state_type, "/state", block.ticks, block.numbers, block.codes),
-            self._records(self._truth_type, "/truth", block.ticks, block.truth, []),
-        ]
-        self._file.flush(rows)
-
-    def _records(
-        self, kind: np.dtype, topic: str, ticks: np.ndarray, numbers: np.ndarray, codes: list[tuple[int, ...]]
-    ) -> np.ndarray[Any, Any]:
-        """Whole message records, a row a tick."""
-        rows = np.zeros(len(ticks), dtype=kind)
-        rows["opcode"] = 5
-        rows["length"] = kind.itemsize - 9
-        rows["channel"] = self._channels[topic]
-        rows["sequence"] = ticks
-        rows["log_time"] = rows["publish_time"] = ticks * np.uint64(foxglove.NANOSECONDS)
-        rows["cdr"] = CDR
-        rows["tick"] = ticks
-        rows["numbers"] = numbers
-        if codes:
-            rows["codes"] = codes
-        return rows
-
-    def _draw(self, tick: int, picture: Picture) -> None:
-        objects = zip(self._objects, picture.objects.tolist(), strict=True)
-        frames = [*zip(self._names, picture.links.tolist(), strict=True), *objects]
-        payload = None if picture.payload is None else picture.payload.tolist()
-        if payload is not None:
-            frames.append(("payload", payload))
-        self._say("/tf", tick, foxglove.transforms(tick, frames))
-        arrows = [foxglove.arrow(point, force) for _, point, force, _ in picture.touches if any(force)]
-        entities = [foxglove.entity(tick, "touches", "world", arrows=arrows)]
-        if payload is not None:
-            radius = (max(picture.payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0)
-            entities.append(foxglove.entity(tick, "payload", "payload", spheres=[foxglove.ball(radius)]))
-        self._say("/scene", tick, foxglove.update(entities))
-        decision = picture.decision
-        content = {
-            "tick": tick,
-            "mode": decision.mode,
-            "safety": decision.safety.name,
-            "phase": decision.phase,
-            "periods": [period._asdict() for period in decision.periods],
-            "touches": [
-                {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
-            ],
-        }
-        self._say("/pendant", tick, content)
-
-    def _say(self, topic: str, tick: int, content: Any) -> None:
-        self._file.add(self._channels[topic], tick * foxglove.NANOSECONDS, msgspec.json.encode(content))
-
-    def _declare(self, simulation: Simulation, title: str) -> dict[str, int]:
-        """Channels, and what does not change: arm, scenario, versions; the shapes go into /robot."""
-        file, arm, scenario, n = self._file, simulation.arm, simulation.scenario, self._n
-        self._objects = [f"object {thing.name}" for thing in scenario.world]
-        file.note(
-            "run",
-            {
-                "title": title,
-                **versions(),
-                "robot": arm.name,
-                "seed": str(scenario.seed),
-                "settings": digest(simulation.settings),
-                "limits": limits_checksum(simulation.settings),
-            },
-        )
-        file.note("words", {name: " ".join(words) for name, words in WORDS.items()})
-        file.attach("arm.json", "application/json", msgspec.json.encode(arm))
-        file.attach("scenario.json", "application/json", msgspec.json.encode(scenario))
-        channels: dict[str, int] = {}
-        packed = {"/state": ("pendant/msg/State", STATE, CODES), "/truth": ("pendant/msg/Truth", TRUTH, ())}
-        for topic, (name, fields, codes) in packed.items():
-            channels[topic] = file.channel(topic, name, layout.schema(fields, n, codes), "cdr", "ros2msg")
-        drawn = {"/tf": "FrameTransforms", "/scene": "SceneUpdate", "/robot": "SceneUpdate", "/log": "Log"}
-        for topic, name in drawn.items():
-            schema = msgspec.json.encode(foxglove.SCHEMAS[f"foxglove.{name}"]).decode()
-            channels[topic] = file.channel(topic, f"foxglove.{name}", schema, "json", "jsonschema")
-        for topic, name in (("/pendant", "pendant.Pendant"), ("/events", "pendant.Event"), ("/settings", "pendant.Settings")):
-            schema = msgspec.json.encode({"title": name, "type": "object"}).decode()
-            channels[topic] = file.channel(topic, name, schema, "json", "jsonschema")
-        message = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
-        file.add(channels["/robot"], 0, message)
-        return channels
-
-    def _shapes(self, arm: str, scenario: Scenario) -> list[foxglove.Json]:
-        """What stands still in its own frame: links and world objects."""
-        entities = []
-        for part in self._names[:-1]:
-            try:
-                data = mesh_path(arm, part).read_bytes()
-            except BadInput:  # an arm of the user's own has no pictures
-                continue
-            entities.append(foxglove.entity(0, f"link {part}", part, models=[foxglove.model(data)]))
-        for name, thing in zip(self._objects, scenario.world, strict=True):
-            size = [3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size
-            entities.append(foxglove.entity(0, name, name, cubes=[foxglove.box(size)]))
-        return entities
+                self.failure = error

@@ -2,6 +2,7 @@
 
 import viser
 
+from app.log.live import LiveRecording
 from app.web import style
 from app.web.contacts import Contacts
 from app.web.guard import Guard
@@ -10,6 +11,7 @@ from app.web.journal import Journal
 from app.web.lab import Lab
 from app.web.panel import Panel
 from app.web.plots import Plots
+from app.web.recording import RecordingSwitch
 from app.web.running import Running
 from app.web.settings_tab import SettingsTab
 from app.web.teach import Teach
@@ -24,7 +26,9 @@ LEFT = 264
 class Docks:
     """All panels."""
 
-    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, arm: Arm) -> None:
+    def __init__(
+        self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, arm: Arm, recording: LiveRecording
+    ) -> None:
         self._loop = loop
         self._read = 0
         gui = server.gui
@@ -35,6 +39,7 @@ class Docks:
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
+            self.recording = RecordingSwitch(gui, recording)
         with self._upper.add_tab("Settings") as tab:
             self.settings = SettingsTab(gui, tab, loop)
         self._lower = gui.add_panel()
@@ -74,5 +79,6 @@ class Docks:
             self.teach.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
+            self.recording.show(),
         ]
         return any(changed)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Protocol
 
+from pendant.decision import Decision
 from pendant.events import Event
 from pendant.settings import Settings
 from sim.desk import Desk
@@ -18,6 +19,7 @@ class Running(Protocol):
     desk: Desk
     speed: float
     paused: bool
+    watch: Callable[[Simulation, Decision], None] | None  # shown each tick
 
     @property
     def actual_rate(self) -> float:

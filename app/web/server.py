@@ -3,10 +3,12 @@
 import functools
 import webbrowser
 from collections.abc import Mapping
+from pathlib import Path
 
 import viser
 
 from app.library import mesh_path
+from app.log.live import LiveRecording, must_be_writable
 from app.web.access import Access, access_through, must_be_free
 from app.web.control import Control
 from app.web.docks import Docks
@@ -25,7 +27,14 @@ class Served(Site):
     """A running web app."""
 
     def __init__(
-        self, loop: Running, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], access: Access, port: int
+        self,
+        loop: Running,
+        arm: Arm,
+        scenario: Scenario,
+        meshes: Mapping[str, bytes],
+        access: Access,
+        port: int,
+        recording: LiveRecording,
     ) -> None:
         super().__init__(access, port, brand_color=(25, 113, 194))
         self._loop = loop
@@ -33,7 +42,8 @@ class Served(Site):
         self._frame = 0
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
         self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
-        self.docks = Docks(self.server, self.guard, loop, self.hand, arm)
+        self.recording = recording
+        self.docks = Docks(self.server, self.guard, loop, self.hand, arm, recording)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         for part, node in self.scene.draggable.items():
@@ -46,9 +56,10 @@ class Served(Site):
         self.start_drawing()
 
     def close(self) -> None:
-        """Stop serving; connections are closed, and what they held is released."""
+        """Stop serving; connections are closed, what they held is released, a recording is ended."""
         self.server.get_event_loop().call_soon_threadsafe(self.control.close)
         super().close()
+        self.recording.close()
 
     def draw(self) -> bool:
         """Show what is new of the loop; False once it has failed."""
@@ -96,21 +107,32 @@ class Served(Site):
 
 
 def serve(
-    loop: Running, arm: Arm, scenario: Scenario, host: str = "127.0.0.1", port: int = 0, open_browser: bool = False
+    loop: Running,
+    arm: Arm,
+    scenario: Scenario,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    open_browser: bool = False,
+    record: Path | None = None,
 ) -> Served:
     """Serve the web app of a running loop.
 
     Args:
         host: an address of this machine; one in a network demands a token, which is in the `link`.
         port: 0 for any free one.
+        record: record from the start, into this folder; None: when it is switched on, into the working folder.
 
     Raises:
-        BadInput: the host is no address of this machine, or the port is taken.
+        BadInput: the host is no address of this machine, the port is taken, or `record` cannot be written.
     """
     access = access_through(host)
     must_be_free(access.host, port)
     meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
-    served = Served(loop, arm, scenario, meshes, access, port)
+    recording = LiveRecording(loop, record or Path())
+    if record is not None:
+        must_be_writable(record)
+        recording.start()
+    served = Served(loop, arm, scenario, meshes, access, port, recording)
     if open_browser:
         webbrowser.open(served.link)
     return served

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from app.log.reader import read
+
 COMMAND = [sys.executable, "-u", "-c", "from app.cli import main; main()", "serve"]
 
 
@@ -23,7 +25,8 @@ def cell(tmp_path: Path) -> Path:
 @pytest.fixture
 def served(cell: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """The process, and the line that says where the page is."""
-    process = subprocess.Popen([*COMMAND, "--config", str(cell), "--port", "0"], stdout=subprocess.PIPE, text=True)
+    options = ["--config", str(cell), "--port", "0", "--record", str(cell.parent / "logs")]
+    process = subprocess.Popen([*COMMAND, *options], stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     line = next(line for line in process.stdout if line.startswith("Serving"))
     yield process, line
@@ -31,7 +34,9 @@ def served(cell: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process.wait()
 
 
-def test_the_page_is_where_it_says_until_the_end_is_asked_for(served: tuple[subprocess.Popen[str], str]) -> None:
+def test_the_page_is_where_it_says_and_records_until_the_end_is_asked_for(
+    served: tuple[subprocess.Popen[str], str], cell: Path
+) -> None:
     process, line = served
     address = re.search(r"http://127\.0\.0\.1:\d+", line)
     assert address is not None
@@ -40,6 +45,12 @@ def test_the_page_is_where_it_says_until_the_end_is_asked_for(served: tuple[subp
         assert page.status == 200
     process.send_signal(signal.SIGTERM)
     assert process.wait(timeout=30) == 0
+    (path,) = (cell.parent / "logs").iterdir()
+    log = read(path)
+    assert log.whole
+    assert log.arm.name == "ur10e"
+    assert log.settings[0][1]["free_drive.period"] == 5.0
+    assert len(log.ticks) > 0
 
 
 def test_a_taken_port_is_refused_only_where_it_was_asked_for(served: tuple[subprocess.Popen[str], str]) -> None:

@@ -345,3 +345,14 @@ def test_it_asks_for_real_time_and_goes_on_where_that_is_refused(
     loop = running()
     until(lambda: loop.simulation.plant.tick > 10)
     assert asked == [(0, os.SCHED_RR, "simulation")]
+
+
+def test_a_watch_is_shown_every_tick() -> None:
+    loop = Loop(Ticker)
+    seen: list[int] = []
+    loop.watch = lambda simulation, decision: seen.append(simulation.plant.tick)
+    loop.start()
+    until(lambda: len(seen) > 20)
+    loop.watch = None
+    loop.stop()
+    assert seen == list(range(1, len(seen) + 1))

@@ -3,6 +3,7 @@
 import importlib
 import math
 import random
+import threading
 import time
 from collections import Counter
 from pathlib import Path
@@ -19,7 +20,7 @@ from app.checked import BadInput, convert
 from app.log import foxglove
 from app.log.playback import Player
 from app.log.reader import Log, read, repair
-from app.log.recorder import Recorder
+from app.log.recorder import AHEAD, BLOCK, SLOW, Recorder
 from app.prepare import prepare
 from app.runner import record, simulate
 from app.session import Session
@@ -184,6 +185,32 @@ def test_after_a_reset_the_log_counts_on(tmp_path: Path) -> None:
     assert read(tmp_path / "log.mcap").ticks.tolist() == list(range(1, 41))
 
 
+def test_a_recording_that_begins_later_counts_from_its_own_start(tmp_path: Path) -> None:
+    simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
+    for _ in range(30):
+        simulation.tick(IDLE)
+    with Recorder(tmp_path / "log.mcap", simulation, "t") as recorder:
+        for _ in range(20):
+            recorder.see(simulation, simulation.tick(IDLE))
+    log = read(tmp_path / "log.mcap")
+    assert log.ticks.tolist() == list(range(1, 21))
+    assert Player(log).end == pytest.approx(0.04)
+
+
+def test_a_slow_disk_ends_a_recording_that_must_not_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
+    recorder = Recorder(tmp_path / "log.mcap", simulation, "t", waits=False)
+    gate = threading.Event()
+    monkeypatch.setattr(recorder._writer, "pack", lambda block: gate.wait())
+    decision = simulation.tick(IDLE)
+    for _ in range(BLOCK * (AHEAD + 3)):
+        recorder.see(simulation, decision)
+    assert recorder.failure is SLOW
+    gate.set()
+    with pytest.raises(BadInput, match="the disk is too slow"):
+        recorder.close()
+
+
 @pytest.mark.parametrize("vector", [(3.0, 0.0, 0.0), (-3.0, 0.0, 0.0), (0.0, 5.0, 0.0), (1.0, -2.0, 3.0), (0.0, 0.0, -9.0)])
 def test_an_arrow_points_along_its_force(vector: tuple[float, float, float]) -> None:
     turn = foxglove.arrow((0.0, 0.0, 0.0), vector)["pose"]["orientation"]
@@ -265,7 +292,7 @@ def test_a_disk_that_fills_up_ends_the_recording_alone(tmp_path: Path, monkeypat
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(recorder._file, "flush", full)
+    monkeypatch.setattr(recorder._writer._file, "flush", full)
     for _ in range(300):
         recorder.see(simulation, simulation.tick(IDLE))
     with pytest.raises(BadInput, match="could not be written to its end"):

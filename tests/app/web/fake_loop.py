@@ -60,6 +60,7 @@ class FakeLoop:
 
     def __init__(self) -> None:
         self.desk = Desk()
+        self.watch: Any = None
         self.speed = 1.0
         self.paused = False
         self.actual_rate = 1.0

@@ -1,0 +1,169 @@
+"""Packs the blocks of a recording into messages and puts them into the file."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from app.checked import ABSENT, BadInput
+from app.events_file import line_of
+from app.library import mesh_path
+from app.log import foxglove, layout
+from app.log.block import Block, Picture
+from app.log.container import Container
+from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
+from app.versions import versions
+from pendant.events import Event
+from pendant.parameters import PARAMETERS
+from pendant.settings import describe, digest, limits_checksum, value_of
+from pendant.table import TABLE, render
+from sim.scenario import Plane, Scenario
+from sim.simulation import Simulation
+
+SINGLES = 4
+"""Numbers of /state that come one by one: speeds of tcp and elbow, gain, configured mass."""
+
+
+class Writer:
+    """The file of one recording.
+
+    Args:
+        path: of the file; one that is there is replaced.
+        simulation: what is recorded.
+        title: of the session.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+
+    def __init__(self, path: Path, simulation: Simulation, title: str) -> None:
+        self._names = ["foot", *simulation.arm.chain.joints, "flange"]
+        self._n = n = simulation.arm.n
+        self._file = Container(path, f"pendant {versions()['pendant']}")
+        try:
+            self._channels = self._declare(simulation, title)
+        except OSError as error:
+            raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
+        self._state_type = layout.record(layout.width(STATE, n), len(CODES))
+        self._truth_type = layout.record(layout.width(TRUTH, n), 0)
+        singles = layout.width(STATE, n) - 2 * len(PARAMETERS)
+        self._singles = slice(singles - SINGLES, singles)
+
+    def close(self) -> None:
+        """Write the end of the file. Raises OSError: the disk is full or gone."""
+        self._file.close()
+
+    def pack(self, block: Block) -> None:
+        """Write a block, as one chunk. Raises OSError: the disk is full or gone."""
+        for tick, settings in block.settings:
+            values = {row.name: value_of(settings, row.name) for row in describe()}
+            self._say("/settings", tick, {"tick": tick, "values": values})
+        for tick, event in block.events:
+            self._say("/events", tick, msgspec.to_builtins(line_of(Event(event.kind, tick, event.values))))
+            headline, guidance = render(event)
+            text = f"{headline} {guidance}".strip()
+            self._say("/log", tick, foxglove.line(tick, TABLE[event.kind].severity, text))
+        for picture in block.pictures:
+            self._draw(picture.tick, picture)
+        if block.singles:
+            block.numbers[:, self._singles] = block.singles
+        rows = [
+            self._records(self._state_type, "/state", block.ticks, block.numbers, block.codes),
+            self._records(self._truth_type, "/truth", block.ticks, block.truth, []),
+        ]
+        self._file.flush(rows)
+
+    def _records(
+        self, kind: np.dtype, topic: str, ticks: np.ndarray, numbers: np.ndarray, codes: list[tuple[int, ...]]
+    ) -> np.ndarray[Any, Any]:
+        """Whole message records, a row a tick."""
+        rows = np.zeros(len(ticks), dtype=kind)
+        rows["opcode"] = 5
+        rows["length"] = kind.itemsize - 9
+        rows["channel"] = self._channels[topic]
+        rows["sequence"] = ticks
+        rows["log_time"] = rows["publish_time"] = ticks * np.uint64(foxglove.NANOSECONDS)
+        rows["cdr"] = CDR
+        rows["tick"] = ticks
+        rows["numbers"] = numbers
+        if codes:
+            rows["codes"] = codes
+        return rows
+
+    def _draw(self, tick: int, picture: Picture) -> None:
+        objects = zip(self._objects, picture.objects.tolist(), strict=True)
+        frames = [*zip(self._names, picture.links.tolist(), strict=True), *objects]
+        payload = None if picture.payload is None else picture.payload.tolist()
+        if payload is not None:
+            frames.append(("payload", payload))
+        self._say("/tf", tick, foxglove.transforms(tick, frames))
+        arrows = [foxglove.arrow(point, force) for _, point, force, _ in picture.touches if any(force)]
+        entities = [foxglove.entity(tick, "touches", "world", arrows=arrows)]
+        if payload is not None:
+            radius = (max(picture.payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0)
+            entities.append(foxglove.entity(tick, "payload", "payload", spheres=[foxglove.ball(radius)]))
+        self._say("/scene", tick, foxglove.update(entities))
+        decision = picture.decision
+        content = {
+            "tick": tick,
+            "mode": decision.mode,
+            "safety": decision.safety.name,
+            "phase": decision.phase,
+            "periods": [period._asdict() for period in decision.periods],
+            "touches": [
+                {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
+            ],
+        }
+        self._say("/pendant", tick, content)
+
+    def _say(self, topic: str, tick: int, content: Any) -> None:
+        self._file.add(self._channels[topic], tick * foxglove.NANOSECONDS, msgspec.json.encode(content))
+
+    def _declare(self, simulation: Simulation, title: str) -> dict[str, int]:
+        """Channels, and what does not change: arm, scenario, versions; the shapes go into /robot."""
+        file, arm, scenario, n = self._file, simulation.arm, simulation.scenario, self._n
+        self._objects = [f"object {thing.name}" for thing in scenario.world]
+        file.note(
+            "run",
+            {
+                "title": title,
+                **versions(),
+                "robot": arm.name,
+                "seed": str(scenario.seed),
+                "settings": digest(simulation.settings),
+                "limits": limits_checksum(simulation.settings),
+            },
+        )
+        file.note("words", {name: " ".join(words) for name, words in WORDS.items()})
+        file.attach("arm.json", "application/json", msgspec.json.encode(arm))
+        file.attach("scenario.json", "application/json", msgspec.json.encode(scenario))
+        channels: dict[str, int] = {}
+        packed = {"/state": ("pendant/msg/State", STATE, CODES), "/truth": ("pendant/msg/Truth", TRUTH, ())}
+        for topic, (name, fields, codes) in packed.items():
+            channels[topic] = file.channel(topic, name, layout.schema(fields, n, codes), "cdr", "ros2msg")
+        drawn = {"/tf": "FrameTransforms", "/scene": "SceneUpdate", "/robot": "SceneUpdate", "/log": "Log"}
+        for topic, name in drawn.items():
+            schema = msgspec.json.encode(foxglove.SCHEMAS[f"foxglove.{name}"]).decode()
+            channels[topic] = file.channel(topic, f"foxglove.{name}", schema, "json", "jsonschema")
+        for topic, name in (("/pendant", "pendant.Pendant"), ("/events", "pendant.Event"), ("/settings", "pendant.Settings")):
+            schema = msgspec.json.encode({"title": name, "type": "object"}).decode()
+            channels[topic] = file.channel(topic, name, schema, "json", "jsonschema")
+        message = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
+        file.add(channels["/robot"], 0, message)
+        return channels
+
+    def _shapes(self, arm: str, scenario: Scenario) -> list[foxglove.Json]:
+        """What stands still in its own frame: links and world objects."""
+        entities = []
+        for part in self._names[:-1]:
+            try:
+                data = mesh_path(arm, part).read_bytes()
+            except BadInput:  # an arm of the user's own has no pictures
+                continue
+            entities.append(foxglove.entity(0, f"link {part}", part, models=[foxglove.model(data)]))
+        for name, thing in zip(self._objects, scenario.world, strict=True):
+            size = [3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size
+            entities.append(foxglove.entity(0, name, name, cubes=[foxglove.box(size)]))
+        return entities
