@@ -58,4 +58,5 @@ class Decision(msgspec.Struct, frozen=True):
     grip: Grip | None = None  # of the enabling device, None where none is used
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
+    zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
     limits: str = ""  # checksum of all limits

@@ -13,6 +13,7 @@ from pendant.enabling import Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.hand import Hand
+from pendant.joint_zones import JointZones
 from pendant.limits import Monitored
 from pendant.maintain import Maintained
 from pendant.modes import TICK, Mode, Phase
@@ -87,18 +88,20 @@ class FreeDrive:
         "_signal",
         "_total",
         "_verdict",
+        "_zones",
         "baseline",
         "caught",
         "phase",
         "use_wrench",
     )
 
-    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment) -> None:
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zones: JointZones) -> None:
         """
         Args:
             joints: the names used in events, base to flange.
             rated: torque of each joint [N·m].
             containment: walls and areas.
+            zones: before the joint limits.
         """
         self.phase = Phase.OFF
         self.baseline: tuple[float, ...] = ZEROS
@@ -122,6 +125,7 @@ class FreeDrive:
         self._pressed = -1  # ticks since a press that began in free-drive, -1 for the press that entered it
         self._maintained: Maintained | None = None
         self._containment = containment
+        self._zones = zones
         self._hand: Hand | None = None
         self._operation: Operation | None = None
         self._posture: tuple[float, ...] | None = None  # at activation (FD-22)
@@ -166,6 +170,11 @@ class FreeDrive:
     def damping(self) -> Damping | None:
         """Where free motion is resisted before a limit on its speed (FD-12b)."""
         return None if self._operation is None else self._operation.damping
+
+    @property
+    def zones(self) -> tuple[float, ...]:
+        """Torques that resist joints before the end of their ranges [N·m]; empty where none is (FD-4)."""
+        return self._zones.torque
 
     @property
     def helping(self) -> bool:
@@ -270,6 +279,7 @@ class FreeDrive:
         self.phase = Phase.OFF
         self._attempt = None
         self._containment.leave()
+        self._zones.leave()
 
     def _end_activation(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
@@ -334,6 +344,7 @@ class FreeDrive:
         self._hand = Hand(around.estimate, self.baseline)
         self._operation = Operation(around.estimate, settings, self.baseline, self._joints, self._rated)
         self._containment.enter(settings.walls)
+        self._zones.enter(settings.joint_limits)
         self._containment.step(around.estimate, *NOBODY)
         gain = settings.free_drive.gain if self.use_wrench else 0.0
         return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})
@@ -378,7 +389,8 @@ class FreeDrive:
         if reading is not None and not before:
             events.append(Event(Kind.WALL_REACHED, estimate.tick, facts(reading)))
         assert self._operation is not None
-        ending = self._operation.step(estimate, hand, self.use_wrench, self.caught)
+        self._zones.step(estimate)
+        ending = self._operation.step(estimate, hand, self.use_wrench, self.caught or self._zones.pushing)
         if ending is None:
             return False
         events.append(self._leave(ending.kind, estimate.tick, settings, ending.values))
@@ -452,6 +464,7 @@ class FreeDrive:
         self._operation = None
         self.caught = False
         self._containment.leave()
+        self._zones.leave()
         self._verdict.waiting = False
         self._blocked = self._held or bool(self._signal.source)
         if TABLE[kind].cool_down:

@@ -165,6 +165,15 @@ class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hard: Annotated[bool, _switch("FD-12b", "payload and drift lower the limits that end free-drive, too")] = False
 
 
+class JointLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Zones before the joint limits in free-drive."""
+
+    on: Annotated[bool, _switch("FD-4", "a joint is resisted before its range ends")] = True
+    damping_zone: Annotated[float, _number(0.01, 0.5, "rad", "FD-4", "where it is damped, before the stiff zone")] = 0.1
+    stiff_zone: Annotated[float, _number(0.01, 0.3, "rad", "FD-4", "up to the limit, where a spring holds it back")] = 0.05
+    damping: Annotated[float, _number(0.05, 0.4, "s/rad", "FD-4", "at the stiff zone, of rated torque at 1 rad/s")] = 0.25
+
+
 class Static(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """When the arm counts as standing still."""
 
@@ -277,6 +286,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     limits: Limits = Limits()
     unexplained: Unexplained = Unexplained()
     soft: Soft = Soft()
+    joint_limits: JointLimits = JointLimits()
     walls: Walls = Walls()
     static: Static = Static()
     joint_control: JointControl = JointControl()

@@ -14,6 +14,7 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.freedrive import FreeDrive, Surroundings, moving
 from pendant.inputs import Button, Command, Inputs
+from pendant.joint_zones import JointZones
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
@@ -79,6 +80,7 @@ class Supervisor:
         rated: tuple[float, ...] | None = None,
         borders: tuple[AnyBorder, ...] = (),
         frames: Mapping[str, Pose] | None = None,
+        ranges: tuple[float, ...] | None = None,
     ) -> None:
         """
         Args:
@@ -88,6 +90,7 @@ class Supervisor:
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
             borders: walls and areas; `pendant.walls.problem` has found nothing.
             frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
+            ranges: largest angle of each joint either way [rad]; None: joints turn without end.
         """
         self.settings = settings
         self._n = n_joints
@@ -112,7 +115,9 @@ class Supervisor:
         self._sequencer = Sequencer()
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
-        self._free = FreeDrive(self._joints, rated or (100.0,) * n_joints, Containment(borders, frames or {}))
+        rated = rated or (100.0,) * n_joints
+        zones = JointZones(rated, ranges or (math.inf,) * n_joints)
+        self._free = FreeDrive(self._joints, rated, Containment(borders, frames or {}), zones)
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -441,7 +446,7 @@ class Supervisor:
         law = self._law()
         self._holding = law is Law.HOLD and not free.caught
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
-        robot = (self._mode, self._safety, free.phase, law, free.helping, free.damping, grip, speeds)
+        robot = (self._mode, self._safety, free.phase, law, free.helping, free.damping, free.zones, grip, speeds)
         key = (*robot, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
@@ -471,6 +476,7 @@ class Supervisor:
             grip=grip,
             speed_limits=speeds,
             damping=free.damping,
+            zones=free.zones,
             limits=self._checksum,
         )
         self._key = key

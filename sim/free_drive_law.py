@@ -85,6 +85,8 @@ class FreeDriveLaw:
         for wall in decision.walls:
             if wall.force != ORIGIN:
                 _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
+        if decision.zones:
+            torque += decision.zones
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
         help = 1.0

@@ -67,8 +67,8 @@ class Simulation:
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow)
-        joints, rated = tuple(arm.chain.joints), tuple(arm.limits.torque)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario))
+        joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
+        self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario), ranges)
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor

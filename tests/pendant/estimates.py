@@ -32,6 +32,8 @@ def estimate(
     load_mass: float = 0.0,
     needed: list[float] | None = None,
     q: list[float] | None = None,
+    theta: list[float] | None = None,
+    theta_d: list[float] | None = None,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
@@ -49,8 +51,8 @@ def estimate(
         q=np.array(q or [0.0] * n),
         qd=np.array(vector(qd, n)),
         qdd=np.zeros(n),
-        theta=np.zeros(n),
-        theta_d=np.zeros(n),
+        theta=np.array(theta or [0.0] * n),
+        theta_d=np.array(theta_d or [0.0] * n),
         tau_m=np.zeros(n),
         tau_J=np.array(vector(tau_J, n)),
         tau_ext=np.array(vector(tau_ext, n)),
