@@ -4,11 +4,14 @@ import numpy as np
 from msgspec.structs import replace
 
 from pendant.decision import WallState
-from pendant.modes import Law, Phase
+from pendant.modes import Law, Mode, Phase
+from pendant.settings import Settings, apply
 from sim.adaptive_friction import AdaptiveFriction
 from sim.frames import joint_frames, rotation
 from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
+from sim.scenario import Scenario
 from tests.sim.arms import UR5E
+from tests.sim.bench import Bench, push
 from tests.sim.control import EXACT, N, decision, dynamics, estimate
 
 Q = np.array(UR5E.chain.home)
@@ -90,3 +93,42 @@ def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None
             step[i] = 1e-6
             moved = (points(Q + step)[part] - points(Q - step)[part]) / 2e-6
             assert abs(torque[i] - force @ moved) < 1e-6, (part, i)
+
+
+def test_before_the_end_of_a_joints_range_its_zone_is_added() -> None:
+    zones = (0.0, -20.0, 0.0, 3.0, 0.0, 0.0)
+    seen = estimate(q=Q, R_BF=R)
+    held = replace(decision(Law.FREE), zones=zones)
+    torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True)
+    np.testing.assert_allclose(torque - GRAVITY, zones, atol=1e-9)
+
+
+def ranged(base: float) -> Bench:
+    """In free-drive with the base at this angle [rad], stretched enough that a push sideways is a large torque."""
+    settings = apply(Settings(), {"activation.period": 0.1, "free_drive.period": 30.0})
+    bench = Bench(Scenario(seed=4, posture=[base, -1.2, 1.5, -1.87, -1.57, 0.0]), settings=settings)
+    bench.enter()
+    return bench
+
+
+def test_a_push_of_50_newtons_into_the_end_of_a_range_is_held() -> None:
+    bench = ranged(5.9)
+    highest = 0.0
+    for _ in range(500):
+        sideways = bench.plant.q[0] - np.pi / 2.0
+        bench.run(0.004, push("flange", (50.0 * np.cos(sideways), 50.0 * np.sin(sideways), 0.0)))
+        highest = max(highest, float(bench.plant.q[0]))
+    assert bench.mode is Mode.FREE_DRIVE
+    assert 6.233 < highest < 2.0 * np.pi
+    bench.run(0.5)
+    assert bench.mode is Mode.FREE_DRIVE
+    assert highest - 0.1 < bench.plant.q[0], "let go, it comes out of the zone and no further than its width"
+
+
+def test_an_arm_freed_within_the_zone_stands_and_comes_out_freely() -> None:
+    bench = ranged(6.275)
+    start = bench.plant.q.copy()
+    bench.run(1.0)
+    assert np.abs(bench.plant.q - start).max() < 1e-3
+    bench.run(0.5, push("flange", (0.0, 15.0, 0.0)))
+    assert bench.plant.q[0] < 6.2
