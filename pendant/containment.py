@@ -3,6 +3,8 @@
 import math
 from collections.abc import Mapping
 
+from msgspec.structs import replace
+
 from pendant.barrier import Around, Consequence, Part, Place, Reading
 from pendant.decision import WallState
 from pendant.enclosure import Enclosure, worst
@@ -121,6 +123,7 @@ class Containment:
 
     def _build(self, walls: Walls) -> Enclosure | None:
         borders = self._borders if not walls.tether else (tether(walls), *self._borders)
+        borders = tuple([_switched(border, walls) for border in borders])
         if not walls.on or not borders:
             return None
         self._parts = tuple({border.part for border in borders})
@@ -129,6 +132,17 @@ class Containment:
             border.size is not None or (isinstance(border, Wall) and border.safety_dependence is not None) for border in borders
         )
         return Enclosure(borders)
+
+
+def _switched(border: AnyBorder, walls: Walls) -> AnyBorder:
+    """The border without what is switched off."""
+    if not walls.resistance:
+        border = replace(border, band=0.0)
+    if not walls.sizes and border.size is not None:
+        border = replace(border, size=replace(border.size, at_low=border.least, at_high=border.least))
+    if not walls.anew and isinstance(border, Wall):
+        border = replace(border, policy=Policy.FIXED)
+    return border
 
 
 def facts(reading: Reading) -> Values:

@@ -18,6 +18,7 @@ class Reference(NamedTuple):
     position: tuple[float, ...]  # of the flange in B [m]
     wrench: tuple[float, ...]  # F_user [N, N·m]
     torques: tuple[float, ...]  # tau_ext [N·m]
+    angles: tuple[float, ...]  # q [rad]
 
 
 class View(NamedTuple):
@@ -72,13 +73,34 @@ def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
     return view.estimate.v_elbow, "elbow"
 
 
+def _joint_displacement(view: View, _: Gauge) -> tuple[float, str]:
+    return _largest([now - then for now, then in zip(view.estimate.q.tolist(), view.since.angles, strict=True)], view)
+
+
 def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base * view.speed_share
-    speeds = view.estimate.qd.tolist()
-    fastest, slowest = max(speeds), min(speeds)
-    if fastest >= -slowest:
-        return fastest, view.joints[speeds.index(fastest)]
-    return -slowest, view.joints[speeds.index(slowest)]
+    return _largest(view.estimate.qd.tolist(), view)
+
+
+def _joint_acceleration(view: View, _: Gauge) -> tuple[float, str]:
+    return _largest(view.estimate.qdd.tolist(), view)
+
+
+def _largest(values: list[float], view: View) -> tuple[float, str]:
+    """The largest in size, and its joint."""
+    most, least = max(values), min(values)
+    if most >= -least:
+        return most, view.joints[values.index(most)]
+    return -least, view.joints[values.index(least)]
+
+
+def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+    """The motor that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
+    torques = view.estimate.tau_m.tolist()
+    _, part = _largest([torque / rated for torque, rated in zip(torques, view.scale, strict=True)], view)
+    joint = view.joints.index(part)
+    gauge.high = gauge.base * view.scale[joint]
+    return abs(torques[joint]), part
 
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
@@ -133,7 +155,10 @@ PARAMETERS: dict[str, Parameter] = {
     "flange_acceleration": Parameter("flange acceleration", "m/s²", _flange_acceleration, acceleration=True),
     "tcp_speed": Parameter("tcp speed", "m/s", _tcp_speed),
     "elbow_speed": Parameter("elbow speed", "m/s", _elbow_speed),
+    "joint_displacement": Parameter("joint displacement", "rad", _joint_displacement),
     "joint_speed": Parameter("joint speed", "rad/s", _joint_speed),
+    "joint_acceleration": Parameter("joint acceleration", "rad/s²", _joint_acceleration),
+    "motor_torque": Parameter("motor torque", "N·m", _motor_torque),
     "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
     "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
     "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),
@@ -185,4 +210,4 @@ class Monitor:
 def reference(estimate: Estimate, use_wrench: bool) -> Reference:
     """What is stored when a period begins."""
     wrench = tuple(estimate.F_user.tolist()) if use_wrench else ZEROS
-    return Reference(tuple(estimate.p_BF.tolist()), wrench, tuple(estimate.tau_ext.tolist()))
+    return Reference(tuple(estimate.p_BF.tolist()), wrench, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist()))

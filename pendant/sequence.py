@@ -46,7 +46,8 @@ class Sequence:
         self._scale = rated
         self._share = limits.load_share
         # Torques are judged as they are, not as changes: what was wrong before is what is looked for.
-        self._since = Reference(tuple(estimate.p_BF.tolist()), ZEROS, (0.0,) * len(joints))
+        place, angles = tuple(estimate.p_BF.tolist()), tuple(estimate.q.tolist())
+        self._since = Reference(place, ZEROS, (0.0,) * len(joints), angles)
         self._wrench = seen.wrench_ok
         self._acceleration = estimate.acceleration_valid
         self._up: Vector = upward(estimate.g_B.tolist())

@@ -106,7 +106,12 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
     flange_displacement: Annotated[Limit, _limit(0.0005, 0.01, "m", "FD-9", "way of the flange")] = Limit(max=0.002)
     flange_speed: Annotated[Limit, _limit(0.002, 0.1, "m/s", "FD-9", "speed of the flange")] = Limit(max=0.02)
     flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-9", "acceleration of the flange")] = Limit(max=1.5)
+    joint_displacement: Annotated[Limit, _limit(0.0005, 0.1, "rad", "FD-9", "way of a joint")] = Limit(max=0.01, on=False)
     joint_speed: Annotated[Limit, _limit(0.01, 0.5, "rad/s", "FD-9", "speed of a joint")] = Limit(max=0.05)
+    joint_acceleration: Annotated[Limit, _limit(0.5, 50.0, "rad/s²", "FD-9", "acceleration of a joint")] = Limit(
+        max=5.0, on=False
+    )
+    motor_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "torque of a motor")] = Limit(max=0.9, on=False)
     joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "external torque of a joint")] = Limit(max=0.04)
     payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force as of a wrong payload")] = Limit(max=5.3)
     payload_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque as of a wrong payload")] = Limit(max=1.5)
@@ -247,6 +252,9 @@ class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
 
     on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True
+    anew: Annotated[bool, _switch("VW-3", "walls are anchored anew as their policies say")] = True
+    sizes: Annotated[bool, _switch("VW-8", "sizes follow posture or payload, or the smallest holds")] = True
+    resistance: Annotated[bool, _switch("VW-7", "walls resist before they are reached")] = True
     tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True
     activation_radius: Annotated[float, _number(0.001, 0.1, "m", "VW-6", "of the tether in the activation sequence")] = 0.005
     operation_radius: Annotated[float, _number(0.005, 1.0, "m", "VW-6", "of the tether in free-drive; the arm stops at it")] = (

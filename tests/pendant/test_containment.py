@@ -248,6 +248,41 @@ def test_a_size_follows_posture_and_payload(measure: Measure, seen: Estimate, fa
     assert state.distance == pytest.approx(-0.2 * factor)
 
 
+def test_without_sizes_the_smallest_holds() -> None:
+    """VW-8; a constant wall keeps its size."""
+    size = Dependence(measure=Measure.REACH, low=0.0, high=0.5, at_low=1.0, at_high=0.5)
+    borders = (
+        Wall(name="w", shape=Sphere(radius=0.2), activation_size=1.0, size=size),
+        Wall(name="c", shape=Sphere(radius=0.2), activation_size=1.0),
+    )
+    for sizes, distance in ((True, -0.2), (False, -0.1)):
+        containment = Containment(borders, {})
+        containment.begin(Start.SEQUENCE, Walls(tether=False, sizes=sizes))
+        containment.step(at(0.0), *NOBODY)
+        assert [state.distance for state in containment.states()] == pytest.approx([distance, -0.2])
+
+
+@pytest.mark.parametrize(("anew", "law"), [(True, Law.FREE), (False, Law.HOLD)])
+def test_without_new_anchors_a_hand_reaches_the_tether(anew: bool, law: Law) -> None:
+    """VW-3 to VW-5."""
+    bench = Bench(walls__anew=anew).entered()
+    bench.run(50, NOTHING, at(0.0, force=10.0))
+    decision = bench.step()
+    for k in range(1, 200):
+        decision = bench.step(NOTHING, at(0.0002 * k, force=10.0))
+        if decision.law is not Law.FREE:
+            break
+    assert decision.law is law
+
+
+@pytest.mark.parametrize(("resistance", "near"), [(True, 0.5), (False, 0.0)])
+def test_without_resistance_walls_and_areas_have_no_band(resistance: bool, near: float) -> None:
+    """VW-7."""
+    bench = Bench(FLOOR, walls__tether=False, walls__resistance=resistance).entered()
+    (state,) = bench.step(NOTHING, at(0.0, 0.0, -0.09)).walls
+    assert state.near == pytest.approx(near)
+
+
 def test_what_cannot_be_told_is_refused_and_not_drawn() -> None:
     containment = Containment((Area(name="gone", reference="nowhere", shape=Sphere(radius=1.0)),), {})
     containment.begin(Start.SEQUENCE, Walls(tether=False))

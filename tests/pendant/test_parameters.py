@@ -10,7 +10,7 @@ from pendant.parameters import PARAMETERS, ZEROS, Monitor, Reference, View, refe
 from pendant.residual import split
 from pendant.settings import Limit, Section, Settings
 from tests.pendant.estimates import estimate
-from tests.pendant.test_settings import LIMITS
+from tests.pendant.test_settings import LIMITS, OFF
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
@@ -18,7 +18,7 @@ RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
 
 def view(value, since: Reference | None = None, scale: tuple[float, ...] = RATED, share: float = 0.0) -> View:
     parts = split(value.F_user.tolist(), (0.0, 0.0, 1.0))
-    return View(value, since or Reference((0.0,) * 3, ZEROS, (0.0,) * 6), parts, JOINTS, scale, share)
+    return View(value, since or Reference((0.0,) * 3, ZEROS, (0.0,) * 6, (0.0,) * 6), parts, JOINTS, scale, share)
 
 
 def test_every_limit_of_every_stage_is_of_a_parameter() -> None:
@@ -32,18 +32,22 @@ def test_sizes(seed: int) -> None:
     rng = np.random.default_rng(seed)
     value = estimate(v_tcp=0.7, v_elbow=0.3)
     value.p_BF, value.a_F, value.g_B = rng.normal(size=(3, 3))
-    value.v_F, value.qd, value.F_user = rng.normal(size=(3, 6))
+    value.v_F, value.q, value.qd, value.qdd, value.F_user, value.tau_m = rng.normal(size=(6, 6))
     value.R_BF = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    start = rng.normal(size=3)
-    since = Reference(tuple(start), ZEROS, (0.0,) * 6)
-    fastest = int(np.abs(value.qd).argmax())
+    start, angles = rng.normal(size=3), rng.normal(size=6)
+    since = Reference(tuple(start), ZEROS, (0.0,) * 6, tuple(angles))
+    fastest, quickest, furthest = (int(np.abs(each).argmax()) for each in (value.qd, value.qdd, value.q - angles))
+    strained = int((np.abs(value.tau_m) / RATED).argmax())
     expected = {
         "flange_displacement": (np.linalg.norm(value.p_BF - start), "flange"),
         "flange_speed": (np.linalg.norm(value.v_F[:3]), "flange"),
         "flange_acceleration": (np.linalg.norm(value.R_BF @ value.a_F + value.g_B), "flange"),
         "tcp_speed": (0.7, "tcp"),
         "elbow_speed": (0.3, "elbow"),
+        "joint_displacement": (abs(value.q[furthest] - angles[furthest]), JOINTS[furthest]),
         "joint_speed": (abs(value.qd[fastest]), JOINTS[fastest]),
+        "joint_acceleration": (abs(value.qdd[quickest]), JOINTS[quickest]),
+        "motor_torque": (abs(value.tau_m[strained]), JOINTS[strained]),
         "payload_force": (value.F_user[2], "flange"),
         "payload_torque": (math.hypot(*value.F_user[3:5]), "flange"),
         "user_force": (math.hypot(*value.F_user[:2]), "flange"),
@@ -62,7 +66,7 @@ def test_the_joint_nearest_to_its_own_limit_counts(seed: int) -> None:
     value = estimate()
     value.tau_ext, value.tau_J = rng.normal(0.0, 5.0, (2, 6))
     before = rng.normal(0.0, 2.0, 6)
-    since = Reference((0.0,) * 3, ZEROS, tuple(before))
+    since = Reference((0.0,) * 3, ZEROS, tuple(before), (0.0,) * 6)
     gauge = Gauge("joint external torque", "N·m", high=0.04)
     size, part = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), gauge)
     limits = 0.04 * np.array(RATED) + 0.25 * np.abs(value.tau_J)
@@ -85,7 +89,7 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
     assert isinstance(section, Section)
     monitor = Monitor(section)
     assert monitor.step(view(estimate())) == []
-    names = [PARAMETERS[name].text for name in PARAMETERS if name in LIMITS[stage]]
+    names = [PARAMETERS[name].text for name in PARAMETERS if name in LIMITS[stage] and f"{stage}.{name}" not in OFF]
     assert [item.name for item in monitor.monitored()] == names
     blind = Monitor(section)
     value = estimate(acceleration=90.0, force=95.0, torque=15.0, acceleration_valid=False)
@@ -97,6 +101,17 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
     for _ in range(51):
         beyond = seeing.step(view(value))
     assert {gauge.name for gauge in beyond} >= {"flange acceleration", "user force"}
+
+
+def test_a_motor_is_judged_by_its_rated_torque() -> None:
+    gauge = Gauge("motor torque", "N·m", high=0.5)
+    value = estimate()
+    value.tau_m[1], value.tau_m[4] = -60.0, 13.0
+    assert PARAMETERS["motor_torque"].read(view(value), gauge) == (13.0, "wrist_2")
+    assert gauge.high == 14.0
+    value.tau_m[1] = -72.0
+    assert PARAMETERS["motor_torque"].read(view(value), gauge) == (72.0, "shoulder")
+    assert gauge.high == 75.0
 
 
 def test_limits_carry_reaction_and_time() -> None:
@@ -114,6 +129,7 @@ def test_limits_carry_reaction_and_time() -> None:
 
 def test_a_reference_is_what_is_so_now() -> None:
     value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-    torques = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    assert reference(value, use_wrench=True) == Reference((1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques)
-    assert reference(value, use_wrench=False) == Reference((1.0, 2.0, 3.0), ZEROS, torques)
+    value.q[2] = 0.5
+    torques, angles = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.0, 0.5, 0.0, 0.0, 0.0)
+    assert reference(value, use_wrench=True) == Reference((1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques, angles)
+    assert reference(value, use_wrench=False) == Reference((1.0, 2.0, 3.0), ZEROS, torques, angles)

@@ -45,6 +45,9 @@ EXPECTED = {
     "unexplained.time": (0.3, 0.02, 2.0, "s", "FD-19", True),
     "unexplained.force": (1.5, 0.5, 20.0, "N", "FD-19", True),
     "walls.on": (True, None, None, "", "FD-24", True),
+    "walls.anew": (True, None, None, "", "VW-3", True),
+    "walls.sizes": (True, None, None, "", "VW-8", True),
+    "walls.resistance": (True, None, None, "", "VW-7", True),
     "walls.tether": (True, None, None, "", "VW-4", True),
     "walls.activation_radius": (0.005, 0.001, 0.1, "m", "VW-6", True),
     "walls.operation_radius": (0.03, 0.005, 1.0, "m", "VW-6", True),
@@ -126,7 +129,10 @@ LIMITS = {
         "flange_displacement": (0.002, 0.0005, 0.01, "m", "FD-9"),
         "flange_speed": (0.02, 0.002, 0.1, "m/s", "FD-9"),
         "flange_acceleration": (1.5, 0.5, 20.0, "m/s²", "FD-9"),
+        "joint_displacement": (0.01, 0.0005, 0.1, "rad", "FD-9"),
         "joint_speed": (0.05, 0.01, 0.5, "rad/s", "FD-9"),
+        "joint_acceleration": (5.0, 0.5, 50.0, "rad/s²", "FD-9"),
+        "motor_torque": (0.9, 0.01, 1.0, "of rated", "FD-9"),
         "joint_torque": (0.04, 0.01, 1.0, "of rated", "FD-9"),
         "payload_force": (5.3, 1.0, 50.0, "N", "FD-9"),
         "payload_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
@@ -154,6 +160,7 @@ LIMITS = {
 """Stage, parameter: default, low, high, unit, requirement."""
 
 TIMES = {"operation.user_force": 0.1, "operation.joint_torque": 0.05}
+OFF = {"activation.joint_displacement", "activation.joint_acceleration", "activation.motor_torque"}
 STOPS = {"operation.flange_acceleration", "operation.joint_torque"}
 
 for stage, parameters in LIMITS.items():
@@ -161,7 +168,7 @@ for stage, parameters in LIMITS.items():
         where = f"{stage}.{parameter}"
         EXPECTED[f"limits.{where}.max"] = (*cell, True)
         EXPECTED[f"limits.{where}.time"] = (TIMES.get(where, 0.0), 0.0, 2.0, "s", "FD-12a", True)
-        EXPECTED[f"limits.{where}.on"] = (True, None, None, "", "FD-25", True)
+        EXPECTED[f"limits.{where}.on"] = (where not in OFF, None, None, "", "FD-25", True)
         if stage == "operation":
             EXPECTED[f"limits.{where}.stop"] = (where in STOPS, None, None, "", "FD-18", True)
 TERMS = {
