@@ -99,7 +99,7 @@ class Hand:
     def tick(self, *touches: Touch) -> Array:
         """One tick; the force (3,) of the first touch, in W [N]."""
         self.simulation.tick(Wishes(NOTHING, touches, ()))
-        return np.array(self.plant.touched[0][2]) if touches else np.zeros(3)
+        return np.array(self.plant.hands.touched[0][2]) if touches else np.zeros(3)
 
     def wait(self, seconds: float) -> None:
         """Hands off."""

@@ -42,9 +42,18 @@ class Enclosure:
 
 def worst(readings: tuple[Reading, ...]) -> Reading | None:
     """The reading with the gravest consequence, the one furthest out among equals; None when nothing follows."""
-    grave = [reading for reading in readings if reading.consequence is not Consequence.NONE]
-    return max(grave, key=lambda reading: (reading.consequence, reading.distance), default=None)
+    gravest = None
+    for reading in readings:
+        consequence = reading.consequence
+        if consequence is _NONE:
+            continue
+        if gravest is None or (consequence, reading.distance) > (gravest.consequence, gravest.distance):
+            gravest = reading
+    return gravest
 
 
 def _start(border: AnyBorder) -> Start:
     return border.anchored_at if isinstance(border, Wall) else Start.SEQUENCE
+
+
+_NONE = Consequence.NONE  # looked up in every tick

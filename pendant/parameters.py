@@ -175,36 +175,36 @@ class Monitor:
 
     def __init__(self, limits: Section) -> None:
         """`limits`: a section of `pendant.settings.Limits`."""
-        self._gauges: list[tuple[Parameter, Gauge]] = []
+        self._gauges: list[tuple[Reader, bool, bool, Gauge]] = []  # how it is read, what sensors it needs
         for name, parameter in PARAMETERS.items():
             limit = getattr(limits, name, None)
             if isinstance(limit, Limit) and limit.on:
                 stop = bool(getattr(limit, "stop", False))
                 low = -limit.max if parameter.signed else -math.inf
                 gauge = Gauge(parameter.text, parameter.unit, low=low, high=limit.max, allowed=ticks(limit.time), stop=stop)
-                self._gauges.append((parameter, gauge))
+                self._gauges.append((parameter.read, parameter.wrench, parameter.acceleration, gauge))
 
     def step(self, view: View) -> list[Gauge]:
         """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
         beyond: list[Gauge] = []
         no_wrench = view.split is None
         no_acceleration = not view.estimate.acceleration_valid
-        for parameter, gauge in self._gauges:
-            if (no_wrench and parameter.wrench) or (no_acceleration and parameter.acceleration):
+        for read, wrench, acceleration, gauge in self._gauges:
+            if (no_wrench and wrench) or (no_acceleration and acceleration):
                 continue
-            value, part = parameter.read(view, gauge)
+            value, part = read(view, gauge)
             if gauge.judge(value, part):
                 beyond.append(gauge)
         return beyond
 
     def monitored(self) -> tuple[Monitored, ...]:
         """The values of the last step against their limits; without those that could not be read."""
-        return tuple([gauge.monitored for _, gauge in self._gauges if gauge.part])
+        return tuple([gauge.monitored for *_, gauge in self._gauges if gauge.part])
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return tuple([gauge.memory for _, gauge in self._gauges])
+        return tuple([gauge.memory for *_, gauge in self._gauges])
 
 
 def reference(estimate: Estimate, use_wrench: bool) -> Reference:

@@ -118,7 +118,7 @@ class Estimator:
                 _plan(*self._wanted, *answered, theta, q)
             self._wanted = answered
             _follow(angles, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._deflection)
-            self.q = angles[1]
+            self.q = angles[1].copy()  # a law may hold on to it
         self._started = angles is not None
         qd = q[1]
         rigid = dynamics.recursion

@@ -76,7 +76,9 @@ class Plant:
         self._addresses = np.stack(at)
         self._bias = model.actuator_biasprm
         # MuJoCo's own arrays: asking for one costs as much as a kernel.
-        self._state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
+        state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
+        own = (self.q, self.theta, self.qd, self.theta_d, self.tau_J)
+        self._gathered = (*state, self._addresses, *self._springs_of, *own)
         self._applied, self._measured = data.qfrc_applied, data.history
         self.hands = Hands(model, data, self._parts)
         self.load = scenario.payload_true
@@ -155,10 +157,8 @@ class Plant:
             self.friction_in += self._brakes
         _drive(self._bias, self._rubs, self.friction_in, self._applied, self._dof_theta, motor_torque)
         mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
-        _mean(self._measured, self._history, self.flange)
-        self._read()
+        _finish(self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
         self.tick += 1
-        _add_loss(self._heat, self.friction_in, self.theta_d)
         if self.tick % WARMTH_TICKS == 0:
             self._warm()
         if self.fallen is not None:
@@ -280,16 +280,15 @@ class Plant:
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""
-        _gather(*self._state, self._addresses, *self._springs_of, self.q, self.theta, self.qd, self.theta_d, self.tau_J)
+        _gather(self._gathered)
 
 
 # Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
 
 
 @numba.njit(cache=True)
-def _gather(
-    qpos, qvel, length, rate, plastic, at, stiffness, cubic, damping, slip_stiffness, q, theta, qd, theta_d, tau_J
-) -> None:
+def _gather(gathered) -> None:
+    qpos, qvel, length, rate, plastic, at, stiffness, cubic, damping, slip_stiffness, q, theta, qd, theta_d, tau_J = gathered
     for i in range(q.size):
         q[i], theta[i] = qpos[at[0, i]], qpos[at[1, i]]
         qd[i], theta_d[i] = qvel[at[2, i]], qvel[at[3, i]]
@@ -323,15 +322,14 @@ def _drive(bias, rows, friction, applied, at, torque) -> None:
 
 
 @numba.njit(cache=True)
-def _mean(history, at, out) -> None:
-    for j in range(out.size):
+def _finish(gathered, history, at, flange, heat, friction) -> None:
+    """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
+    _gather(gathered)
+    for j in range(flange.size):
         total = 0.0
         for k in range(at.shape[0]):
             total += history[at[k, j]]
-        out[j] = total / at.shape[0]
-
-
-@numba.njit(cache=True)
-def _add_loss(heat, torque, speed) -> None:
+        flange[j] = total / at.shape[0]
+    speed = gathered[13]
     for i in range(heat.size):
-        heat[i] += abs(torque[i] * speed[i])
+        heat[i] += abs(friction[i] * speed[i])

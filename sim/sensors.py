@@ -22,7 +22,7 @@ TEMPERATURE_TICKS = 50  # a temperature is read every 0.1 s
 
 @dataclass(slots=True)
 class Sample:
-    """One tick's measurements, n joints; a channel that is out is not a number."""
+    """One tick's measurements, n joints; a channel that is out is not a number. Arrays are good until the next tick's arrive."""
 
     values: Array  # (3n + 18,) all of the below in one row
     theta: Array  # (n,) motor encoders, referred to the output [rad]
@@ -83,7 +83,9 @@ class Sensors:
         self._noise = np.empty((NOISE_BLOCK, size))
         self._temperature_sensor = sensors.temperature
         self._temperature = np.zeros(n)
-        self._line: list[Array] = []
+        self._rows = [_sample(np.empty(size), n) for _ in range(LATENCY + 2)]  # on their way, and the last that arrived
+        self._next = 0
+        self._line: list[Sample] = []
         self._ripple, self._ripple_phase = calibration.ripple, calibration.ripple_phase
         self._any_out = bool(self._out.any())
         self._suspect = 0  # samples yet to arrive that may hold what is not a number
@@ -123,7 +125,9 @@ class Sensors:
             self._noise *= self._sigma
         if plant.tick % TEMPERATURE_TICKS == 0 or not self._line:
             self._read_temperature(plant)
-        value = np.empty_like(self._bias)
+        self._next = (self._next + 1) % len(self._rows)
+        sample = self._rows[self._next]
+        value = sample.values
         truth = (plant.theta, plant.q, current, plant.flange)
         distortion = (self._calibration.wrench_gain, self._ripple, self._ripple_phase)
         channel = (self._bias, self._drifts, self._noise[row], self._gain, self._quantum, self._range)
@@ -132,40 +136,49 @@ class Sensors:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
         line = self._line
-        line.append(value)
+        line.append(sample)
         if len(line) > LATENCY + 1:
             line.pop(0)
-        return self._sample(line[0])
+        return self._arrive(line[0])
 
     def _read_temperature(self, plant: Plant) -> None:
         sensor = self._temperature_sensor
         noisy = plant.temperature + sensor.noise * self._rng.standard_normal(self._n)
         self._temperature = np.rint(noisy / sensor.quantum) * sensor.quantum
 
-    def _sample(self, values: Array) -> Sample:
-        n = self._n
-        k = 3 * n + 6
-        joints = wrench = acceleration = True
+    def _arrive(self, sample: Sample) -> Sample:
+        """What is known of a sample when it arrives."""
+        sample.temperature = self._temperature
         if self._suspect:
             self._suspect -= 1
-            joints = bool(np.isfinite(values[: 3 * n]).all())
-            wrench = bool(np.isfinite(values[3 * n : k]).all())
-            acceleration = bool(np.isfinite(values[k:]).all())
-        return Sample(
-            values,
-            values[:n],
-            values[n : 2 * n],
-            values[2 * n : 3 * n],
-            values[3 * n : k],
-            values[k : k + 3],
-            values[k + 3 : k + 6],
-            values[k + 6 : k + 9],
-            values[k + 9 :],
-            self._temperature,
-            joints,
-            wrench,
-            acceleration,
-        )
+            joints, flange = 3 * self._n, 3 * self._n + 6
+            sample.joints_valid = bool(np.isfinite(sample.values[:joints]).all())
+            sample.wrench_valid = bool(np.isfinite(sample.values[joints:flange]).all())
+            sample.acceleration_valid = bool(np.isfinite(sample.values[flange:]).all())
+        else:
+            sample.joints_valid = sample.wrench_valid = sample.acceleration_valid = True
+        return sample
+
+
+def _sample(values: Array, n: int) -> Sample:
+    """A sample of `n` joints whose arrays are parts of `values`."""
+    theta, q, current, rest = values[:n], values[n : 2 * n], values[2 * n : 3 * n], values[3 * n :]
+    wrench, arm_side, tool_side = rest[:6], rest[6:12], rest[12:]
+    return Sample(
+        values,
+        theta,
+        q,
+        current,
+        wrench,
+        arm_side[:3],
+        arm_side[3:],
+        tool_side[:3],
+        tool_side[3:],
+        np.zeros(n),
+        True,
+        True,
+        True,
+    )
 
 
 @numba.njit(cache=True)

@@ -1,5 +1,6 @@
 """Sensors: noise, quantisation, saturation, lateness, faults, and that they average what they should."""
 
+import copy
 from types import SimpleNamespace
 
 import msgspec
@@ -66,7 +67,7 @@ def sensors(seed: int = 1, errors: calibration.Calibration | None = None) -> Sen
 
 def read(device: Sensors, plant: Still) -> Sample:
     """One tick."""
-    sample = device.read(plant, plant.current)
+    sample = copy.deepcopy(device.read(plant, plant.current))
     plant.tick += 1
     return sample
 
