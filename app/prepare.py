@@ -57,6 +57,12 @@ FEATURES: dict[str, dict[str, float | bool]] = {
     "FD-14": {"free_drive.period": 30.0},  # longer than a session: nothing ends by itself
     "FD-15": {"free_drive.restart_period": 30.0},
     "FD-18": dict.fromkeys([f"limits.operation.{name}.on" for name in OperationLimits.__struct_fields__], False),
+    "CD-11": {  # as with no payload
+        "contact.payload_error": 0.0,
+        "contact.hard_payload": 0.0,
+        "contact.slow_payload": 0.0,
+        "contact.ratio_share": 0.05,
+    },
     "AF-2": {"joint_control.adaptive": False},
     "AF-4": {"joint_control.feed_forward": False},
     "AF-7": {"joint_control.friction": False},

@@ -13,8 +13,12 @@ class Confirmation:
         """Forget what was seen."""
         self._seen = 0
 
-    def step(self, seen: bool, count: int, misses: int) -> bool:
-        """Take in one tick: True where `count` of the last `count + misses` ticks saw it, this one too."""
-        bits = ((self._seen << 1) | seen) & ((1 << (count + misses)) - 1)
+    def step(self, sightings: int, count: int, misses: int) -> bool:
+        """Take in one tick: True where it holds a sighting and the last `count + misses` hold `count` of them.
+
+        A tick without one counts as one miss, a tick with several as so many ticks.
+        """
+        bits = (self._seen << sightings) | ((1 << sightings) - 1) if sightings else self._seen << 1
+        bits &= (1 << (count + misses)) - 1
         self._seen = bits
-        return seen and bits.bit_count() >= count
+        return sightings > 0 and bits.bit_count() >= count

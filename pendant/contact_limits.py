@@ -5,7 +5,6 @@ from typing import NamedTuple
 from pendant.modes import Mode
 from pendant.settings import ContactUse
 
-GRAVITY = 9.81
 LIGHTEST = 0.3
 """Carried mass below which the ratio's threshold does not follow it: a bare flange has hardly any [kg] (CD-5)."""
 ARM_SHARE = 0.3
@@ -21,9 +20,11 @@ class ContactLimits(NamedTuple):
     cosine_sq: float  # of the angle limit
     force_sq: float  # difference rule (CD-4) [N²]
     acceleration_sq: float  # [m²/s⁴]
+    clear_force: float  # contact force that needs no second tick, for a payload that is right (CD-9) [N]
+    clear_acceleration_sq: float  # [m²/s⁴]
     ratio: float  # ratio rule: beyond minus this (CD-5) [kg]
     ratio_acceleration_sq: float  # its second threshold [m²/s⁴]
-    value_force: float  # instant rule (CD-3) [N]
+    value_force: float  # instant rule, beside what a wrong payload explains (CD-3) [N]
     value_acceleration: float  # [m/s²]
     confidence_sq: float  # statistical rule: standard errors, squared (CD-6)
     force_variance: float  # least, of one axis, that the buffer is taken to have [N²]
@@ -55,17 +56,21 @@ def limits(use: ContactUse, mass: float, effective_mass: float, speed: float, mo
     pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
     noisy = use.noise_limit * pair
     hard = use.hard_limit * pair * scale
+    # The acceleration of a load off the axis comes later than its force: when the arm vibrates, they lie against each other.
+    mismatch = scale * use.hard_payload * mass
     margin = use.link_margin if link else use.payload_error * mass
     return ContactLimits(
         (noisy * noise_f) ** 2,
         (noisy * noise_a) ** 2,
         use.opposite,
         use.angle**2,
-        (hard * noise_f) ** 2,
+        (hard * noise_f + mismatch) ** 2,
         (hard * noise_a) ** 2,
+        scale * use.clear_limit * pair * (noise_f * noise_f + mass * mass * noise_a * noise_a) ** 0.5,
+        (use.clear_acceleration * scale) ** 2,
         scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
         (use.ratio_acceleration * scale) ** 2,
-        scale * (use.value_force + margin * GRAVITY),
+        scale * use.value_force,
         use.value_acceleration * scale,
         (use.confidence * scale) ** 2,
         noise_f * noise_f,

@@ -38,7 +38,8 @@ def for_links(use: ContactUse) -> ContactUse:
     Force and acceleration of a link come from the same encoders, whose errors look like a contact to every rule that asks for
     opposite directions; only a force that lasts is told from them.
     """
-    return msgspec.structs.replace(use, instant=False, difference=False, ratio=False, statistical=False)
+    off = dict.fromkeys(("instant", "difference", "ratio", "ratio_of_values", "statistical"), False)
+    return msgspec.structs.replace(use, **off)
 
 
 class ContactMonitor:
@@ -74,7 +75,7 @@ class ContactMonitor:
                 rules = self._on_links if SOURCES[index].in_base else use
                 finding = detector.step(rules, self._limit(index, signal, estimate.v_tcp, use, mode))
                 if finding is not None:
-                    contacts += (self._contact(finding, SOURCES[index], tick, now),)
+                    contacts += (self._contact(finding, SOURCES[index], tick, now, use.look_back),)
         return contacts
 
     def _limit(self, index: int, signal: Signal, speed: float, use: ContactUse, mode: Mode) -> ContactLimits:
@@ -86,11 +87,11 @@ class ContactMonitor:
             self._keys[index], self._limits[index] = key, limit
         return limit
 
-    def _contact(self, finding: Finding, source: Source, tick: int, now: ArmPose) -> Contact:
-        pose = self._poses[(tick - finding.steps) & MASK] or now
+    def _contact(self, finding: Finding, source: Source, tick: int, now: ArmPose, look_back: bool) -> Contact:
+        steps = finding.steps if look_back else 0
+        pose = self._poses[(tick - steps) & MASK] or now
         force, acceleration = finding.force, finding.acceleration
         if not source.in_base:
             force, acceleration = turned(now.R_BF, force), turned(now.R_BF, acceleration)
         change, rule = finding.change, finding.rule.value
-        ratio, steps = finding.ratio, finding.steps
-        return Contact(tick, change, rule, source.part, source.source, force, acceleration, ratio, steps, pose)
+        return Contact(tick, change, rule, source.part, source.source, force, acceleration, finding.ratio, steps, pose)

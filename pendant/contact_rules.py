@@ -1,8 +1,11 @@
 """The rules that see a change in contact in a history of force and acceleration (CD-0, CD-3 to CD-8). Pure functions.
 
 Every rule but clamping asks for opposite directions: in free motion the carried load makes the changes of force and
-acceleration parallel, whatever its mass; a contact of the carried part makes them opposite (spec/contact.md, "Sign").
+acceleration parallel, whatever its mass; a contact of the carried part makes them opposite (spec/contact.md, "Sign"). A
+saturated force has no size; its changes alone are looked at.
 """
+
+from typing import NamedTuple
 
 from pendant.contact_limits import ContactLimits
 from pendant.history import History, Six
@@ -10,6 +13,8 @@ from pendant.word import Word
 
 STEP = 3
 """Ticks between the two samples of a difference (CD-4)."""
+HEAVIEST = 5
+"""Sightings that one of the slow rule counts for at most."""
 NEW = 8
 """Newest samples under test in the statistical rule (CD-6)."""
 OLD = 30
@@ -32,48 +37,79 @@ class Rule(Word):
     SLOW = "slow"
 
 
-def hard(history: History, limit: ContactLimits) -> tuple[bool, bool]:
-    """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `STEP` ticks."""
-    if history.count <= STEP:
-        return False, False
-    new, old = history.sample(0), history.sample(STEP)
+class Hard(NamedTuple):
+    """What the change of the last `STEP` ticks shows."""
+
+    difference: bool  # difference rule
+    ratio: bool  # ratio rule
+    clear: bool  # the difference needs no second tick
+
+
+NOTHING = Hard(False, False, False)
+
+
+def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
+    """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `age` ticks.
+
+    Clear is a change of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an
+    acceleration that free motion never changes so fast in the opposite direction.
+    """
+    if history.count <= age:
+        return NOTHING
+    new, old = history.sample(0), history.sample(age)
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
     dot = fx * ax + fy * ay + fz * az
     if dot >= 0.0 and limit.opposite:
-        return False, False
+        return NOTHING
     ff = fx * fx + fy * fy + fz * fz
     aa = ax * ax + ay * ay + az * az
-    if ff < limit.noise_force_sq or aa < limit.noise_acceleration_sq or dot * dot < limit.cosine_sq * ff * aa:
-        return False, False
+    if aa < limit.noise_acceleration_sq:
+        return NOTHING
+    clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit)
+    if ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
+        return Hard(clear, False, clear)
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
-    return difference, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa
+    return Hard(difference or clear, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa, clear)
 
 
-def instant(history: History, limit: ContactLimits) -> bool:
-    """Values of now: along one axis a force beyond its threshold against an acceleration beyond its own (CD-3).
+def _clear(ff: float, aa: float, dot: float, limit: ContactLimits) -> bool:
+    mass = limit.mass
+    against = dot - mass * aa  # F - m·A along A
+    square = ff - 2.0 * mass * dot + mass * mass * aa
+    size = limit.clear_force + limit.payload_margin * aa**0.5
+    return square > size * size and against * against > limit.cosine_sq * square * aa
 
-    The configured payload's m·A is subtracted from the force, gravity from the acceleration.
+
+def values(history: History, limit: ContactLimits) -> tuple[bool, bool]:
+    """What the values of now show: the instant rule (CD-3) and the ratio rule on values (CD-5, eq. 8).
+
+    The configured payload's m·A is subtracted from the force, gravity from the acceleration; what a wrong payload explains of
+    the force is none. Instant: along one axis a force
+    beyond its threshold against an acceleration beyond its own. Ratio: of such a force, the payload's m·a added again, and the
+    acceleration.
     """
-    if history.count == 0:
-        return False
-    fx, fy, fz, ax, ay, az, gx, gy, gz, mass, _ = history.sample(0)
+    if history.clean == 0:
+        return False, False
+    fx, fy, fz, ax, ay, az, gx, gy, gz, mass = history.sample(0)[:10]
     fx, fy, fz = fx - mass * ax, fy - mass * ay, fz - mass * az
+    specific = (ax * ax + ay * ay + az * az) ** 0.5
     ax, ay, az = ax + gx, ay + gy, az + gz
     dot = fx * ax + fy * ay + fz * az
     if dot >= 0.0 and limit.opposite:
-        return False
+        return False, False
+    force, acceleration = limit.value_force + limit.payload_margin * specific, limit.value_acceleration
     ff, aa = fx * fx + fy * fy + fz * fz, ax * ax + ay * ay + az * az
-    if dot * dot < limit.cosine_sq * ff * aa:
-        return False
-    force, acceleration = limit.value_force, limit.value_acceleration
+    if ff < force * force or dot * dot < limit.cosine_sq * ff * aa:
+        return False, False
     axes = ((fx, ax), (fy, ay), (fz, az))
-    return any(f * a < 0.0 and abs(f) > force and abs(a) > acceleration for f, a in axes)
+    instant = any(f * a < 0.0 and abs(f) > force and abs(a) > acceleration for f, a in axes)
+    return instant, aa > acceleration * acceleration and abs(dot + mass * aa) > limit.ratio * aa
 
 
 def statistical(history: History, limit: ContactLimits) -> bool:
     """The newest `NEW` samples against mean and confidence interval of the `OLD` before them (CD-6, eq. 9, 10)."""
-    if history.count < NEW + OLD:
+    if history.clean < NEW + OLD:
         return False
     nfx, nfy, nfz, nax, nay, naz = history.mean(0, NEW)
     old = history.mean(NEW, OLD)
@@ -91,15 +127,21 @@ def statistical(history: History, limit: ContactLimits) -> bool:
     return ff > error * max(force, limit.force_variance) and aa > error * max(acceleration, limit.acceleration_variance)
 
 
-def slow(history: History, limit: ContactLimits) -> tuple[int, bool]:
-    """The newest mean against stored means (CD-7, CD-8, eq. 11 to 17).
+class Slow(NamedTuple):
+    """What the slow rule sees."""
 
-    Returns:
-        The age of the stored mean that differs, 0 for none; and whether the acceleration has died out: clamping.
-    """
-    count = history.count
+    sightings: int  # that it counts for: as many as its force is times the threshold, 0 for none
+    dead: bool  # the acceleration has died out: clamping
+
+
+UNSEEN = Slow(0, False)
+
+
+def slow(history: History, limit: ContactLimits) -> Slow:
+    """The newest mean against stored means (CD-7, CD-8, eq. 11 to 17)."""
+    count = history.clean
     if count < LAGS[0] + MEAN:
-        return 0, False
+        return UNSEEN
     new = history.mean(0, P)
     mass, threshold = limit.mass, limit.slow_force
     for lag in LAGS:
@@ -113,15 +155,16 @@ def slow(history: History, limit: ContactLimits) -> tuple[int, bool]:
         if ff < threshold * threshold:
             continue
         size, change = ff**0.5, (ax * ax + ay * ay + az * az) ** 0.5
+        sightings = min(int(size / threshold), HEAVIEST)
         if size > limit.clamping * change:
-            return lag, True
+            return Slow(sightings, True)
         if size < threshold + limit.payload_margin * change:
             continue
         dot = dfx * ax + dfy * ay + dfz * az
         least = limit.cosine_sq * (dfx * dfx + dfy * dfy + dfz * dfz) * change * change
         if (dot < 0.0 or not limit.opposite) and dot * dot > least:
-            return lag, False
-    return 0, False
+            return Slow(sightings, False)
+    return UNSEEN
 
 
 def contact_force(sample: Six, mass: float) -> tuple[float, float, float]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from pendant.confirmation import Confirmation
 from pendant.contact import Change
 from pendant.contact_limits import ContactLimits
-from pendant.contact_rules import NEW, STEP, Rule, contact_force, hard, instant, slow, statistical
+from pendant.contact_rules import NEW, STEP, Rule, contact_force, hard, slow, statistical, values
 from pendant.history import History, Six
 from pendant.pose import Vector
 from pendant.settings import ContactUse
@@ -109,15 +109,23 @@ class Detector:
         history, counts, misses, hard_count = self.history, self._counts, int(use.misses), int(use.hard_count)
         seen: list[tuple[Rule, int, bool]] = []
         wanted = 0
+        of_values = ratio_of_values = False
+        if use.instant or use.ratio_of_values:
+            of_values, ratio_of_values = values(history, limit)
         if use.difference or use.ratio:
-            difference, ratio = hard(history, limit)
-            for rule, on, sees in ((Rule.DIFFERENCE, use.difference, difference), (Rule.RATIO, use.ratio, ratio)):
-                wanted += on
-                if on and counts[rule].step(sees, hard_count, misses):
-                    seen.append((rule, STEP + hard_count, False))
+            change = hard(history, limit)
+            clear = change.clear and use.retrospective and self._confirmed(limit, hard_count)
+            if use.difference:
+                wanted += 1
+                if counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses) or clear:
+                    seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
+            if use.ratio:
+                wanted += 1
+                if counts[Rule.RATIO].step(change.ratio or (ratio_of_values and use.ratio_of_values), hard_count, misses):
+                    seen.append((Rule.RATIO, STEP + hard_count, False))
         if use.instant:
             wanted += 1
-            if counts[Rule.INSTANT].step(instant(history, limit), hard_count, misses):
+            if counts[Rule.INSTANT].step(of_values, hard_count, misses):
                 seen.append((Rule.INSTANT, NEW, False))
         if use.statistical:
             wanted += 1
@@ -125,12 +133,16 @@ class Detector:
                 seen.append((Rule.STATISTICAL, NEW + int(use.soft_count), False))
         if use.slow:
             wanted += 1
-            lag, dead = slow(history, limit)
-            if counts[Rule.SLOW].step(lag > 0, int(use.slow_count), misses):
+            sightings, dead = slow(history, limit)
+            if counts[Rule.SLOW].step(sightings, int(use.slow_count), misses):
                 seen.append((Rule.SLOW, LONGEST, dead))
         if not seen or (use.all_rules and len(seen) < wanted):
             return None
         return seen[0]
+
+    def _confirmed(self, limit: ContactLimits, count: int) -> bool:
+        """A clear difference against one sample is clear against those before it, too: `count` in all (CD-9)."""
+        return all(hard(self.history, limit, STEP + older).clear for older in range(1, count))
 
     def _look_back(self, rule: Rule, length: int, limit: ContactLimits) -> _Sighting:
         """Find the first suspicious sample: the change's direction is known now, so go back while samples lie in it."""
@@ -170,7 +182,7 @@ class Detector:
             finding, self._pending = self._judge(self._pending, limit), None
         if settled or self._age >= SILENCE:
             self.silent = False
-            self.history.count = min(self.history.count, SETTLED + NEW)
+            self.history.shorten(SETTLED + NEW)
             if self.touching and self._rest is not None and self._size(self.history.mean(0, NEW), self._rest, limit) == 0.0:
                 self.touching, self._rest = False, None
         return finding

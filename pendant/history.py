@@ -21,7 +21,7 @@ class History:
     Sums are made when they are asked for: a detector that is off only keeps the samples.
     """
 
-    __slots__ = ("_at", "_behind", "_samples", "_squares", "_sums", "count")
+    __slots__ = ("_at", "_behind", "_samples", "_squares", "_sums", "clean", "count")
 
     def __init__(self) -> None:
         self._samples: list[Signal] = [Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
@@ -30,6 +30,7 @@ class History:
         self._at = 0  # where the newest stands
         self._behind = 0  # newest samples that are not in the sums yet
         self.count = 0  # samples since the last gap, at most SIZE - 1
+        self.clean = 0  # of them, those since the last saturated one
 
     def push(self, signal: Signal) -> None:
         """Take one sample."""
@@ -38,12 +39,14 @@ class History:
         self._behind += 1
         if self.count < MASK:
             self.count += 1
+        self.clean = 0 if signal.saturated else min(self.clean + 1, self.count)
 
     def _sum_up(self) -> None:
         """Bring the sums up to the newest sample."""
         behind = self._behind
         if behind > SUMMED:  # nobody listened for long
-            behind = self.count = min(self.count, SUMMED)
+            self.shorten(SUMMED)
+            behind = self.count
             self._sums[(self._at - behind) & MASK] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             self._squares[(self._at - behind) & MASK] = (0.0, 0.0)
         sx, sy, sz, tx, ty, tz = self._sums[(self._at - behind) & MASK]
@@ -61,7 +64,11 @@ class History:
         """A sample is missing: what was before it counts no more."""
         self._sums[self._at] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self._squares[self._at] = (0.0, 0.0)
-        self.count = self._behind = 0
+        self.count = self.clean = self._behind = 0
+
+    def shorten(self, length: int) -> None:
+        """Only the newest `length` samples count from now on."""
+        self.count, self.clean = min(self.count, length), min(self.clean, length)
 
     def sample(self, age: int) -> Signal:
         """The sample of `age` ticks ago, 0 <= age < count."""

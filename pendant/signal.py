@@ -21,3 +21,4 @@ class Signal(NamedTuple):
     gz: float = 0.0
     mass: float = 0.0  # configured, of what the force accelerates [kg]
     effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]
+    saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size

@@ -32,13 +32,14 @@ class ContactSources:
     Args:
         dynamics: the controller's model, already updated to this tick's posture when `read` is called.
         elbow: index of the joint that the elbow is.
+        reach: force at which the flange sensor saturates [N].
     """
 
-    def __init__(self, dynamics: Dynamics, elbow: int) -> None:
-        self._dynamics = dynamics
+    def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
+        self._dynamics, self._reach = dynamics, reach
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         self._turns = np.zeros((2, 2, 3))  # tool side, arm side: last gyro value, smoothed angular acceleration
-        self._out = np.zeros((4, 11))  # a signal a row, in the order of its fields
+        self._out = np.zeros((4, 12))  # a signal a row, in the order of its fields
         self._on_links = self._out[2:]
         self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
         n = dynamics.recursion.origins.shape[0]
@@ -68,7 +69,7 @@ class ContactSources:
         links = use.links and sample.joints_valid
         out = self._out
         if pair:
-            at = (self._smoothing, self._com, estimate.R_BF, estimate.g_B)
+            at = (self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach)
             _transfer(sample.wrench, sample.acceleration_tool, sample.gyro_tool, self._turns[0], *at, out[0])
             if use.flange:
                 _transfer(sample.wrench, sample.acceleration_flange, sample.gyro_flange, self._turns[1], *at, out[1])
@@ -103,7 +104,7 @@ def _effective_mass(mass, R, jacobian, load, com, inertia) -> float:
 
 
 @numba.njit(cache=True)
-def _transfer(wrench, acceleration, gyro, turns, smoothing, com, R, gravity, out) -> None:
+def _transfer(wrench, acceleration, gyro, turns, smoothing, com, R, gravity, reach, out) -> None:
     """Force, specific force at the load's centre, and gravity, each (3,) in F, into `out`."""
     for k in range(3):
         turns[1, k] += smoothing * ((gyro[k] - turns[0, k]) / TICK - turns[1, k])
@@ -117,6 +118,7 @@ def _transfer(wrench, acceleration, gyro, turns, smoothing, com, R, gravity, out
         out[k] = wrench[k]
         out[3 + k] = acceleration[k] + tangential + gyro[k] * along - com[k] * square
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
+    out[11] = 1.0 if np.abs(wrench[:3]).max() >= reach else 0.0
 
 
 @numba.njit(cache=True)

@@ -1,5 +1,7 @@
 """One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
 
+import math
+
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +68,9 @@ class Simulation:
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
-        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow)
+        wrench = arm.sensors.force_torque
+        reach = math.inf if wrench is None else wrench.force.range
+        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
         joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
         self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario), ranges)
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)

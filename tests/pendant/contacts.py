@@ -10,7 +10,7 @@ from pendant.settings import ContactUse
 from pendant.signal import Signal
 
 Array = NDArray[np.float64]
-USE = ContactUse(on=True, instant=False)
+USE = ContactUse(on=True, instant=False, ratio_of_values=False)
 GRAVITY = np.array([0.0, 0.0, -9.81])
 
 

@@ -18,12 +18,19 @@ from pendant.confirmation import Confirmation
 )
 def test_confirmed_after_so_many(seen: str, count: int, misses: int, confirmed: str) -> None:
     confirmation = Confirmation()
-    assert "".join(str(int(confirmation.step(tick == "1", count, misses))) for tick in seen) == confirmed
+    assert "".join(str(int(confirmation.step(int(tick), count, misses))) for tick in seen) == confirmed
+
+
+def test_one_tick_may_count_for_several() -> None:
+    confirmation = Confirmation()
+    assert [confirmation.step(sightings, 6, 0) for sightings in (2, 3, 1)] == [False, False, True]
+    assert [confirmation.step(sightings, 6, 0) for sightings in (0, 5, 5)] == [False, False, True]
+    assert [confirmation.step(sightings, 6, 1) for sightings in (0, 5)] == [False, True]  # one miss among seven
 
 
 def test_cleared_it_counts_anew() -> None:
     confirmation = Confirmation()
-    confirmation.step(True, 2, 0)
+    confirmation.step(1, 2, 0)
     confirmation.clear()
-    assert not confirmation.step(True, 2, 0)
-    assert confirmation.step(True, 2, 0)
+    assert not confirmation.step(1, 2, 0)
+    assert confirmation.step(1, 2, 0)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pendant.contact_limits import limits
-from pendant.contact_rules import LAGS, MEAN, NEW, OLD, STEP, contact_force, hard, instant, slow, statistical
+from pendant.contact_rules import LAGS, MEAN, NEW, OLD, STEP, contact_force, hard, slow, statistical, values
 from pendant.history import History
 from pendant.modes import Mode
 from pendant.settings import ContactUse
@@ -36,26 +36,57 @@ def stepped(df: tuple[float, float, float], da: tuple[float, float, float]) -> H
         ((2.0, 0.0, 0.0), (2.0, 0.0, 0.0), False, False),  # parallel: free motion
         ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0), False, False),  # neither
         ((0.0, 2.0, 0.0), (0.1, -2.0, 0.3), True, True),  # in 3-D
-        ((0.86, 0.0, 0.0), (-0.6, 0.0, 0.0), True, False),  # 0.849 N, 0.566 m/s² are the limits; 1 m/s² the ratio's second
-        ((0.84, 0.0, 0.0), (-0.6, 0.0, 0.0), False, False),
-        ((0.86, 0.0, 0.0), (-0.55, 0.0, 0.0), False, False),
+        ((1.26, 0.0, 0.0), (-0.6, 0.0, 0.0), True, False),  # 0.849 N + 0.4 N/kg, 0.566 m/s² are the limits
+        ((1.24, 0.0, 0.0), (-0.6, 0.0, 0.0), False, False),  # and 1 m/s² the ratio's second
+        ((1.26, 0.0, 0.0), (-0.55, 0.0, 0.0), False, False),
         ((0.7, 0.0, 0.0), (-1.1, 0.0, 0.0), False, True),  # ratio -0.64 kg
-        ((0.7, 0.0, 0.0), (-1.5, 0.0, 0.0), False, False),  # ratio -0.47 kg, threshold -0.5 kg
+        ((0.55, 0.0, 0.0), (-1.15, 0.0, 0.0), False, False),  # ratio -0.48 kg, threshold -0.5 kg
         ((0.6, 0.0, 0.0), (-1.1, 0.0, 0.0), False, False),  # force within the noise
     ],
 )
 def test_difference_and_ratio(
     df: tuple[float, float, float], da: tuple[float, float, float], difference: bool, ratio: bool
 ) -> None:
-    assert hard(stepped(df, da), limit()) == (difference, ratio)
+    assert hard(stepped(df, da), limit())[:2] == (difference, ratio)
+
+
+@pytest.mark.parametrize(
+    ("df", "da", "clear"),
+    [  # 1 kg carried: 6 deviations of the difference of F - m·A are 1.530 N, a quarter of the payload explains 0.25 kg of dA
+        ((0.32, 0.0, 0.0), (-1.6, 0.0, 0.0), False),  # F - m·A changes by 1.92 N, threshold 1.93 N
+        ((0.34, 0.0, 0.0), (-1.6, 0.0, 0.0), True),  # though F alone is within the noise
+        ((0.7, 0.0, 0.0), (-1.49, 0.0, 0.0), False),
+        ((0.7, 0.0, 0.0), (-1.51, 0.0, 0.0), True),
+        ((-0.34, 0.0, 0.0), (1.6, 0.0, 0.0), True),
+        ((0.0, 8.0, 0.0), (1.6, -0.1, 0.0), False),  # across
+        ((3.0, 0.0, 0.0), (1.6, 0.0, 0.0), False),  # along it: free motion of a load that is too heavy
+    ],
+)
+def test_a_difference_that_is_clear(df: tuple[float, float, float], da: tuple[float, float, float], clear: bool) -> None:
+    seen = hard(stepped(df, da), limit())
+    assert (seen.clear, seen.difference or not clear) == (clear, True)
+
+
+def test_a_heavy_load_makes_the_contact_force_noisy() -> None:
+    assert limit(mass=5.0).clear_force == pytest.approx(6.0 * PAIR * (0.15**2 + 0.5**2) ** 0.5)
 
 
 @pytest.mark.parametrize(("cosine", "opposite"), [(-0.29, False), (-0.31, True), (-0.99, True)])
 def test_the_angle_limit(cosine: float, opposite: bool) -> None:
     sine = (1.0 - cosine**2) ** 0.5
-    assert hard(stepped((3.0, 0.0, 0.0), (3.0 * cosine, 3.0 * sine, 0.0)), limit()) == (opposite, opposite and cosine < -0.5)
-    values = history((40.0 * 1.0, 0.0, 0.0, 10.0 * cosine, 10.0 * sine, 0.0))
-    assert instant(values, limit()) is opposite
+    use = msgspec.structs.replace(USE, retrospective=False)
+    change = hard(stepped((3.0, 0.0, 0.0), (0.9 * cosine, 0.9 * sine, 0.0)), limit(use))
+    assert change.difference is opposite
+    # F - m·A, A without a load
+    now = history((40.0, 0.0, 0.0, 10.0 * cosine, 10.0 * sine, 0.0, 0.0, 0.0, 0.0, 0.0))
+    assert values(now, limit(mass=0.0))[0] is opposite
+
+
+@pytest.mark.parametrize(("cosine", "clear"), [(-0.29, False), (-0.31, True)])
+def test_the_angle_limit_of_what_is_clear(cosine: float, clear: bool) -> None:
+    """Of F - m·A against A; without a load that is F."""
+    sine = (1.0 - cosine**2) ** 0.5
+    assert hard(stepped((3.0, 0.0, 0.0), (3.0 * cosine, 3.0 * sine, 0.0)), limit(mass=0.0)).clear is clear
 
 
 def test_the_ratio_follows_payload_and_posture() -> None:
@@ -89,20 +120,52 @@ def test_a_link_has_its_own_thresholds() -> None:
     [(10.6, -3.1, True), (10.4, -3.1, False), (10.6, -2.9, False), (10.6, 3.1, False), (-10.6, 3.1, True)],
 )
 def test_instant_at_its_thresholds(force: float, acceleration: float, seen: bool) -> None:
-    """8 N and a quarter of the payload's weight, 10.45 N; 3 m/s². The payload's m·A is subtracted, gravity too."""
+    """8 N and a quarter of the payload times about 10.25 m/s², 10.56 N; 3 m/s². The payload's m·A is subtracted, gravity too."""
     mass = 1.0
     row = (force + mass * acceleration, 0.0, mass * 9.81, acceleration, 0.0, 9.81, 0.0, 0.0, -9.81, mass)
-    assert instant(history(row), limit()) is seen
+    assert values(history(row), limit())[0] is seen
+
+
+@pytest.mark.parametrize(
+    ("force", "acceleration", "seen"),
+    [
+        ((12.0, 0.0), (-4.0, 0.0), True),  # F/a = -3 kg, the payload's own 1 kg added: -2 kg
+        ((10.6, 0.0), (-4.0, 0.0), False),  # 8 N and a quarter of m·A, 10.59 m/s²: 10.65 N
+        ((12.0, 0.0), (-2.9, 0.0), False),
+        ((14.0, 0.0), (-9.2, 0.0), True),  # threshold: -1.5 kg together with the payload's 1 kg
+        ((14.0, 0.0), (-9.5, 0.0), False),
+        ((12.0, 0.0), (4.0, 0.0), False),
+        ((9.0, 9.0), (-4.0, -4.0), True),  # in 3-D, where no single axis is beyond
+    ],
+)
+def test_the_ratio_of_values(force: tuple[float, float], acceleration: tuple[float, float], seen: bool) -> None:
+    (fx, fy), (ax, ay), mass = force, acceleration, 1.0
+    row = (fx + mass * ax, fy + mass * ay, mass * 9.81, ax, ay, 9.81, 0.0, 0.0, -9.81, mass)
+    assert values(history(row), limit())[1] is seen
 
 
 def test_no_decision_from_buffers_that_are_not_full() -> None:
     before, after = (0.0, 0.0, 9.81, 0.0, 0.0, 9.81), (30.0, 0.0, 9.81, -20.0, 0.0, 9.81)
-    assert hard(history(*[after] * STEP), limit()) == (False, False)
-    assert not instant(History(), limit())
+    assert hard(history(*[after] * STEP), limit()) == (False, False, False)
+    assert values(History(), limit()) == (False, False)
     assert not statistical(history(*[before] * (OLD - 1), *[after] * NEW), limit())
     assert statistical(history(*[before] * OLD, *[after] * NEW), limit())
     assert slow(history(*[before] * (MEAN - 1), *[after] * LAGS[0]), limit()) == (0, False)
-    assert slow(history(*[before] * MEAN, *[after] * LAGS[0]), limit())[0] == LAGS[0]
+    assert slow(history(*[before] * MEAN, *[after] * LAGS[0]), limit()).sightings
+
+
+def test_a_saturated_force_has_no_size() -> None:
+    still, gone = (0.0, 0.0, 9.81, 0.0, 0.0, 9.81), (30.0, 0.0, 9.81, -20.0, 0.0, 9.81)
+    seen = history(*[still] * LAGS[-1], *[gone] * (NEW - 1))
+    seen.push(Signal(*gone, saturated=1.0))
+    assert values(seen, limit()) == (False, False)
+    assert not statistical(seen, limit())
+    assert slow(seen, limit()) == (0, False)
+    for _ in range(STEP):
+        seen.push(Signal(*still))
+    assert values(seen, limit(USE)) == (False, False)
+    assert hard(seen, limit()).difference  # its changes are looked at
+    assert seen.clean == STEP
 
 
 def test_the_statistical_rule_takes_its_thresholds_from_the_buffer() -> None:
@@ -120,9 +183,11 @@ def test_the_statistical_rule_takes_its_thresholds_from_the_buffer() -> None:
 @pytest.mark.parametrize(
     ("df", "da", "expected"),
     [
-        (0.55, -0.4, (LAGS[0], False)),  # against a payload of 1 kg: 0.95 N beyond it, opposite
+        (0.55, -0.4, (1, False)),  # against a payload of 1 kg: 0.95 N beyond it, opposite
         (0.3, -0.4, (0, False)),  # 0.7 N: within the 0.8 N and 0.1 N that a payload wrong by a quarter explains
-        (2.0, 0.0, (LAGS[0], True)),  # the acceleration has died out
+        (1.5, 0.0, (1, True)),  # the acceleration has died out
+        (1.7, 0.0, (2, True)),  # twice the 0.8 N: two sightings
+        (9.0, 0.0, (5, True)),  # at most five
         (0.75, 0.0, (0, False)),
         (0.4, 0.4, (0, False)),  # the payload alone
         (3.0, 0.9, (0, False)),  # parallel, and not died out
@@ -135,7 +200,7 @@ def test_the_slow_rule(df: float, da: float, expected: tuple[int, bool]) -> None
 
 def test_a_flat_change_shows_against_an_older_mean() -> None:
     rows = [(0.008 * k, 0.0, 0.0, 0.0, 0.0, 9.81) for k in range(LAGS[-1] + MEAN)]
-    assert slow(history(*rows), limit()) == (LAGS[-1], True)
+    assert slow(history(*rows), limit()) == (2, True)
     assert slow(history(*rows[:100]), limit()) == (0, False)
 
 

@@ -154,3 +154,19 @@ def test_it_finds_what_lies_in_any_direction() -> None:
 
 def test_gravity_is_that_of_the_earth() -> None:
     assert np.linalg.norm(GRAVITY) == 9.81
+
+
+def test_a_clear_change_is_confirmed_on_older_samples_at_once() -> None:
+    """CD-9: with the retrospective variant in its first tick, without it in the tick after."""
+    stream = signals(200, push=ramp(200, START, 30.0, top=60.0))
+    use = ONLY[Rule.DIFFERENCE]
+    later = msgspec.structs.replace(use, retrospective=False)
+    assert [found(stream, each)[0][0] - START for each in (use, later)] == [1, 2]
+
+
+def test_without_older_samples_a_clear_change_needs_a_second_tick() -> None:
+    push = np.zeros((60, 3))
+    push[30:] = [30.0, 0.0, 0.0]
+    stream = signals(60, push=push, noise=0.0)
+    assert found(stream[26:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # at once: four samples before it
+    assert found(stream[27:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # three: one tick later

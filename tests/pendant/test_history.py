@@ -77,3 +77,17 @@ def test_sums_that_were_not_asked_for_are_made_up_for(unasked: int) -> None:
     mean = history.mean(1, 20)
     assert mean == pytest.approx(rows[::-1][:20].mean(axis=0), abs=1e-9)
     assert history.variances(1, 20, mean)[0] == pytest.approx(rows[::-1][:20, :3].var(axis=0).mean(), abs=1e-7)
+
+
+def test_samples_since_a_saturated_one_are_counted_apart() -> None:
+    history = filled([[5.0] * 6] * 20)
+    assert history.clean == 20
+    history.push(Signal(*[100.0] * 6, saturated=1.0))
+    assert (history.count, history.clean) == (21, 0)
+    for _ in range(5):
+        history.push(Signal(*[5.0] * 6))
+    assert (history.count, history.clean) == (26, 5)
+    history.shorten(10)
+    assert (history.count, history.clean) == (10, 5)
+    history.shorten(3)
+    assert (history.count, history.clean) == (3, 3)

@@ -117,3 +117,16 @@ def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
     signal = sim.snapshot().estimate.signals[0]
     assert signal is not None
     assert signal.mass == pytest.approx(TOOL.mass + 1.0 + 0.13)
+
+
+def test_a_force_at_the_end_of_the_sensors_range_is_marked() -> None:
+    sim = simulation(flange=True)
+    sim.tick(IDLE)
+    assert not any(signal.saturated for signal in sim.snapshot().estimate.signals if signal is not None)
+    mean(sim, 0, 5, Wishes(NOTHING, (Push("tool", (0.0, 0.0, 0.1), (0.0, 300.0, 0.0)),), ()))
+    tool, flange, elbow, _ = sim.snapshot().estimate.signals
+    assert tool is not None
+    assert flange is not None
+    assert elbow is not None
+    assert max(map(abs, tool[:3])) == 100.0  # the data file's range
+    assert (tool.saturated, flange.saturated, elbow.saturated) == (1.0, 1.0, 0.0)
