@@ -20,11 +20,17 @@ class Watched(Protocol):
 
     watch: Callable[[Simulation, Decision], None] | None
 
+    @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        ...
+
 
 class LiveRecording:
     """The switch. `start` and `stop` may be called from any thread; they wait for no file.
 
-    A recording must never hold up the arm: a disk that is full or too slow ends the recording, and `failure` says so.
+    A recording must never hold up the arm: files are opened and ended on threads of their own, but for another scenario's,
+    and a disk that is full or too slow ends the recording; `failure` says so.
 
     Args:
         loop: what is recorded.
@@ -37,7 +43,7 @@ class LiveRecording:
         self._lock = threading.Lock()  # between the loop's thread and whoever switches; never held while a file is waited for
         self._recorder: Recorder | None = None
         self._scenario: Scenario | None = None  # of the file
-        self._closers: list[threading.Thread] = []
+        self._helpers: list[threading.Thread] = []  # that open or end files
         self.on = False
         self.path: Path | None = None  # of the last file
         self.failure = ""  # why the last recording ended by itself
@@ -49,10 +55,11 @@ class LiveRecording:
         return 0.0 if recorder is None else recorder.ticks * TICK
 
     def start(self) -> None:
-        """Record from the next tick on."""
+        """Record, as soon as the file is open."""
         with self._lock:
-            self.on, self.failure = True, ""
-            self._loop.watch = self._see
+            if not self.on:
+                self.on, self.failure = True, ""
+                self._help(self._begin)
 
     def stop(self) -> None:
         """Record no more, and let the file be ended."""
@@ -62,8 +69,25 @@ class LiveRecording:
     def close(self) -> None:
         """Record no more, and wait until the files are whole."""
         self.stop()
-        for closer in self._closers:
-            closer.join()
+        while self._helpers:
+            self._helpers.pop().join()
+
+    def _help(self, work: Callable[..., None], *what: object) -> None:
+        self._helpers = [helper for helper in self._helpers if helper.is_alive()]
+        self._helpers.append(threading.Thread(target=work, args=what, name="recording"))
+        self._helpers[-1].start()
+
+    def _begin(self) -> None:
+        simulation = self._loop.simulation
+        recorder = self._opened(simulation)
+        with self._lock:
+            if recorder is None:
+                self._stop()
+            elif self.on and self._recorder is None:
+                self._recorder, self._scenario = recorder, simulation.scenario
+                self._loop.watch = self._see
+            else:
+                self._help(self._end, recorder)
 
     def _stop(self) -> None:
         self.on = False
@@ -73,37 +97,40 @@ class LiveRecording:
     def _end_file(self) -> None:
         recorder, self._recorder = self._recorder, None
         if recorder is not None:
-            self._closers = [closer for closer in self._closers if closer.is_alive()]
-            self._closers.append(threading.Thread(target=self._close, args=(recorder,), name="recording-end"))
-            self._closers[-1].start()
+            self._help(self._end, recorder)
 
-    def _close(self, recorder: Recorder) -> None:
+    def _end(self, recorder: Recorder) -> None:
         try:
             recorder.close()
         except BadInput as error:
             self.failure = str(error)
+        if recorder.ticks == 0:
+            recorder.path.unlink(missing_ok=True)
 
     def _see(self, simulation: Simulation, decision: Decision) -> None:
         """On the loop's thread."""
         with self._lock:
-            if not self.on:
+            recorder = self._recorder
+            if recorder is None:  # it was about to show this tick when the switch was thrown
                 return
             if simulation.scenario is not self._scenario:
                 self._end_file()
-            recorder = self._recorder or self._begin_file(simulation)
+                self._recorder, self._scenario = self._opened(simulation), simulation.scenario
+                recorder = self._recorder
             if recorder is None or recorder.failure is not None:
                 self._stop()
             else:
                 recorder.see(simulation, decision)
 
-    def _begin_file(self, simulation: Simulation) -> Recorder | None:
-        self.path = self._free_path()
-        self._scenario = simulation.scenario
+    def _opened(self, simulation: Simulation) -> Recorder | None:
+        path = self._free_path()
         try:
-            self._recorder = Recorder(self.path, simulation, f"recorded on the page, {simulation.arm.title}", waits=False)
+            recorder = Recorder(path, simulation, f"recorded on the page, {simulation.arm.title}", waits=False)
         except BadInput as error:
             self.failure = str(error)
-        return self._recorder
+            return None
+        self.path = path
+        return recorder
 
     def _free_path(self) -> Path:
         stem = time.strftime("recording-%Y-%m-%d-%H%M%S")

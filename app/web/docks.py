@@ -39,7 +39,6 @@ class Docks:
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
-            self.recording = RecordingSwitch(gui, recording)
         with self._upper.add_tab("Settings") as tab:
             self.settings = SettingsTab(gui, tab, loop)
         self._lower = gui.add_panel()
@@ -49,6 +48,8 @@ class Docks:
             self.contacts = Contacts(server)
         with self._lower.add_tab("Plots"):
             self.plots = Plots(gui, loop, arm)
+        with self._lower.add_tab("Record"):
+            self.recording = RecordingSwitch(gui, recording)
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)

@@ -9,13 +9,12 @@ from app.web.svg import Colour
 
 
 class RecordingSwitch:
-    """A switch and what it says, in the Lab."""
+    """The tab with the switch and what it says."""
 
     def __init__(self, gui: viser.GuiApi, recording: LiveRecording) -> None:
         self._recording = recording
-        with gui.add_folder("Recording"):
-            self.switch = gui.add_checkbox("Record", recording.on, hint="Writes a file that pendant replay and Foxglove open.")
-            self.status = Html(gui)
+        self.switch = gui.add_checkbox("Record", recording.on, hint="Into a file that pendant replay and Foxglove open.")
+        self.status = Html(gui)
 
         @self.switch.on_update
         async def _(_: viser.GuiEvent) -> None:

@@ -22,6 +22,11 @@ class Running(Protocol):
     watch: Callable[[Simulation, Decision], None] | None  # shown each tick
 
     @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        ...
+
+    @property
     def actual_rate(self) -> float:
         """Simulated over real time, as it was lately."""
         ...

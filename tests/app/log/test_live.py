@@ -1,6 +1,7 @@
 """The switch that records a running loop."""
 
 import re
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import pytest
 
 from app.checked import BadInput
 from app.library import load_arm
+from app.log import live
 from app.log.live import LiveRecording, must_be_writable
 from app.log.reader import read
 from app.log.recorder import SLOW, Recorder
@@ -43,6 +45,11 @@ def loop() -> SteppedLoop:
     return SteppedLoop()
 
 
+def start(recording: LiveRecording, loop: SteppedLoop) -> None:
+    recording.start()
+    until(lambda: loop.watch is not None, "it records")
+
+
 def files(folder: Path) -> list[Path]:
     return sorted(folder.glob("*.mcap"), key=lambda path: path.stat().st_ctime_ns)
 
@@ -51,7 +58,7 @@ def test_what_is_done_while_it_is_on_is_recorded(loop: SteppedLoop, tmp_path: Pa
     recording = LiveRecording(loop, tmp_path / "new")
     loop.tick(10)
     assert not (tmp_path / "new").exists()
-    recording.start()
+    start(recording, loop)
     assert recording.on
     loop.tick(40)
     assert recording.seconds == pytest.approx(0.08)
@@ -72,7 +79,7 @@ def test_what_is_done_while_it_is_on_is_recorded(loop: SteppedLoop, tmp_path: Pa
 def test_each_time_it_is_switched_on_makes_a_file(loop: SteppedLoop, tmp_path: Path) -> None:
     recording = LiveRecording(loop, tmp_path)
     for length in (5, 6, 7):
-        recording.start()
+        start(recording, loop)
         loop.tick(length)
         recording.stop()
     recording.close()
@@ -81,7 +88,7 @@ def test_each_time_it_is_switched_on_makes_a_file(loop: SteppedLoop, tmp_path: P
 
 def test_a_reset_goes_on_in_the_file_and_another_scenario_in_its_own(loop: SteppedLoop, tmp_path: Path) -> None:
     recording = LiveRecording(loop, tmp_path)
-    recording.start()
+    start(recording, loop)
     loop.tick(20)
     loop.simulation = Simulation(ARM, loop.simulation.scenario, Settings())
     loop.tick(10)
@@ -101,7 +108,7 @@ def test_a_disk_that_fails_ends_the_recording_and_the_loop_goes_on(
     loop: SteppedLoop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = LiveRecording(loop, tmp_path)
-    recording.start()
+    start(recording, loop)
     loop.tick(5)
     recorder = recording._recorder
     assert isinstance(recorder, Recorder)
@@ -119,8 +126,7 @@ def test_a_folder_that_is_none_is_told(loop: SteppedLoop, tmp_path: Path) -> Non
     (tmp_path / "file").write_text("")
     recording = LiveRecording(loop, tmp_path / "file")
     recording.start()
-    loop.tick(3)
-    assert not recording.on
+    until(lambda: not recording.on, "it ended")
     assert "cannot be written" in recording.failure
     with pytest.raises(BadInput, match="--record"):
         must_be_writable(tmp_path / "file")
@@ -130,8 +136,39 @@ def test_a_folder_that_is_none_is_told(loop: SteppedLoop, tmp_path: Path) -> Non
 
 def test_a_tick_after_the_switch_was_thrown_is_let_go(loop: SteppedLoop, tmp_path: Path) -> None:
     recording = LiveRecording(loop, tmp_path)
-    recording.start()
+    start(recording, loop)
     watch: Any = loop.watch
     recording.stop()
     watch(loop.simulation, loop.simulation.tick(IDLE))  # the loop was about to show it
+    recording.close()
+    assert files(tmp_path) == []  # one that holds nothing is not kept
+
+
+def test_switched_off_before_the_file_is_open_it_stays_off(
+    loop: SteppedLoop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate = threading.Event()
+    monkeypatch.setattr(live, "Recorder", lambda *args, **named: gate.wait() and Recorder(*args, **named))
+    recording = LiveRecording(loop, tmp_path)
+    recording.start()
+    recording.stop()
+    gate.set()
+    recording.close()
+    assert not recording.on
+    assert loop.watch is None
     assert files(tmp_path) == []
+
+
+def test_another_scenario_that_cannot_be_written_ends_it(
+    loop: SteppedLoop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = LiveRecording(loop, tmp_path)
+    start(recording, loop)
+    loop.tick(5)
+    monkeypatch.setattr(recording, "_free_path", lambda: tmp_path)
+    loop.simulation = Simulation(ARM, Scenario(seed=5), Settings())
+    loop.tick(2)
+    assert not recording.on
+    assert "cannot be written" in recording.failure
+    recording.close()
+    assert [len(read(path).ticks) for path in files(tmp_path)] == [5]

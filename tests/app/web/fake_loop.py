@@ -15,6 +15,7 @@ from pendant.settings import Settings
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
 from sim.scenario import Scenario
+from sim.simulation import Simulation
 from sim.snapshot import Snapshot
 
 ARM = load_arm("ur5e")
@@ -82,6 +83,11 @@ class FakeLoop:
         self.wishes: list[Any] = []
         self.resets = 0
         self.steps = 0
+
+    @property
+    def simulation(self) -> Simulation:
+        """One of the scenario, at its start."""
+        return Simulation(ARM, self.scenario, self.settings)
 
     def advance(self, seconds: float = 0.002) -> None:
         """Let simulated time pass and read the desk once."""
