@@ -10,7 +10,7 @@ from app.triggers import When
 from pendant.inputs import Button, Command
 from sim.arm import Positive
 from sim.changes import AnyChange
-from sim.scenario import Vector
+from sim.scenario import Load, Vector
 from sim.touch import ZERO, Push, Triple
 
 PLANNED_CONTROLS: dict[str, str] = {
@@ -40,6 +40,9 @@ Control = Literal[
     "safeguard_closed",
     "reduced_on",
     "reduced_off",
+    "wizard_measure",
+    "wizard_apply",
+    "wizard_clear",
 ]
 # Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
 Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]
@@ -182,13 +185,40 @@ class Settings(Action, tag="settings", frozen=True, kw_only=True):
     set: Annotated[dict[str, float | bool | str], Meta(min_length=1)]
 
 
+class SelectTool(Action, tag="select_tool", frozen=True, kw_only=True):
+    """A tool of the table is used from now on: tool centre point and load together, and no payload beyond it."""
+
+    tool: str
+
+
+class Payload(Action, tag="payload", frozen=True, kw_only=True):
+    """The payload that the controller is to believe in, beyond the tool, is entered on the pendant."""
+
+    load: Load
+
+
 class Laboratory(Action, tag="change", frozen=True, kw_only=True):
     """The true arm or world is changed: payload, sensors, friction, temperature, objects."""
 
     change: AnyChange
 
 
-AnyAction = Press | Release | Tap | DigitalInput | Pushing | Twisting | Bump | Lean | Hold | Program | Settings | Laboratory
+AnyAction = (
+    Press
+    | Release
+    | Tap
+    | DigitalInput
+    | Pushing
+    | Twisting
+    | Bump
+    | Lean
+    | Hold
+    | Program
+    | Settings
+    | SelectTool
+    | Payload
+    | Laboratory
+)
 
 COMMAND_OF_PROGRAM = {
     "start": Command.START_PROGRAM,

@@ -1,16 +1,13 @@
 """Whether the bodies of a scenario can exist: what the types of loads and world objects cannot say."""
 
-import numpy as np
-
 from app.checked import BadInput
+from pendant.load import Problem, problem
+from pendant.tools import table_problem, tool_problem
 from sim.arm import Arm
-from sim.scenario import AnyObject, Load
+from sim.scenario import AnyObject, Load, Tool
 
 OVERLOAD = 10.0
 """Heaviest load, as a multiple of the arm's rated payload: enough to try any mistake, and within what the physics can bear."""
-
-FARTHEST = 1.0
-"""Largest distance of a load's centre from the flange along each axis [m]."""
 
 
 def check_load(load: Load, arm: Arm, where: str, field: str) -> None:
@@ -20,19 +17,31 @@ def check_load(load: Load, arm: Arm, where: str, field: str) -> None:
         BadInput: mass or centre out of range; or the inertia is not six numbers, or has principal moments that are not
             positive or of which one exceeds the sum of the others.
     """
-    if load.mass > OVERLOAD * arm.payload:
-        raise BadInput(where, f"{field}.mass", load.mass, f"0 .. {OVERLOAD * arm.payload:g} kg for the {arm.name}")
-    for i, way in enumerate(load.com):
-        if abs(way) > FARTHEST:
-            raise BadInput(where, f"{field}.com[{i}]", way, f"-{FARTHEST:g} .. {FARTHEST:g} m")
-    if load.inertia is None:
-        return
-    if len(load.inertia) != 6:
-        raise BadInput(where, f"{field}.inertia", load.inertia, "six numbers: ixx iyy izz ixy ixz iyz")
-    xx, yy, zz, xy, xz, yz = load.inertia
-    low, middle, high = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    if low <= 0 or high > low + middle:
-        raise BadInput(where, f"{field}.inertia", load.inertia, "principal moments above 0, each at most the sum of the others")
+    _refuse(problem(load, OVERLOAD * arm.payload), arm, where, f"{field}.")
+
+
+def check_tool(tool: Tool, arm: Arm, where: str, field: str) -> None:
+    """Refuse a tool that no arm could carry, as `check_load`, or whose name or tool centre point cannot be.
+
+    Raises:
+        BadInput: as said.
+    """
+    _refuse(tool_problem(tool, OVERLOAD * arm.payload), arm, where, f"{field}.")
+
+
+def check_tools(tools: list[Tool], arm: Arm, where: str, field: str) -> None:
+    """Refuse a table of tools with one that `check_tool` refuses, or with two of a name.
+
+    Raises:
+        BadInput: as said.
+    """
+    _refuse(table_problem(tools, OVERLOAD * arm.payload), arm, where, field)
+
+
+def _refuse(wrong: Problem | None, arm: Arm, where: str, prefix: str) -> None:
+    if wrong is not None:
+        whose = f" for the {arm.name}" if wrong.field.endswith("mass") else ""
+        raise BadInput(where, prefix + wrong.field, wrong.value, wrong.allowed + whose)
 
 
 def check_world(world: list[AnyObject], where: str) -> None:

@@ -25,6 +25,7 @@ Quantity = Literal[
     "torque_error",  # of `joint`, truth scoring: how wrong the estimate of its transmission torque is [N·m]
     "user_force",  # size of F_user's force, as estimated [N]
     "user_torque",  # size of F_user's torque, as estimated [N·m]
+    "payload_configured",  # mass that the controller believes in, beyond the tool [kg]
     "payload_true",  # true mass of what is attached [kg]
 ]
 

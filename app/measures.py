@@ -25,6 +25,7 @@ UNITS = {
     "torque_error": "N·m",
     "user_force": "N",
     "user_torque": "N·m",
+    "payload_configured": "kg",
     "payload_true": "kg",
 }
 
@@ -118,6 +119,8 @@ class ValueWatch(BoundsWatch):
                 self.number(math.hypot(*estimate.F_user[:3]), tick)
             case "user_torque":
                 self.number(math.hypot(*estimate.F_user[3:]), tick)
+            case "payload_configured":
+                self.number(now.configured_mass, tick)
             case "payload_true":
                 self.number(now.truth_payload_mass, tick)
 

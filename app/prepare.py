@@ -6,13 +6,13 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from app.actions import Action, Effort, Laboratory, Program
+from app.actions import Action, Effort, Laboratory, Payload, Program, SelectTool
 from app.actions import Settings as SettingsAction
-from app.bodies import check_load, check_world
+from app.bodies import check_load, check_tool, check_tools, check_world
 from app.checked import ABSENT, BadInput, load
 from app.claims import CLAIMS
 from app.expectations import Displacement, Expectation, Value
-from app.library import load_arm, load_tool
+from app.library import load_arm, load_tool, tools
 from app.session import Session, Setup, World, bundled, folder
 from pendant.containment import PARTS, TETHER
 from pendant.program import Program as Steps
@@ -21,7 +21,7 @@ from pendant.settings import MaintainLimits, OperationLimits, SettingError, Sett
 from pendant.walls import AnyBorder, problem
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
-from sim.scenario import AnyObject, Scenario
+from sim.scenario import AnyObject, Scenario, Tool, table
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -122,10 +122,12 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
     _check_walls(setup.walls, world, where)
     check_load(setup.payload_true, arm, where, "payload_true")
     check_load(setup.payload_configured, arm, where, "payload_configured")
+    tool = load_tool(setup.tool, where) if isinstance(setup.tool, str) else setup.tool
     return Scenario(
         mounting=MOUNTINGS[setup.mounting] if isinstance(setup.mounting, str) else setup.mounting,
         posture=setup.posture,
-        tool=load_tool(setup.tool, where) if isinstance(setup.tool, str) else setup.tool,
+        tool=tool,
+        tools=_tools(setup, tool, arm, where),
         payload_true=setup.payload_true,
         payload_configured=setup.payload_configured,
         world=world,
@@ -134,6 +136,15 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
         seed=setup.seed,
         mismatch=setup.mismatch,
     )
+
+
+def _tools(setup: Setup, tool: Tool | None, arm: Arm, where: str) -> list[Tool]:
+    """The table: the file's tools, then those shipped whose names they leave."""
+    if tool is not None:
+        check_tool(tool, arm, where, "tool")
+    check_tools(setup.tools, arm, where, "tools")
+    names = {entry.name for entry in setup.tools}
+    return setup.tools + [shipped for shipped in map(load_tool, tools()) if shipped.name not in names]
 
 
 def _check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str) -> None:
@@ -208,6 +219,10 @@ def _check_action(action: Action, field: str, session: Session, prepared: Prepar
         _one_of(action.part, parts, where, f"{field}.part")
     elif isinstance(action, SettingsAction):
         _applied(prepared.settings, action.set, where, f"{field}.set")
+    elif isinstance(action, SelectTool):
+        _one_of(action.tool, [tool.name for tool in table(prepared.scenario)], where, f"{field}.tool")
+    elif isinstance(action, Payload):
+        check_load(action.load, prepared.arm, where, f"{field}.load")
     elif isinstance(action, Program) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
     elif isinstance(action, Laboratory):

@@ -22,6 +22,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     mounting: Literal["floor", "wall", "ceiling"] | Vector = "floor"  # or roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
     tool: Tool | str | None = None  # or the name of a shipped tool, or a path
+    tools: list[Tool] = []  # to choose from on the pendant, besides those shipped
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     settings: dict[str, float | bool | str] = {}  # overrides, by dotted name

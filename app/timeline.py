@@ -9,9 +9,11 @@ from app.actions import (
     DigitalInput,
     Hold,
     Laboratory,
+    Payload,
     Press,
     Program,
     Release,
+    SelectTool,
     Settings,
     Tap,
     Wrench,
@@ -26,6 +28,7 @@ from pendant.program import Program as Steps
 from pendant.settings import ticks
 from sim.changes import AnyChange
 from sim.desk import Wishes
+from sim.scenario import Load
 from sim.snapshot import Snapshot
 from sim.touch import Pull, Touch, Triple
 
@@ -61,6 +64,8 @@ class _Tick:
     commands: list[Command] = field(default_factory=list)
     settings: dict[str, float | bool | str] = field(default_factory=dict)
     changes: list[AnyChange] = field(default_factory=list)
+    tool: str = ""
+    load: Load | None = None
     touches: list[Touch] = field(default_factory=list)
 
 
@@ -104,7 +109,7 @@ class Timeline:
         released, commands = frozenset(now.released), tuple(now.commands)
         held, high = frozenset(self._held), frozenset(self._high)
         self._quiet = Wishes(Inputs(held=held, high=high), (), ())
-        inputs = Inputs(held, released, commands, now.settings, program, high)
+        inputs = Inputs(held, released, commands, now.settings, program, high, now.tool, now.load)
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -150,6 +155,10 @@ class Timeline:
                 now.commands.append(COMMAND_OF_PROGRAM[action.command])
             case Settings():
                 now.settings.update(action.set)
+            case SelectTool():
+                now.tool = action.tool
+            case Payload():
+                now.load = action.load
             case Laboratory():
                 now.changes.append(action.change)
             case _:

@@ -81,6 +81,10 @@ class Calls:
             self.signal = DIGITAL
         return events
 
+    def relearn(self) -> None:
+        """What the sensors feel of the untouched arm changes without anybody's hand."""
+        self._sources.relearn()
+
 
 def _told(push: tuple[float, float, float], tick: int) -> Event:
     """The event of a push at the flange (FD-6a)."""

@@ -9,10 +9,12 @@ from pendant.enabling import Grip
 from pendant.events import Event
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
+from pendant.payload_wizard import IDLE, Progress
 from pendant.pose import Vector
 from pendant.program import Move, ProgramState
 from pendant.reduced import SpeedLimits
 from pendant.soft_limits import Damping
+from pendant.tooling import Fitting
 
 
 class Remaining(NamedTuple):
@@ -59,4 +61,6 @@ class Decision(msgspec.Struct, frozen=True):
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
+    fitting: Fitting | None = None  # tool and payload, from the next tick on
+    wizard: Progress = IDLE  # of the payload
     limits: str = ""  # checksum of all limits

@@ -55,6 +55,7 @@ class Surroundings(NamedTuple):
     grip: Grip | None = None  # of the enabling device, None where none is needed
     hand_off: bool = True  # no hand is felt (FD-8a)
     felt: float = 0.0  # change of the force at the flange from the untouched state [N]
+    changing: float | None = None  # the configured payload by now, while it is being changed [kg]
 
     @property
     def enabled(self) -> bool:
@@ -225,6 +226,10 @@ class FreeDrive:
         """Free-drive or its activation ends because of an event of `kind` from elsewhere, such as an emergency stop."""
         self._end(kind, settings)
 
+    def forget(self) -> None:
+        """The configured payload changes: what a refusal was to be told by is no more."""
+        self._verdict.waiting = False
+
     def _activate(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The signal is present and free-drive is not on."""
         tick = around.estimate.tick
@@ -286,6 +291,8 @@ class FreeDrive:
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
             return [self._refuse(Kind.REFUSED_SENSORS, tick, settings, {"sensor": JOINTS_SENSED})]
+        if around.changing is not None:
+            return [self._refuse(Kind.REFUSED_CHANGING, tick, settings, {"mass": around.changing})]
         if around.still.count < ticks(settings.static.time):
             values = moving(around.still, self._joints, settings)
             return [self._refuse(Kind.REFUSED_MOVING, tick, settings, values)]

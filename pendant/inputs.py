@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from pendant.load import Load
 from pendant.program import Program
 from pendant.word import Word
 
@@ -31,6 +32,9 @@ class Command(Word):
     PAUSE_PROGRAM = "pause_program"
     RESUME_PROGRAM = "resume_program"
     STOP_PROGRAM = "stop_program"
+    WIZARD_MEASURE = "wizard_measure"  # measure the payload in this posture
+    WIZARD_APPLY = "wizard_apply"  # configure what was found
+    WIZARD_CLEAR = "wizard_clear"  # forget the postures
     DETECTION = "detection"  # switch contact detection on or off (CD-1)
 
 
@@ -49,6 +53,8 @@ class Inputs:
     settings: dict[str, float | bool | str] = field(default_factory=dict)
     program: Program | None = None  # a program to load
     high: frozenset[int] = frozenset()  # digital inputs that are high
+    tool: str = ""  # the tool to use from now on, by its name in the table
+    load: Load | None = None  # the payload to configure, beyond the tool
 
 
 NOTHING = Inputs()

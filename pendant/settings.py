@@ -284,6 +284,13 @@ class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True
     force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", "a smaller force is nobody's")] = 1.5
 
 
+class ToolUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How tool and payload are changed and measured."""
+
+    ramp: Annotated[float, _number(0.0, 10.0, "s", "tools", "time to go over to another payload in", locked=False)] = 1.0
+    measure: Annotated[float, _number(0.1, 5.0, "s", "tools", "time to measure a posture for", locked=False)] = 0.5
+
+
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
@@ -303,6 +310,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     joint_limits: JointLimits = JointLimits()
     walls: Walls = Walls()
     static: Static = Static()
+    tools: ToolUse = ToolUse()
     joint_control: JointControl = JointControl()
     contact: ContactUse = ContactUse()
 

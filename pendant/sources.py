@@ -142,8 +142,13 @@ class Sources:
                 self._joints.restart()
             self._held_at = q
 
+    def relearn(self) -> None:
+        """Learn the untouched state afresh."""
+        self._lose()
+        self._joints.restart()
+
     def _lose(self) -> None:
-        """The flange sensor is not valid: what was felt is over."""
+        """What was felt at the flange is over: its sensor is not valid, or the load is another."""
         self._wrench.restart()
         self._push.present = self._twist.present = self._step.present = False
         self._told = 0

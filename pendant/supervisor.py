@@ -26,6 +26,8 @@ from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, limits_checksum, ticks
 from pendant.stopping import Stopping
 from pendant.table import TABLE, Effect
+from pendant.tooling import Fitting, Tooling
+from pendant.tools import Equipment
 from pendant.walls import AnyBorder
 from pendant.watch import Stillness, WrenchMean, joints_ok, motion_ok
 
@@ -81,6 +83,7 @@ class Supervisor:
         borders: tuple[AnyBorder, ...] = (),
         frames: Mapping[str, Pose] | None = None,
         ranges: tuple[float, ...] | None = None,
+        equipment: Equipment | None = None,
     ) -> None:
         """
         Args:
@@ -91,6 +94,7 @@ class Supervisor:
             borders: walls and areas; `pendant.walls.problem` has found nothing.
             frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
+            equipment: what is at the flange, and the tools to choose from; None: nothing.
         """
         self.settings = settings
         self._n = n_joints
@@ -118,6 +122,7 @@ class Supervisor:
         rated = rated or (100.0,) * n_joints
         zones = JointZones(rated, ranges or (math.inf,) * n_joints)
         self._free = FreeDrive(self._joints, rated, Containment(borders, frames or {}), zones)
+        self._tooling = Tooling(equipment or Equipment())
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -126,6 +131,11 @@ class Supervisor:
     def program(self) -> Program | None:
         """The loaded program."""
         return self._sequencer.program
+
+    @property
+    def fitting(self) -> Fitting:
+        """Tool and payload, as configured."""
+        return self._tooling.fitting
 
     @property
     def state(self) -> tuple[object, ...]:
@@ -137,7 +147,7 @@ class Supervisor:
         still = (self._still.count, self._still.joint, self._still.speed)
         devices = (self._enabling.memory, self._reduced.memory, self._safeguard, self._stopping.memory)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
-        own += (self._calls.memory, self._holding)
+        own += (self._calls.memory, self._holding, self._tooling.memory)
         lost = self._sensors.lost
         return (self.settings, *own, *devices, self._mean.memory, lost, self._sequencer.memory, self._free.memory)
 
@@ -155,6 +165,7 @@ class Supervisor:
         self._watch_reduced(estimate, events)
         self._run_program(estimate, inputs, events)
         self._free_drive(estimate, wrench_ok, events)
+        self._equip(estimate, inputs, events)
         wanted = inputs.settings
         if Command.DETECTION in inputs.commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
@@ -184,7 +195,8 @@ class Supervisor:
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
         sequencer, use = self._sequencer, self.settings.contact
-        self._contacts = self._monitor.step(estimate, use, self._mode, use.on or sequencer.until is not None)
+        on = (use.on or sequencer.until is not None) and not self._tooling.changing
+        self._contacts = self._monitor.step(estimate, use, self._mode, on)
         for contact in self._contacts:
             until = sequencer.until
             taken = self._mode is Mode.RUN and until is not None and sequencer.touch(contact)
@@ -343,6 +355,8 @@ class Supervisor:
             return f"enabling device {self._grip}: hold it in its middle position"
         if not joints_ok(estimate):
             return f"check {JOINTS_SENSED}"
+        if self._tooling.changing:
+            return "the payload is being changed"
         return None if self._static else "the arm still moves"
 
     def _steer(self, command: Command, estimate: Estimate, events: list[Event]) -> None:
@@ -376,9 +390,18 @@ class Supervisor:
 
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
         calls = self._calls
-        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, calls.hand_off, calls.force)
+        changing = self._tooling.fitting.mass if self._tooling.changing else None
+        felt = (calls.hand_off, calls.force)
+        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, *felt, changing)
         for event in self._free.step(around, self.settings):
             self._take_effect(event, events)
+
+    def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
+        tooling = self._tooling
+        events += tooling.step(estimate, inputs, self._mode, self._free.phase, self._static, self.settings.tools)
+        if tooling.changing:
+            self._calls.relearn()
+            self._free.forget()
 
     def _happen(self, event: Event, events: list[Event]) -> None:
         """Something outside of free-drive happens that ends it, too."""
@@ -444,10 +467,19 @@ class Supervisor:
         free = self._free
         sequencer = self._sequencer
         law = self._law()
-        self._holding = law is Law.HOLD and not free.caught
+        tooling = self._tooling
+        self._holding = law is Law.HOLD and not free.caught and not tooling.changing
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
         robot = (self._mode, self._safety, free.phase, law, free.helping, free.damping, free.zones, grip, speeds)
-        key = (*robot, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
+        key = (
+            *robot,
+            sequencer.move,
+            sequencer.state,
+            sequencer.index,
+            sequencer.tool_on,
+            tooling.fitting,
+            tooling.wizard.progress,
+        )
         periods = () if free.idle else free.periods()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
@@ -477,6 +509,8 @@ class Supervisor:
             speed_limits=speeds,
             damping=free.damping,
             zones=free.zones,
+            fitting=tooling.fitting,
+            wizard=tooling.wizard.progress,
             limits=self._checksum,
         )
         self._key = key

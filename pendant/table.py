@@ -134,6 +134,9 @@ TABLE: dict[Kind, Row] = {
         "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Hands off, then try again.",
         ("joint", "value", "limit", "time"),
     ),
+    Kind.REFUSED_CHANGING: _refused(
+        "Free-drive refused: the payload is being changed", "{mass:.2f} kg by now. Wait until it is done.", ("mass",)
+    ),
     Kind.SEQUENCE_STARTED: Row(
         Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
     ),
@@ -363,6 +366,31 @@ TABLE: dict[Kind, Row] = {
     Kind.CONTACT_LOST: _touched("Contact lost: {part}"),
     Kind.CONTACT_RESISTANCE: _touched("Resistance changed: {part}"),
     Kind.CONTACT_CLAMPING: _touched("Clamping: {part}"),
+    # Tool and payload
+    Kind.TOOL_CHANGED: _info(
+        "Tool {name}",
+        "It was {old}. Tool centre point {x:.0f}, {y:.0f}, {z:.0f} mm, {mass:.2f} kg; no payload beyond it.",
+        ("name", "old", "mass", "x", "y", "z"),
+    ),
+    Kind.TOOL_REFUSED: _denied("Not changed: {what}", "{reason}.", ("what", "reason")),
+    Kind.PAYLOAD_CHANGED: _info(
+        "Payload {mass:.2f} kg",
+        "Centre {x:.0f}, {y:.0f}, {z:.0f} mm; with tool {tool} {total:.2f} kg.",
+        ("mass", "x", "y", "z", "tool", "total"),
+    ),
+    Kind.POSTURE_MEASURED: _info(
+        "Posture {number} measured",
+        "{angle:.0f}° from the nearest other, at least {limit:.1f}°. {missing} more needed.",
+        ("number", "angle", "limit", "missing"),
+    ),
+    Kind.POSTURE_REFUSED: _denied("Posture refused", "{reason}.", ("reason",)),
+    Kind.PAYLOAD_FOUND: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Found: {mass:.2f} ± {mass_deviation:.2f} kg",
+        "Centre {x:.0f}, {y:.0f}, {z:.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
+        ("mass", "mass_deviation", "x", "y", "z", "centre_deviation", "fit", "postures"),
+    ),
     # Settings
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),

@@ -40,6 +40,11 @@ class Body:
             inertia += body.inertia - body.mass * shift @ shift
         return Body(mass, com, inertia)
 
+    def blend(self, other: "Body", share: float) -> "Body":
+        """Part of this body and `share` of the other at once, as one: in between, mass and moments go in a straight line."""
+        ours = Body((1.0 - share) * self.mass, self.com, (1.0 - share) * self.inertia)
+        return ours + Body(share * other.mass, other.com, share * other.inertia)
+
 
 @dataclass(frozen=True, slots=True)
 class Chain:
@@ -78,9 +83,11 @@ def load_body(load: Load) -> Body:
 
 
 def tool_body(tool: Tool | None) -> Body:
-    """`tool` as a body in F: a cylinder of its length and radius; no tool weighs nothing."""
+    """`tool` as a body in F: without an inertia a cylinder of its length and radius; no tool weighs nothing."""
     if tool is None:
         return Body(0.0, np.zeros(3), np.zeros((3, 3)))
+    if tool.inertia is not None:
+        return Body(tool.mass, np.array(tool.com), inertia_matrix(tool.inertia))
     across = tool.mass * (3 * tool.radius**2 + tool.length**2) / 12.0
     return Body(tool.mass, np.array(tool.com), np.diag([across, across, tool.mass * tool.radius**2 / 2.0]))
 

@@ -17,7 +17,6 @@ class Wishes:
     inputs: Inputs
     touches: tuple[Touch, ...]
     changes: tuple[AnyChange, ...]
-    configured: Load | None = None  # the payload that the controller is to believe in from now on
 
     def joined(self, other: "Wishes") -> "Wishes":
         """The wishes of two for the same tick; where only one can have its way, it is `other`."""
@@ -29,9 +28,10 @@ class Wishes:
             ours.settings | theirs.settings,
             theirs.program or ours.program,
             ours.high | theirs.high,
+            theirs.tool or ours.tool,
+            theirs.load or ours.load,
         )
-        configured = other.configured or self.configured
-        return Wishes(inputs, self.touches + other.touches, self.changes + other.changes, configured)
+        return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 
 
 @dataclass(slots=True)
@@ -46,7 +46,8 @@ class Desk:
     _program: Program | None = None
     _changes: list[AnyChange] = field(default_factory=list)
     _touches: dict[str, Touch] = field(default_factory=dict)
-    _configured: Load | None = None
+    _tool: str = ""
+    _load: Load | None = None
 
     def hold(self, button: Button) -> None:
         """Say that `button` is held now: a keep-alive (FD-23), good until the next tick."""
@@ -80,10 +81,15 @@ class Desk:
         with self._lock:
             self._changes.append(change)
 
-    def configure(self, load: Load) -> None:
-        """Say what payload the controller is to believe in."""
+    def choose(self, tool: str) -> None:
+        """Say which tool of the table the controller is to use."""
         with self._lock:
-            self._configured = load
+            self._tool = tool
+
+    def configure(self, load: Load) -> None:
+        """Say what payload the controller is to believe in, beyond the tool."""
+        with self._lock:
+            self._load = load
 
     def touch(self, who: str, touch: Touch) -> None:
         """Set or move the touch of `who`; it lasts until `let_go`."""
@@ -98,19 +104,23 @@ class Desk:
     def take(self) -> Wishes:
         """Read all wishes and empty the queues; touches stay until they are let go."""
         with self._lock:
-            wishes = Wishes(
-                Inputs(frozenset(self._held), frozenset(self._released), tuple(self._commands), self._settings, self._program),
-                tuple(self._touches.values()),
-                tuple(self._changes),
-                self._configured,
+            inputs = Inputs(
+                frozenset(self._held),
+                frozenset(self._released),
+                tuple(self._commands),
+                self._settings,
+                self._program,
+                tool=self._tool,
+                load=self._load,
             )
+            wishes = Wishes(inputs, tuple(self._touches.values()), tuple(self._changes))
             self._held = set()
             self._released = set()
             self._commands = []
             self._settings = {}
             self._program = None
             self._changes = []
-            self._configured = None
+            self._tool, self._load = "", None
             return wishes
 
     def clear(self) -> None:
@@ -118,5 +128,6 @@ class Desk:
         with self._lock:
             self._held, self._released = set(), set()
             self._commands, self._settings, self._changes = [], {}, []
-            self._program = self._configured = None
+            self._program = self._load = None
+            self._tool = ""
             self._touches.clear()

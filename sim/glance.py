@@ -32,6 +32,11 @@ class Scored(Protocol):
         ...
 
     @property
+    def configured_mass(self) -> float:
+        """What the controller believes, beyond the tool [kg]."""
+        ...
+
+    @property
     def wanted_q(self) -> Array:
         """Reference (n,) of the tracking laws [rad]; empty in free-drive."""
         ...
@@ -72,6 +77,11 @@ class Glance:
     def truth_payload_mass(self) -> float:
         """See `Scored.truth_payload_mass`."""
         return self._simulation.plant.load.mass
+
+    @property
+    def configured_mass(self) -> float:
+        """See `Scored.configured_mass`."""
+        return self._simulation.fitting.mass
 
     @property
     def wanted_q(self) -> Array:

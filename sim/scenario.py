@@ -1,33 +1,26 @@
 """What to simulate: mounting, tool, true and configured payload, world, seed."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import msgspec
-from msgspec import Meta
 
+import pendant.tools
+from pendant.load import Load, Vector
 from pendant.walls import AnyBorder
 from sim.arm import NotNegative, Positive
 
-Vector = Annotated[list[float], Meta(min_length=3, max_length=3)]
+__all__ = ["BARE", "AnyObject", "Load", "Scenario", "Tool", "Vector", "table"]
 
 
-class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A rigid load on the tool-side face of the flange. Without an inertia it counts as a sphere of 1 000 kg/m³."""
+class Tool(pendant.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A tool as it is: told to the controller, and with the shape of a capsule along z of F. Without an inertia a cylinder."""
 
-    mass: NotNegative  # [kg]
-    com: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.05])  # centre of mass in F [m]
-    inertia: list[float] | None = None  # about the centre: ixx iyy izz ixy ixz iyz, axes of F [kg·m²]
-
-
-class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A tool: part of the true load and, with the payload, of the configured one. Its shape is a capsule along z of F."""
-
-    name: str
-    mass: NotNegative  # [kg]
-    com: Vector  # in F [m]
-    tcp: Vector  # tool centre point in F [m]
-    length: NotNegative  # of its shape; 0 for none [m]
+    length: NotNegative = 0.0  # of its shape; 0 for none [m]
     radius: Positive = 0.03  # [m]
+
+
+BARE = Tool(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
+"""No tool: the tool centre point is the middle of the flange."""
 
 
 class WorldObject(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
@@ -88,7 +81,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
 
     mounting: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
-    tool: Tool | None = None
+    tool: Tool | None = None  # mounted, and the one in use at the start
+    tools: list[Tool] = []  # to choose from on the pendant, besides that one
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     world: list[AnyObject] = []
@@ -96,3 +90,9 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     seed: int = 0
     mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)
+
+
+def table(scenario: Scenario) -> list[Tool]:
+    """The table of tools: first the one in use at the start, which wins over another of its name."""
+    used = scenario.tool or next((tool for tool in scenario.tools if tool.name == BARE.name), BARE)
+    return [used, *(tool for tool in scenario.tools if tool.name != used.name)]

@@ -12,9 +12,11 @@ from pendant.modes import Law
 from pendant.pose import Pose
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
+from pendant.tooling import Fitting
+from pendant.tools import Equipment
 from sim import calibration
 from sim.arm import Arm
-from sim.chain import Body, chain, load_body, plate_body, tool_body
+from sim.chain import chain, load_body, plate_body, tool_body
 from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
 from sim.contact_sources import ContactSources
 from sim.controller import Controller
@@ -25,7 +27,7 @@ from sim.frames import rotation_from_rpy
 from sim.glance import Glance
 from sim.model import Step
 from sim.plant import Plant
-from sim.scenario import Load, Scenario
+from sim.scenario import Load, Scenario, table
 from sim.sensors import Sensors
 from sim.snapshot import Snapshot
 
@@ -62,17 +64,23 @@ class Simulation:
         self.plant = Plant(arm, scenario, step)
         self.sensors = Sensors(arm, self.calibration, noise)
         rigid = chain(arm)
-        self.tcp = np.array(scenario.tool.tcp if scenario.tool is not None else [0.0, 0.0, 0.0])
-        self._carried = plate_body(arm) + tool_body(scenario.tool)
-        self.configured = scenario.payload_configured
+        self._tools = {tool.name: tool for tool in table(scenario)}
+        used = next(iter(self._tools.values()))
+        self.tcp = np.array(used.tcp)
+        plate = plate_body(arm)
+        self._before = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
-        self.dynamics = Dynamics(rigid, links, self._load(), scenario.mounting, arm.chain.elbow)
+        self.dynamics = Dynamics(rigid, links, self._before, scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         wrench = arm.sensors.force_torque
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
         joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, tuple(scenario.walls), known_frames(scenario), ranges)
+        fixed = Load(mass=plate.mass, com=plate.com.tolist())
+        equipment = Equipment(tuple(self._tools.values()), used, scenario.payload_configured, arm.payload, fixed)
+        walls, frames = tuple(scenario.walls), known_frames(scenario)
+        self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment)
+        self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
@@ -81,9 +89,6 @@ class Simulation:
         self._braked = False  # by the last decision
         self._estimate: Estimate | None = None
         self._glance = Glance(self)
-
-    def _load(self) -> Body:
-        return self._carried + load_body(self.configured)
 
     @property
     def tick_count(self) -> int:
@@ -114,8 +119,8 @@ class Simulation:
         """
         for change in wishes.changes:
             self.apply(change)
-        if wishes.configured is not None:
-            self.configure_payload(wishes.configured)
+        if self.supervisor.fitting is not self.fitting:
+            self.fit(self.supervisor.fitting)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         # Nothing is to be learned from joints that the brakes hold.
@@ -129,10 +134,20 @@ class Simulation:
         self._estimate, self._decision = estimate, decision
         return decision
 
-    def configure_payload(self, load: Load) -> None:
-        """Make `load` the payload that the controller believes in."""
-        self.configured = load
-        body = self._load()
+    def fit(self, fitting: Fitting) -> None:
+        """Make this the tool and the payload that the controller believes in: between two ticks, all at once.
+
+        Args:
+            fitting: as the supervisor decided; its tool is one of the scenario's.
+        """
+        if fitting.number != self.fitting.number:
+            self._before = self.dynamics.load
+            self.estimator.transmission.forget()
+            self.tcp[:] = fitting.tool.tcp
+        self.fitting = fitting
+        body = plate_body(self.arm) + tool_body(self._tools[fitting.tool.name]) + load_body(fitting.load)
+        if fitting.share < 1.0:
+            body = self._before.blend(body, fitting.share)
         self.dynamics.set_load(body)
         self.estimator.set_load(body)
         self.contact_sources.set_load(body)
@@ -185,7 +200,7 @@ class Simulation:
             plant.object_poses(),
             plant.payload_pose(),
             plant.load.mass,
-            self.configured.mass,
+            self.fitting.mass,
             plant.hands.touched,
             self.controller.references.wanted(),
             plant.q.copy(),

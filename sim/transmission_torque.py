@@ -56,14 +56,20 @@ class TransmissionTorque:
         self._swing = np.zeros(1)  # the largest acceleration lately [rad/s²]
         self.correction = np.zeros((n, 2))  # stiffness error, offset [N·m]
         self._covariance = np.zeros((n, 2, 2))
-        self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
-        self._covariance[:, 1, 1] = ripple**2
+        self.forget()
         self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.ways, self.deviations = np.zeros((2, 3, n))
         self.fused, self.deviation, self.external = np.zeros((3, n))
         self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
         self.contact = False
         self._quiet = SETTLE_TICKS
+
+    def forget(self) -> None:
+        """Begin to learn anew: the rigid model has another load, and what was learned from it may have been its error."""
+        self.correction[:] = 0.0
+        self._covariance[:] = 0.0
+        self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
+        self._covariance[:, 1, 1] = self._constants[1] ** 2
 
     def update(
         self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]

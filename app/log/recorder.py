@@ -155,7 +155,7 @@ class Recorder:
             if at is not None:
                 row[k + SINGLES + at] = monitored.value
                 row[k + SINGLES + len(AT) + at] = monitored.limit
-        self._singles.append((e.v_tcp, e.v_elbow, decision.gain, simulation.configured.mass))
+        self._singles.append((e.v_tcp, e.v_elbow, decision.gain, simulation.fitting.mass))
         valid = e.joints_valid + 2 * e.wrench_valid + 4 * e.acceleration_valid
         states = (MODES[decision.mode], SAFETIES[decision.safety], PHASES[decision.phase], PROGRAMS[decision.program])
         self._codes.append((*states, min(decision.step, 255), valid))

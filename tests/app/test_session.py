@@ -6,6 +6,7 @@ import pytest
 from app.checked import BadInput, convert, load
 from app.prepare import MOUNTINGS, prepare
 from app.session import Session, Setup, bundled, find, folder
+from sim.scenario import table
 
 LEAST: dict[str, Any] = {"title": "least", "duration": 2.0}
 
@@ -25,6 +26,18 @@ def test_the_least_session_is_the_default_arm_at_home() -> None:
     assert prepared.arm.name == "ur5e"
     assert prepared.scenario.mounting == [0.0, 0.0, 0.0]
     assert (prepared.scenario.posture, prepared.scenario.seed, prepared.scenario.mismatch) == (None, 0, "on")
+
+
+def test_a_files_tools_come_first_and_win_over_those_shipped() -> None:
+    mine = {"name": "sphere", "mass": 0.7, "com": [0, 0, 0], "tcp": [0, 0, 0.2], "rpy": [0, 0, 1.57]}
+    nail = {"name": "nail", "mass": 0.1, "com": [0, 0, 0], "tcp": [0, 0, 0.1]}
+    scenario = prepare(made(tools=[mine, nail]), "s.yaml").scenario
+    assert [(tool.name, tool.mass) for tool in table(scenario)] == [
+        ("flange", 0.0),
+        ("sphere", 0.7),
+        ("nail", 0.1),
+        ("gripper", 0.925),
+    ]
 
 
 def test_a_whole_header_reaches_the_scenario() -> None:
@@ -50,6 +63,7 @@ def test_a_whole_header_reaches_the_scenario() -> None:
     assert scenario.tool is not None
     assert scenario.tool.name == "gripper"
     assert [thing.name for thing in scenario.world] == ["floor", "table"]
+    assert [tool.name for tool in table(scenario)] == ["gripper", "flange", "sphere"]
     assert prepared.settings.free_drive.period == 5.0
     assert prepared.program is not None
 
@@ -79,6 +93,30 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         (
             {"timeline": [{"at": 0, "do": "change", "change": {"kind": "attach_payload", "load": {"mass": 99}}}]},
             "timeline[0].change.load.mass = 99.0: 0 .. 50 kg",
+        ),
+        (
+            {"tools": [{"name": "a", "mass": 60, "com": [0, 0, 0], "tcp": [0, 0, 0]}]},
+            "s.yaml: tools[0].mass = 60.0: 0 .. 50 kg for the ur5e",
+        ),
+        (
+            {"tools": [{"name": "a", "mass": 1, "com": [0, 0, 0], "tcp": [0, 0, 0]}] * 2},
+            "s.yaml: tools[1].name = a: each tool needs a name of its own",
+        ),
+        (
+            {"tools": [{"name": "a", "mass": 1, "com": [0, 0, 0], "tcp": [0, 9, 0]}]},
+            "s.yaml: tools[0].tcp[1] = 9.0: -1 .. 1 m",
+        ),
+        (
+            {"tool": {"name": "a", "mass": 1, "com": [0, 0, 0], "tcp": [0, 0, 0], "rpy": [0, 0, 8]}},
+            "s.yaml: tool.rpy[2] = 8.0: -7 .. 7 rad",
+        ),
+        (
+            {"timeline": [{"at": 0, "do": "select_tool", "tool": "hammer"}]},
+            "s.yaml: timeline[0].tool = hammer: one of flange, gripper, sphere",
+        ),
+        (
+            {"timeline": [{"at": 0, "do": "payload", "load": {"mass": 51}}]},
+            "s.yaml: timeline[0].load.mass = 51.0: 0 .. 50 kg for the ur5e",
         ),
         ({"payload_true": {"mass": 1, "inertia": [1, 2]}}, "payload_true.inertia = [1.0, 2.0]: six numbers"),
         ({"payload_true": {"mass": 1, "inertia": [1, 1, 3, 0, 0, 0]}}, "payload_true.inertia"),

@@ -2,7 +2,22 @@ from collections.abc import Callable
 
 import pytest
 
-from app.actions import Action, Bump, Hold, Laboratory, Lean, Press, Program, Pushing, Release, Settings, Tap, Twisting
+from app.actions import (
+    Action,
+    Bump,
+    Hold,
+    Laboratory,
+    Lean,
+    Payload,
+    Press,
+    Program,
+    Pushing,
+    Release,
+    SelectTool,
+    Settings,
+    Tap,
+    Twisting,
+)
 from app.profiles import Ramp
 from app.timeline import Timeline
 from pendant.decision import Decision
@@ -13,6 +28,7 @@ from pendant.program import Program as Steps
 from pendant.program import Wait
 from sim.changes import DropPayload
 from sim.desk import Wishes
+from sim.scenario import Load
 from sim.touch import Pull, Push
 from tests.app.fakes import JOINTS, decision, happened, snapshot
 
@@ -50,6 +66,12 @@ def test_settings_and_changes_are_passed_on_once() -> None:
     played = play([Settings(at=0.0, set={"free_drive.period": 2.0}), Laboratory(at=0.002, change=DropPayload())], 3)
     assert [wishes.inputs.settings for wishes in played] == [{"free_drive.period": 2.0}, {}, {}]
     assert [wishes.changes for wishes in played] == [(DropPayload(),), (), ()]
+
+
+def test_tool_and_payload_are_passed_on_once() -> None:
+    played = play([SelectTool(at=0.0, tool="gripper"), Payload(at=0.004, load=Load(mass=2.0))], 3)
+    assert [wishes.inputs.tool for wishes in played] == ["gripper", "", ""]
+    assert [wishes.inputs.load for wishes in played] == [None, Load(mass=2.0), None]
 
 
 def test_the_program_is_loaded_in_the_first_tick() -> None:

@@ -55,6 +55,16 @@ EXAMPLE: Values = {
     "within": 2.0,
     "way": "+x -y -z",
     "distance": 12.34,
+    "angle": 46.3,
+    "centre_deviation": 1.23,
+    "fit": 0.123,
+    "mass_deviation": 0.0123,
+    "missing": 3,
+    "number": 4,
+    "postures": 12,
+    "tool": "two-finger gripper",
+    "total": 2.925,
+    "what": "payload of the wizard",
 }
 
 EFFECTS = {
@@ -66,6 +76,7 @@ EFFECTS = {
     Kind.SEQUENCE_STOPPED: Effect.PROTECTIVE_STOP,
     Kind.REFUSED_MODE: Effect.NO_ENTRY,
     Kind.REFUSED_SENSORS: Effect.NO_ENTRY,
+    Kind.REFUSED_CHANGING: Effect.NO_ENTRY,
     Kind.REFUSED_MOVING: Effect.NO_ENTRY,
     Kind.REFUSED_UNCONFIRMED: Effect.NO_ENTRY,
     Kind.REFUSED_STILL_HELD: Effect.NO_ENTRY,

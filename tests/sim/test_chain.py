@@ -22,6 +22,21 @@ def test_two_point_masses_are_a_dumbbell() -> None:
     assert np.allclose(both.inertia, np.diag([0.0, 4.0 * 0.09, 4.0 * 0.09]))
 
 
+def test_between_two_bodies_mass_and_moment_lie_on_a_line() -> None:
+    one, other = point(1.0, 0.3, 0.0, 0.0), point(3.0, -0.1, 0.0, 0.2)
+    between = one.blend(other, 0.25)
+    assert between.mass == pytest.approx(0.75 * 1.0 + 0.25 * 3.0)
+    assert between.mass * between.com == pytest.approx(0.75 * one.com + 0.25 * 3.0 * other.com)
+    assert np.linalg.eigvalsh(between.inertia).min() > -1e-12, "it is a body: parts of both at once"
+    assert one.blend(other, 0.0).com == pytest.approx(one.com)
+    assert one.blend(other, 1.0).com == pytest.approx(other.com)
+
+
+def test_an_inertia_that_is_given_is_taken() -> None:
+    tool = Tool(name="x", mass=1.0, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], inertia=[1.0, 2.0, 2.5, 0.1, 0.0, 0.0])
+    assert tool_body(tool).inertia == pytest.approx(np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 2.5]]))
+
+
 def test_uneven_masses_meet_at_their_centre_of_mass() -> None:
     both = point(1.0, 0.0, 0.0, 0.0) + point(3.0, 0.4, 0.0, 0.8)
     assert np.allclose(both.com, [0.3, 0.0, 0.6])

@@ -5,7 +5,7 @@ import pytest
 
 from app.library import load_arm, load_tool
 from pendant.contact_monitor import SOURCES
-from pendant.inputs import NOTHING
+from pendant.inputs import NOTHING, Inputs
 from pendant.settings import Settings, apply
 from pendant.signal import Signal
 from sim.changes import SensorFault
@@ -112,8 +112,9 @@ def test_what_is_off_or_not_valid_gives_nothing() -> None:
 def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
     sim = simulation()
     sim.tick(IDLE)
-    sim.configure_payload(Load(mass=1.0))
-    sim.tick(IDLE)
+    sim.tick(Wishes(Inputs(load=Load(mass=1.0), settings={"tools.ramp": 0.0}), (), ()))
+    for _ in range(600):
+        sim.tick(IDLE)
     signal = sim.snapshot().estimate.signals[0]
     assert signal is not None
     assert signal.mass == pytest.approx(TOOL.mass + 1.0 + 0.13)

@@ -136,27 +136,43 @@ def test_a_configured_payload_is_taken_once() -> None:
     desk = Desk()
     desk.configure(Load(mass=1.0))
     desk.configure(Load(mass=2.0))
-    assert desk.take().configured == Load(mass=2.0)
+    assert desk.take().inputs.load == Load(mass=2.0)
+    assert desk.take() == EMPTY
+
+
+def test_a_chosen_tool_is_taken_once() -> None:
+    desk = Desk()
+    desk.choose("sphere")
+    desk.choose("gripper")
+    assert desk.take().inputs.tool == "gripper"
     assert desk.take() == EMPTY
 
 
 def test_a_cleared_desk_configures_nothing() -> None:
     desk = Desk()
     desk.configure(Load(mass=1.0))
+    desk.choose("gripper")
     desk.clear()
     assert desk.take() == EMPTY
 
 
 def test_the_wishes_of_two_are_joined() -> None:
     other = Wishes(
-        Inputs(frozenset(), frozenset({Button.FREE_DRIVE}), (Command.TEACH,), {"a": 1.0, "free_drive.period": 2.0}),
+        Inputs(
+            frozenset(),
+            frozenset({Button.FREE_DRIVE}),
+            (Command.TEACH,),
+            {"a": 1.0, "free_drive.period": 2.0},
+            tool="gripper",
+            load=Load(mass=1.0),
+        ),
         (SECOND,),
         (Temperature(celsius=50.0),),
-        Load(mass=1.0),
     )
     joined = full().take().joined(other)
     settings = {"free_drive.period": 2.0, "a": 1.0}
     commands = (Command.RESET, Command.TEACH)
-    inputs = Inputs(frozenset({Button.FREE_DRIVE}), frozenset({Button.FREE_DRIVE}), commands, settings, PROGRAM)
-    assert joined == Wishes(inputs, (FIRST, SECOND), (DropPayload(), Temperature(celsius=50.0)), Load(mass=1.0))
+    button = frozenset({Button.FREE_DRIVE})
+    inputs = Inputs(button, button, commands, settings, PROGRAM, tool="gripper", load=Load(mass=1.0))
+    assert joined == Wishes(inputs, (FIRST, SECOND), (DropPayload(), Temperature(celsius=50.0)))
     assert EMPTY.joined(EMPTY) == EMPTY

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from pendant.inputs import Inputs
 from sim import calibration
 from sim.chain import Body, chain
 from sim.changes import AttachPayload, SensorFault
+from sim.desk import Wishes
 from sim.dynamics import Dynamics
 from sim.estimator import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, Estimator, tracking_gains
 from sim.frames import joint_frames, rotation_from_rpy
@@ -265,8 +267,8 @@ def test_a_payload_that_nobody_configured_looks_like_a_pull_of_its_weight(mounti
 def test_a_payload_that_is_configured_but_absent_looks_like_a_lift() -> None:
     bench = Bench()
     bench.run(0.2)
-    bench.simulation.configure_payload(Load(mass=1.5, com=[0.0, 0.0, 0.06]))
-    bench.run(1.0)
+    bench.tick(Wishes(Inputs(load=Load(mass=1.5, com=[0.0, 0.0, 0.06])), (), ()))
+    bench.run(2.0)
     seen = means(bench, 0.3)["F_user"]
     assert np.abs(seen[:3] - [0.0, 0.0, 1.5 * G]).max() < 0.15
 

@@ -310,7 +310,7 @@ def test_changes_act_on_the_true_arm_and_on_nothing_the_controller_believes() ->
     assert plant.temperature[3] < 50.0
     assert np.allclose(plant.object_poses()[0, :3], [1.0, 1.0, 0.0])
     assert (bench.simulation.dynamics.gravity(q) == believed).all()
-    assert bench.simulation.configured.mass == 1.8
+    assert bench.simulation.fitting.mass == 1.8
 
 
 def test_a_change_of_an_unknown_joint_or_object_is_an_error() -> None:
@@ -325,7 +325,8 @@ def test_a_configured_payload_changes_what_the_controller_believes() -> None:
     bench = Bench(NOMINAL)
     q = np.array(UR5E.chain.home)
     before = bench.simulation.dynamics.gravity(q).copy()
-    bench.simulation.configure_payload(Load(mass=2.0, com=[0.0, 0.0, 0.1]))
+    bench.tick(Wishes(Inputs(load=Load(mass=2.0, com=[0.0, 0.0, 0.1])), (), ()))
+    bench.run(1.1)
     jump = bench.simulation.dynamics.gravity(q) - before
     p, R, jacobian = (x.copy() for x in bench.simulation.dynamics.update(q))
     wrench = np.concatenate([[0.0, 0.0, 2.0 * 9.81], np.cross(R @ [0.0, 0.0, 0.1], [0.0, 0.0, 2.0 * 9.81])])

@@ -42,7 +42,7 @@ def test_a_control_changes_the_true_arm(
 def test_the_controller_is_told_of_a_payload_and_the_difference_is_shown(served: Served, join: Join, loop: FakeLoop) -> None:
     client = join()
     client.set(served.lab.configured._impl.uuid, value=1.5)
-    until(lambda: loop.advance() is None and loop.wishes[-1].configured == Load(mass=1.5), "configured")
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.load == Load(mass=1.5), "configured")
     loop.payload, loop.configured = 3.5, 1.5
     until(lambda: "+2.0 kg wrong" in served.lab.loads.shown, "the difference")
     loop.configured = 3.5

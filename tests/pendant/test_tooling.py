@@ -1,0 +1,353 @@
+"""Tool and payload: changed as one, refused while the arm moves, led over, and measured by the wizard."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pendant.decision import Decision
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.inputs import NOTHING as IDLE
+from pendant.inputs import Button, Command, Inputs
+from pendant.load import NOTHING, Load
+from pendant.modes import Law, Mode, Phase
+from pendant.program import Program, Wait
+from pendant.settings import Settings, ToolUse, apply
+from pendant.supervisor import Supervisor
+from pendant.tooling import Fitting, Tooling
+from pendant.tools import BARE, Equipment, Tool
+from pendant.watch import WINDOW
+from tests.pendant.estimates import estimate
+from tests.pendant.test_payload_wizard import WRIST, standing
+
+GRIPPER = Tool(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.01, 0.16])
+ANVIL = Tool(name="anvil", mass=6.0, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.0, 0.1])
+PLATE = Load(mass=0.13, com=[0.0, 0.0, 0.0])
+START = Load(mass=1.0)
+EQUIPMENT = Equipment((BARE, GRIPPER, ANVIL), BARE, START, 5.0, PLATE)
+USE = ToolUse(ramp=0.02, measure=0.1)  # 10 ticks, 50 ticks
+RAMP = 10
+
+
+class Bench:
+    """The module alone."""
+
+    def __init__(self) -> None:
+        self.tooling = Tooling(EQUIPMENT)
+        self.mode, self.phase, self.still, self.use = Mode.TEACH, Phase.OFF, True, USE
+        self.value = estimate()
+
+    def step(self, *commands: Command, tool: str = "", load: Load | None = None) -> list[Event]:
+        inputs = Inputs(commands=commands, tool=tool, load=load)
+        return self.tooling.step(self.value, inputs, self.mode, self.phase, self.still, self.use)
+
+    def run(self, count: int) -> list[Event]:
+        return [event for _ in range(count) for event in self.step()]
+
+    def measure(self, mass: float) -> list[Event]:
+        """Four postures of an arm with this mass beyond plate and tool."""
+        tool = self.tooling.fitting.tool
+        events: list[Event] = []
+        for R in WRIST:
+            self.value = standing(R, 0.13 + tool.mass + mass, (0.0, 0.0, 0.05))
+            events += self.step(Command.WIZARD_MEASURE) + self.run(50)
+        return events
+
+
+def test_it_starts_with_what_the_robot_was_set_up_with() -> None:
+    bench = Bench()
+    assert bench.tooling.fitting == Fitting(0, BARE, START, 1.0, 1.0)
+    before = bench.tooling.fitting
+    assert bench.run(3) == []
+    assert bench.tooling.fitting is before
+    assert not bench.tooling.changing
+
+
+def test_a_tool_is_one_change_of_its_point_and_its_load() -> None:
+    bench = Bench()
+    (event,) = bench.step(tool="gripper")
+    assert (event.kind, event.values["name"], event.values["old"]) == (Kind.TOOL_CHANGED, "gripper", "flange")
+    assert [event.values[name] for name in ("x", "y", "z", "mass")] == [0.0, 10.0, 160.0, 0.9]
+    assert bench.tooling.fitting == Fitting(1, GRIPPER, NOTHING, 0.0, 1.0), "what the last tool held goes with it"
+
+
+def test_a_payload_is_led_over_evenly_and_to_the_tick() -> None:
+    bench = Bench()
+    events = bench.step(load=Load(mass=3.0))
+    seen = [bench.tooling.fitting]
+    while not events:
+        events = bench.step()
+        seen.append(bench.tooling.fitting)
+    assert [now.share for now in seen] == pytest.approx([k / RAMP for k in range(RAMP + 1)])
+    assert [now.mass for now in seen] == pytest.approx([1.0 + 2.0 * k / RAMP for k in range(RAMP + 1)])
+    assert {(now.number, now.tool.name) for now in seen} == {(1, "flange")}
+    (event,) = events
+    assert (event.kind, event.values) == (
+        Kind.PAYLOAD_CHANGED,
+        {"mass": 3.0, "x": 0.0, "y": 0.0, "z": 50.0, "tool": "flange", "total": 3.0},
+    )
+    assert seen[-1].mass == 3.0
+
+
+def test_it_changes_until_the_means_of_the_estimates_hold_the_new_load_alone() -> None:
+    bench = Bench()
+    bench.step(load=Load(mass=3.0))
+    count = 1
+    while bench.tooling.changing:
+        bench.step()
+        count += 1
+    assert count == 1 + RAMP + WINDOW
+
+
+def test_without_a_ramp_it_changes_at_once() -> None:
+    bench = Bench()
+    bench.use = ToolUse(ramp=0.0)
+    (event,) = bench.step(load=Load(mass=3.0))
+    assert (event.kind, bench.tooling.fitting) == (Kind.PAYLOAD_CHANGED, Fitting(1, BARE, Load(mass=3.0), 1.0, 3.0))
+    assert bench.tooling.changing
+
+
+def test_a_change_in_the_middle_of_another_goes_on_from_there() -> None:
+    bench = Bench()
+    bench.step(load=Load(mass=3.0))
+    bench.run(RAMP // 2)
+    assert bench.tooling.fitting.mass == pytest.approx(2.0)
+    bench.step(load=Load(mass=0.0))
+    assert bench.tooling.fitting == Fitting(2, BARE, Load(mass=0.0), 0.0, pytest.approx(2.0))
+    bench.run(RAMP // 2)
+    assert bench.tooling.fitting.mass == pytest.approx(1.0)
+
+
+def test_tool_and_payload_in_one_tick_end_with_that_payload_in_that_tool() -> None:
+    bench = Bench()
+    assert [event.kind for event in bench.step(tool="gripper", load=Load(mass=2.0))] == [Kind.TOOL_CHANGED]
+    (event,) = bench.run(RAMP)
+    assert (event.values["mass"], event.values["total"], event.values["tool"]) == (2.0, 2.9, "gripper")
+
+
+@pytest.mark.parametrize(
+    ("tool", "load", "words"),
+    [
+        ("hammer", None, "there is flange, gripper, anvil"),
+        ("anvil", None, "6.00 kg, at most 5 kg"),
+        ("", Load(mass=5.1), "mass 5.1, allowed 0 .. 5 kg with this tool"),
+        ("", Load(mass=1.0, com=[0.0, 2.0, 0.0]), "com[1] 2.0, allowed -1 .. 1 m with this tool"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_changes(tool: str, load: Load | None, words: str) -> None:
+    bench = Bench()
+    before = bench.tooling.memory
+    (event,) = bench.step(tool=tool, load=load)
+    assert (event.kind, event.values["reason"]) == (Kind.TOOL_REFUSED, words)
+    assert bench.tooling.memory == before
+
+
+def test_what_the_tool_weighs_counts_against_the_payload() -> None:
+    bench = Bench()
+    bench.step(tool="gripper")
+    bench.run(RAMP)
+    (event,) = bench.step(load=Load(mass=4.2))
+    assert event.values == {"what": "payload 4.20 kg", "reason": "mass 4.2, allowed 0 .. 4.1 kg with this tool"}
+    assert bench.step(load=Load(mass=4.1)) == []
+
+
+@pytest.mark.parametrize(
+    ("mode", "phase", "words"),
+    [
+        (Mode.RUN, Phase.OFF, "stop the program first"),
+        (Mode.FREE_DRIVE, Phase.PERIOD, "leave free-drive first"),
+        (Mode.TEACH, Phase.ACTIVATION, "free-drive is being tried"),
+        (Mode.TEACH, Phase.SEQUENCE, "free-drive is being tried"),
+        (Mode.RUN, Phase.SEQUENCE, "stop the program first"),
+    ],
+)
+def test_nothing_changes_while_the_arm_moves_or_is_tried(mode: Mode, phase: Phase, words: str) -> None:
+    bench = Bench()
+    bench.measure(2.0)
+    before = bench.tooling.fitting
+    bench.mode, bench.phase = mode, phase
+    for events in (bench.step(tool="gripper"), bench.step(load=Load(mass=2.0)), bench.step(Command.WIZARD_APPLY)):
+        assert [(event.kind, event.values["reason"]) for event in events] == [(Kind.TOOL_REFUSED, words)]
+    assert bench.tooling.fitting is before
+    assert bench.tooling.wizard.progress.finding is not None
+
+
+@pytest.mark.parametrize("mode", [Mode.NORMAL, Mode.TEACH, Mode.REMOTE, Mode.STOP])
+def test_in_every_other_mode_it_may_change(mode: Mode) -> None:
+    bench = Bench()
+    bench.mode = mode
+    assert [event.kind for event in bench.step(tool="gripper")] == [Kind.TOOL_CHANGED]
+
+
+def test_the_wizard_finds_what_is_beyond_plate_and_tool_and_applies_it() -> None:
+    bench = Bench()
+    bench.step(tool="gripper")
+    bench.run(RAMP + WINDOW)
+    # The readings have the tool's own centre, too: 0.9 kg more at 0.05 m than the table says at 0.06 m.
+    events = bench.measure(2.0)
+    assert [event.kind for event in events] == [Kind.POSTURE_MEASURED] * 4 + [Kind.PAYLOAD_FOUND]
+    assert events[-1].values["mass"] == pytest.approx(2.0)
+    assert bench.step(Command.WIZARD_APPLY) == []
+    assert bench.tooling.wizard.progress.postures == 0
+    (event,) = bench.run(RAMP)
+    assert (event.kind, event.values["mass"], event.values["total"]) == (Kind.PAYLOAD_CHANGED, 2.0, 2.9)
+    centre = (0.05 * (2.0 + 0.9 + 0.13) - 0.9 * 0.06) / 2.0
+    assert event.values["z"] == pytest.approx(1000.0 * centre, abs=0.1)
+
+
+def test_what_was_not_found_cannot_be_applied() -> None:
+    bench = Bench()
+    (event,) = bench.step(Command.WIZARD_APPLY)
+    assert event.values == {"what": "payload of the wizard", "reason": "there is none yet"}
+
+
+def test_what_was_found_and_is_too_heavy_is_refused_and_kept() -> None:
+    bench = Bench()
+    bench.measure(7.0)
+    (event,) = bench.step(Command.WIZARD_APPLY)
+    assert event.kind is Kind.TOOL_REFUSED
+    assert bench.tooling.wizard.progress.postures == 4
+
+
+def test_clearing_wins_and_another_tool_clears() -> None:
+    bench = Bench()
+    bench.measure(2.0)
+    assert bench.step(Command.WIZARD_CLEAR, Command.WIZARD_MEASURE, Command.WIZARD_APPLY) == []
+    assert bench.tooling.wizard.progress.postures == 0
+    bench.measure(2.0)
+    bench.step(tool="gripper")
+    assert bench.tooling.wizard.progress.postures == 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"still": False}, "the arm moves"),
+        ({"phase": Phase.ACTIVATION}, "free-drive is on"),
+        ({"value": estimate(wrench_valid=False)}, "the flange force sensor is not valid"),
+        ({"value": estimate(force=math.nan)}, "the flange force sensor is not valid"),
+    ],
+)
+def test_a_posture_is_measured_only_where_the_sensor_tells_the_load(changes: dict[str, object], words: str) -> None:
+    for begun in (False, True):
+        bench = Bench()
+        if begun:
+            bench.step(Command.WIZARD_MEASURE)
+        for name, value in changes.items():
+            setattr(bench, name, value)
+        (event,) = bench.step(*() if begun else (Command.WIZARD_MEASURE,))
+        assert (event.kind, event.values["reason"]) == (Kind.POSTURE_REFUSED, words)
+        assert not bench.tooling.wizard.measuring
+
+
+def test_a_program_that_waits_may_be_measured_in() -> None:
+    bench = Bench()
+    bench.mode = Mode.RUN
+    assert bench.step(Command.WIZARD_MEASURE) == []
+    assert [event.kind for event in bench.run(50)] == [Kind.POSTURE_MEASURED]
+
+
+class Robot:
+    """The whole supervisor."""
+
+    def __init__(self, **settings: float | bool) -> None:
+        names = {name.replace("__", "."): value for name, value in {"tools__ramp": 0.2, **settings}.items()}
+        self.supervisor = Supervisor(apply(Settings(), names), 6, equipment=EQUIPMENT)
+        self.events: list[Event] = []
+        self.tick = 0
+        self.last: Decision
+        self.run(100)
+
+    def step(self, inputs: Inputs = IDLE, value: Estimate | None = None) -> Decision:
+        self.tick += 1
+        now = value or estimate()
+        now.tick = self.tick
+        self.last = self.supervisor.step(now, inputs)
+        self.events += self.last.events
+        return self.last
+
+    def run(self, count: int, inputs: Inputs = IDLE, value: Estimate | None = None) -> None:
+        for _ in range(count):
+            self.step(inputs, value)
+
+    def kinds(self) -> list[Kind]:
+        return [event.kind for event in self.events]
+
+
+HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
+
+
+def test_the_decision_says_what_the_controller_is_to_believe_in() -> None:
+    robot = Robot()
+    assert robot.last.fitting == Fitting(0, BARE, START, 1.0, 1.0)
+    robot.step(Inputs(tool="gripper"))
+    assert robot.last.fitting is robot.supervisor.fitting
+    assert robot.last.fitting is not None
+    assert robot.last.fitting.tool is GRIPPER
+    assert robot.last.law is Law.HOLD
+
+
+def test_an_idle_tick_after_a_change_gives_the_same_decision_again() -> None:
+    robot = Robot()
+    robot.step(Inputs(load=Load(mass=2.0)))
+    robot.run(400)
+    before = robot.last
+    assert robot.step() is before
+
+
+def test_free_drive_is_refused_while_the_payload_is_led_over() -> None:
+    robot = Robot(tools__ramp=3.0)
+    robot.step(Inputs(load=Load(mass=3.0)))
+    robot.run(510, HOLD)
+    event = next(event for event in robot.events if event.kind is Kind.REFUSED_CHANGING)
+    assert event.values["mass"] == pytest.approx(1.0 + 2.0 * 501 / 1500, abs=0.01)
+    assert robot.last.mode is Mode.TEACH
+
+
+def test_a_program_waits_for_the_payload() -> None:
+    robot = Robot()
+    robot.step(Inputs(program=Program(steps=(Wait(duration=1.0),))))
+    robot.step(Inputs(load=Load(mass=2.0)))
+    robot.step(Inputs(commands=(Command.START_PROGRAM,)))
+    assert robot.events[-1].values["reason"] == "the payload is being changed"
+    robot.run(100 + WINDOW)
+    robot.step(Inputs(commands=(Command.START_PROGRAM,)))
+    assert robot.last.mode is Mode.RUN
+    robot.step(Inputs(tool="gripper"))
+    assert robot.events[-1].kind is Kind.TOOL_REFUSED
+
+
+def test_a_change_of_the_payload_is_nobodys_push() -> None:
+    """The user's force jumps by 20 N as the configured payload does; without the change it is told as a push."""
+    pushed = estimate(force=[0.0, 0.0, 20.0])
+    for changed in (False, True):
+        robot = Robot(signals__push__on=True, signals__push__told=True, signals__push__angle=90.0, tools__ramp=0.0)
+        robot.run(200)
+        if changed:
+            robot.step(Inputs(load=Load(mass=3.0)), pushed)
+        robot.run(700, IDLE, pushed)
+        assert (Kind.PUSHED in robot.kinds()) is not changed
+        assert (Kind.SIGNAL_SEEN in robot.kinds()) is not changed
+
+
+def test_after_a_change_nobody_says_that_a_refusal_was_a_push() -> None:
+    heavy = estimate(force=[0.0, 0.0, -20.0], needed=[0.0, 0.0, 10.0])
+    for changed in (False, True):
+        robot = Robot(tools__ramp=0.0)
+        robot.run(200, IDLE, heavy)
+        robot.run(520, HOLD, heavy)
+        assert Kind.REFUSED_PAYLOAD in robot.kinds()
+        if changed:
+            robot.step(Inputs(load=Load(mass=3.0)))
+        robot.run(1500)
+        assert (Kind.RESIDUAL_GONE in robot.kinds()) is not changed
+
+
+def test_states_with_other_payloads_are_not_equal() -> None:
+    one, other = Robot(), Robot()
+    assert one.supervisor.state == other.supervisor.state
+    other.step(Inputs(load=Load(mass=2.0)))
+    one.step()
+    assert one.supervisor.state != other.supervisor.state
+    assert np.isfinite(other.supervisor.fitting.mass)
