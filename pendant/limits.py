@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import msgspec
+
 
 class Excess(NamedTuple):
     """A parameter beyond its limit."""
@@ -14,7 +16,7 @@ class Excess(NamedTuple):
     unit: str
 
 
-class Monitored(NamedTuple):
+class Monitored(msgspec.Struct, frozen=True, gc=False):
     """A parameter that is being checked, for interfaces to draw against its limit."""
 
     name: str
@@ -57,8 +59,7 @@ class Gauge:
 
     def judge(self, value: float, part: str) -> bool:
         """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed."""
-        self.value = value
-        self.part = part
+        self.value, self.part = value, part
         if self.low <= value <= self.high:
             self._beyond = 0
             return False
@@ -78,7 +79,8 @@ class Gauge:
     @property
     def monitored(self) -> Monitored:
         """The last value and its limit, to draw."""
-        return Monitored(self.name, self.part, self.value, self.limit, self.unit)
+        value, low, high = self.value, self.low, self.high
+        return Monitored(self.name, self.part, value, low if value - low < high - value else high, self.unit)
 
     @property
     def memory(self) -> tuple[object, ...]:
