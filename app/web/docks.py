@@ -39,8 +39,8 @@ class Docks:
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
-        with self._upper.add_tab("Settings") as tab:
-            self.settings = SettingsTab(gui, tab, loop)
+        with self._upper.add_tab("Settings") as self.settings_dock:
+            self.settings = SettingsTab(gui, self.settings_dock, loop)
         self._lower = gui.add_panel()
         with self._lower.add_tab("Events"):
             self.journal = Journal(gui)

@@ -21,7 +21,7 @@ import websockets.asyncio.server
 from app.web.access import Access
 from app.web.door import Door
 from app.web.gate import MAX_BYTES, Gate
-from app.web.messages import Admitted, Camera, Drag, Part, Update, Upload, decode, encode
+from app.web.messages import Admitted, Camera, Drag, Part, Trigger, Update, Upload, decode, encode
 from app.web.operator import Operator
 from app.web.takes import bounded, reason_against
 
@@ -86,6 +86,10 @@ class Guard:
         """Let every client use `control`, not the operator alone."""
         self._anyone.add(control._impl.uuid)
 
+    def for_nobody(self, control: Any) -> None:
+        """Forget a control that was for anyone: it is no more."""
+        self._anyone.discard(control._impl.uuid)
+
     def now(self) -> float:
         """The clock by which the operator's silence is measured [s]."""
         return self._clock()
@@ -115,7 +119,7 @@ class Guard:
                 return None
         else:
             uuid = message.source_component_uuid if isinstance(message, Upload | Part) else message.uuid
-            control = self._control(client, uuid)
+            control = self._command(uuid) if isinstance(message, Trigger) else self._control(client, uuid)
             if control is None:
                 return "unknown control"
             reason = reason_against(control, message)
@@ -127,6 +131,10 @@ class Guard:
         assert self._server is not None
         own = self._server._connected_clients[client].gui
         return self._server.gui._gui_input_handle_from_uuid.get(uuid) or own._gui_input_handle_from_uuid.get(uuid)
+
+    def _command(self, uuid: str) -> Any:
+        assert self._server is not None
+        return self._server.gui._command_handle_from_uuid.get(uuid)
 
     def _show_truth(self, client: int, uuid: str) -> None:
         """Set the page of a refused client back to the value that holds."""

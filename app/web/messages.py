@@ -40,6 +40,12 @@ class Hold(Message, tag="GuiButtonHoldMessage"):
     frequency: float
 
 
+class Trigger(Message, tag="CommandTriggerMessage"):
+    """A key was pressed, or a line of the palette chosen."""
+
+    uuid: str
+
+
 class Drag(Message, tag="SceneNodeDragMessage"):
     """A part of the scene is dragged."""
 
@@ -75,7 +81,7 @@ class Part(Message, tag="FileTransferPart"):
     content: bytes
 
 
-Admitted = Camera | Update | Hold | Drag | Upload | Part
+Admitted = Camera | Update | Hold | Trigger | Drag | Upload | Part
 
 _decoder = msgspec.msgpack.Decoder(Admitted)
 _encoder = msgspec.msgpack.Encoder()

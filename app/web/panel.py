@@ -49,13 +49,13 @@ class Panel:
         self.rings = Html(gui)
         self.note = Html(gui, HINT)
         self.numbers = Html(gui)
-        self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True)
+        self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
         # so that a held button beside it could swallow the stop of a second finger.
         self.safety = gui.add_panel()
         with self.safety.add_tab("Safety"):
-            self.stop = gui.add_button("EMERGENCY STOP", color=(201, 42, 42), icon=viser.Icon.ALERT_OCTAGON)
+            self.stop = gui.add_button("EMERGENCY STOP", color=(201, 42, 42), icon=viser.Icon.ALERT_OCTAGON, hint="Key: X")
             self.reset = gui.add_button("Reset", color="gray", disabled=True)
         gui.main_panel.dock_right()
         gui.main_panel.set_width(304)

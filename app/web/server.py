@@ -13,6 +13,8 @@ from app.web.access import Access, access_through, must_be_free
 from app.web.control import Control
 from app.web.docks import Docks
 from app.web.hand import Hand
+from app.web.keys import Keys
+from app.web.preferences import Preferences
 from app.web.running import Running
 from app.web.scene import TOOL, Scene, frames_of
 from app.web.site import Site
@@ -46,6 +48,8 @@ class Served(Site):
         self.docks = Docks(self.server, self.guard, loop, self.hand, arm, recording)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
+        self.preferences = Preferences(self.guard, self.docks.settings_dock, self.set_theme)
+        self.keys = Keys(self.server, self.guard, loop, self.docks, self.preferences)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
         self.server.on_client_connect(self._welcome)
@@ -75,14 +79,18 @@ class Served(Site):
         if self._frame % FRAMES_A_PANEL == 0:
             self.docks.show(snapshot)
             self.control.show()
+            self.preferences.show(snapshot.decision)
         self._frame += 1
         return True
 
     async def _welcome(self, client: viser.ClientHandle) -> None:
         self.control.welcome(client)
+        self.preferences.welcome(client)
 
     async def _farewell(self, client: viser.ClientHandle) -> None:
         self.control.farewell(client.client_id)
+        self.preferences.farewell(client.client_id)
+        self.keys.forget(client.client_id)
 
     def _let_go(self, client: int) -> None:
         self.hand.let_go(client)

@@ -35,7 +35,8 @@ class Site(ABC):
         self.guard = Guard(Operator(), access)
         with self.guard.installed(), quiet():
             self.server = viser.ViserServer(host=access.host, port=port, verbose=False)
-        self.server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", **theme)
+        self._theme = theme
+        self.set_theme(self.server.gui, dark=False)
         self._still = asyncio.Event()
 
     @property
@@ -47,6 +48,10 @@ class Site(ABC):
     def link(self) -> str:
         """What a browser has to open: the address, with the token if one is needed."""
         return self.access.link(self.server.get_port())
+
+    def set_theme(self, gui: viser.GuiApi, dark: bool) -> None:
+        """Give the page of one client, or of all, its colours."""
+        gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium", dark_mode=dark, **self._theme)
 
     @abstractmethod
     def draw(self) -> bool:

@@ -5,7 +5,7 @@ from typing import Any
 
 import viser
 
-from app.web.messages import Admitted, Hold, Part, Update, Upload
+from app.web.messages import Admitted, Hold, Part, Trigger, Update, Upload
 
 MAX_FILE = 48 * 1024
 """Largest file from a client: it comes in one message."""
@@ -35,8 +35,10 @@ def _within(value: Any, most: float) -> bool:
     return all(_within(getattr(value, name), most) for name in getattr(value, "__struct_fields__", ()))
 
 
-def reason_against(control: Any, message: Update | Hold | Upload | Part) -> str | None:
+def reason_against(control: Any, message: Update | Hold | Trigger | Upload | Part) -> str | None:
     """Why the control cannot be used like that by anybody, or None."""
+    if isinstance(message, Trigger):
+        return "disabled control" if control.disabled else None
     if control.disabled or not control.visible:
         return "disabled control"
     if isinstance(message, Upload | Part):

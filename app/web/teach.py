@@ -39,7 +39,7 @@ class Teach:
         self.ghost = Ghost(server, arm)
         self._running: list[Step] = []  # the steps of the program handed over last
         self._next = 0  # the step that `Step` does
-        self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False)
+        self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", names_of(Lesson()))
         self.edit = gui.add_button_group("Change", ("Go to", "↑", "↓", "✕"))
         self.name = gui.add_text("Name", "")
@@ -79,6 +79,10 @@ class Teach:
                 enable(self.register, decision.mode is not Mode.RUN),
             ]
         )
+
+    def mark(self) -> None:
+        """Register where the arm is."""
+        self._register(self._loop.latest())
 
     def _now(self, at: int) -> Step | None:
         return self._running[at - 1] if 0 < at <= len(self._running) else None
@@ -125,7 +129,7 @@ class Teach:
             async def _(_: viser.GuiEvent) -> None:
                 act()
 
-        on(self.register, lambda: self._register(self._loop.latest()))
+        on(self.register, self.mark)
         on(self.edit, self._edit)
         on(self.change, self._change)
         on(self.run, self._run)

@@ -5,7 +5,7 @@ import contextlib
 import math
 import socket
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import pytest
@@ -18,7 +18,7 @@ from app.web import gate as gate_module
 from app.web.door import MAX_CLIENTS
 from app.web.gate import MAX_BYTES, Gate
 from app.web.guard import VISER_VERSION
-from app.web.messages import Camera, Drag, Hold, Part, Update, Upload
+from app.web.messages import Camera, Drag, Hold, Part, Trigger, Update, Upload
 from app.web.server import Served
 from pendant.inputs import Button, Command
 from sim.touch import Pull
@@ -73,7 +73,7 @@ def test_viser_handles_the_messages_that_the_guard_knows(served: Served, join: J
     assert {message.__name__ for message in own} - HANDLED == {"ViewerCameraMessage"}
 
 
-@pytest.mark.parametrize("ours", [Camera, Update, Hold, Drag, Upload, Part])
+@pytest.mark.parametrize("ours", [Camera, Update, Hold, Trigger, Drag, Upload, Part])
 def test_admitted_messages_have_the_fields_of_visers(ours: Any) -> None:
     theirs = getattr(wire, ours.__struct_config__.tag)
     assert list(ours.__struct_fields__) == [field.name for field in fields(theirs)]
@@ -167,10 +167,11 @@ def test_only_the_hold_button_at_its_rate_is_held(served: Served, join: Join, na
     refused(served, "not a hold button")
 
 
-def others() -> list[str]:
-    """Names of all messages that viser knows and a client may not send."""
-    known = {message.__name__ for message in wire.Message.get_subclasses()}
-    return sorted(known - {message.__struct_config__.tag for message in (Camera, Update, Hold, Drag, Upload, Part)})
+def others() -> dict[str, Any]:
+    """All messages that viser, and what is built on it, know and a client may not send, by name."""
+    known = {message.__name__: message for message in wire.Message.get_subclasses() if is_dataclass(message)}
+    ours = {message.__struct_config__.tag for message in (Camera, Update, Hold, Trigger, Drag, Upload, Part)}
+    return {name: message for name, message in sorted(known.items()) if name not in ours}
 
 
 @pytest.mark.parametrize("with_fields", [True, False])
@@ -179,8 +180,8 @@ def test_no_other_message_is_understood(served: Served, join: Join, monkeypatch:
     client = join()
     names = others()
     assert {"ShareUrlRequest", "SceneNodeClickMessage", "GetRenderResponseMessage"} <= set(names)
-    for name in names:
-        filler = {field.name: "x" for field in fields(getattr(wire, name))} if with_fields else {}
+    for name, message in names.items():
+        filler = {field.name: "x" for field in fields(message)} if with_fields else {}
         client.send(**(filler | {"type": name}))
     refused(served, "not understood", len(names))
 
