@@ -1,4 +1,8 @@
-"""Who has control, shown to each client in its own words, with a button to take it or to give it back."""
+"""Who has control, shown to each client in its own words, with a button to take it and one to give it back.
+
+Two, of which one is shown: a single one could be drawn anew between a press and what the press does, and would then do the
+opposite of what was pressed.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,11 +11,8 @@ import viser
 
 from app.web import style, svg
 from app.web.guard import Guard
-from app.web.html import Html
+from app.web.html import Html, enable
 from app.web.svg import Colour
-
-TAKE = "Take"
-RELEASE = "Release"
 
 
 @dataclass(slots=True)
@@ -19,8 +20,8 @@ class Strip:
     """What one client sees."""
 
     text: Html
-    button: viser.GuiButtonHandle
-    label: str = TAKE
+    take: viser.GuiButtonHandle
+    release: viser.GuiButtonHandle
 
 
 class Control:
@@ -34,16 +35,23 @@ class Control:
 
     def welcome(self, client: viser.ClientHandle) -> None:
         """Give a new client its strip."""
-        button = client.gui.add_button(TAKE, color="gray", order=-1.0)
-        strip = Strip(Html(client.gui, order=-2.0), button)
-        self._strips[client.client_id] = strip
+        gui, number = client.gui, client.client_id
+        strip = Strip(
+            Html(gui, order=-3.0),
+            gui.add_button("Take", color="gray", order=-2.0),
+            gui.add_button("Release", color="gray", order=-1.0, visible=False),
+        )
+        self._strips[number] = strip
 
         # The guard has already made whoever presses it the operator, if control was free.
-        @button.on_click
+        @strip.take.on_click
         async def _(_: viser.GuiEvent) -> None:
-            if strip.label == RELEASE:
-                self._let_go(client.client_id)
-                self._guard.operator.leave(client.client_id)
+            self.show()
+
+        @strip.release.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._let_go(number)
+            self._guard.operator.leave(number)
             self.show()
 
         self.show()
@@ -68,13 +76,13 @@ class Control:
             if number not in here:
                 continue
             if holder == number:
-                text, colour, label, able = "You have control", Colour.GREEN, RELEASE, True
+                text, colour = "You have control", Colour.GREEN
             elif holder is None:
-                text, colour, label, able = "Nobody has control", Colour.GREY, TAKE, True
+                text, colour = "Nobody has control", Colour.GREY
             else:
-                text, colour, label, able = f"Client {holder + 1} has control", Colour.AMBER, TAKE, free
-            strip.text.show(svg.who(text, colour) + style.beside(strip.button._impl.uuid))
-            if strip.label != label:
-                strip.label = strip.button.label = label
-            if strip.button.disabled == able:
-                strip.button.disabled = not able
+                text, colour = f"Client {holder + 1} has control", Colour.AMBER
+            strip.text.show(svg.who(text, colour) + style.beside(strip.take._impl.uuid) + style.beside(strip.release._impl.uuid))
+            enable(strip.take, free)
+            for button, shown in ((strip.take, holder != number), (strip.release, holder == number)):
+                if button.visible is not shown:
+                    button.visible = shown

@@ -149,7 +149,7 @@ def test_no_disabled_control_takes_anything(served: Served, join: Join, loop: Fa
 
 def test_a_watcher_can_use_nothing_but_the_stop(served: Served, join: Join, untouched: None) -> None:
     operator, watcher = join(), join()
-    operator.set(served.control._strips[0].button._impl.uuid, value=True)
+    operator.set(served.control._strips[0].take._impl.uuid, value=True)
     until(lambda: served.guard.operator.holder == 0, "the operator has control")
     others = {uuid: control for uuid, control in controls(served).items() if control is not served.panel.stop}
     for uuid, control in others.items():

@@ -34,7 +34,7 @@ def test_no_key_is_one_of_visers(served: Served, join: Join) -> None:
 
 def test_anyone_can_stop_with_a_key(served: Served, join: Join, loop: FakeLoop) -> None:
     operator, watcher = join(), join()
-    operator.set(served.control._strips[0].button._impl.uuid, value=True)
+    operator.set(served.control._strips[0].take._impl.uuid, value=True)
     until(lambda: served.guard.operator.holder == 0, "client 0 has control")
     press(served, watcher, "X")
     until(commanded(loop, Command.EMERGENCY_STOP), "the stop")
@@ -44,7 +44,7 @@ def test_anyone_can_stop_with_a_key(served: Served, join: Join, loop: FakeLoop) 
 @pytest.mark.parametrize("letter", ["L", "M", "P", "N"])
 def test_a_watcher_presses_in_vain(served: Served, join: Join, loop: FakeLoop, letter: str) -> None:
     operator, watcher = join(), join()
-    operator.set(served.control._strips[0].button._impl.uuid, value=True)
+    operator.set(served.control._strips[0].take._impl.uuid, value=True)
     until(lambda: served.guard.operator.holder == 0, "client 0 has control")
     press(served, watcher, letter)
     until(lambda: served.guard.refused["not the operator"] == 1, "refused")
@@ -106,7 +106,7 @@ def test_a_key_held_down_counts_once(served: Served, join: Join, loop: FakeLoop)
 
 def test_each_page_is_dark_or_light_for_itself(served: Served, join: Join) -> None:
     operator, watcher = join(), join()
-    operator.set(served.control._strips[0].button._impl.uuid, value=True)
+    operator.set(served.control._strips[0].take._impl.uuid, value=True)
     pages = served.preferences._pages
     until(lambda: len(pages) == 2, "both have their switches")
     press(served, watcher, "T")

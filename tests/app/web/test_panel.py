@@ -203,32 +203,3 @@ def test_the_clock_is_paused_stepped_slowed_and_set_back(served: Served, join: J
     until(lambda: loop.speed == 0.3, "slower")
     client.set(served.lab.restart._impl.uuid, value=True)
     until(lambda: loop.resets == 1, "set back")
-
-
-def test_control_is_taken_shown_and_given_back(served: Served, join: Join, loop: FakeLoop) -> None:
-    first, second = join(), join()
-    strips = served.control._strips
-    until(lambda: len(strips) == 2, "both have a strip")
-    assert "Nobody has control" in strips[0].text.shown
-    first.set(strips[0].button._impl.uuid, value=True)
-    until(
-        lambda: "You have control" in strips[0].text.shown and "Client 1 has control" in strips[1].text.shown, "client 1 has it"
-    )
-    until(lambda: strips[1].button.disabled, "nobody can take it")
-    first.drag("start")
-    until(lambda: bool(loop.desk.take().touches), "a touch")
-    first.set(strips[0].button._impl.uuid, value=True)
-    until(lambda: served.guard.operator.holder is None, "given back")
-    assert loop.desk.take().touches == ()
-    until(lambda: not strips[1].button.disabled, "it can be taken")
-    second.set(strips[1].button._impl.uuid, value=True)
-    until(lambda: "You have control" in strips[1].text.shown, "client 2 has it")
-
-
-def test_the_strip_of_another_client_cannot_be_pressed(served: Served, join: Join) -> None:
-    join()
-    second = join()
-    until(lambda: len(served.control._strips) == 2, "both have a strip")
-    second.set(served.control._strips[0].button._impl.uuid, value=True)
-    until(lambda: served.guard.refused["unknown control"] == 1, "refused")
-    assert served.guard.operator.holder is None
