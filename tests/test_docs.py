@@ -1,0 +1,157 @@
+"""The documentation: what it names is there, and its examples work as they stand."""
+
+import inspect
+import math
+import re
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import yaml
+
+from app import actions
+from app.checked import BadInput, convert
+from app.library import load_arm
+from app.session import Session
+from pendant import contact_rules, parameters, settings, shapes, solids
+from pendant.history import History
+from pendant.limits import Gauge
+from pendant.signal import Signal
+from tests.pendant.contacts import limit
+from tests.pendant.estimates import estimate
+
+ROOT = Path(__file__).parent.parent
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
+RECIPES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+SPAN = re.compile(r"`([^`\n]+)`")
+
+
+def named(page: Path) -> list[str]:
+    """The files and folders of the repository that a page names; those of the user have no folder."""
+    spans = SPAN.findall(BLOCK.sub("", page.read_text()))
+    return [each for each in spans if re.fullmatch(r"(app|sim|pendant|assets|docs|tests|benchmarks|examples)/[\w./-]*", each)]
+
+
+def blocks(name: str, kind: str = "python") -> list[str]:
+    """The code of a recipe's blocks."""
+    found = [(lang, textwrap.dedent(code)) for lang, code in re.findall(r"```(\w+)\n(.*?)```", recipe(name), re.DOTALL)]
+    return [code for lang, code in found if lang == kind]
+
+
+def recipe(name: str) -> str:
+    return (ROOT / "docs" / "how-to" / f"{name}.md").read_text()
+
+
+def within(module: Any, code: str) -> dict[str, Any]:
+    """What a block defines, read at the end of the module that it belongs to."""
+    names = {**vars(module), "math": math}
+    exec(compile(code, module.__name__, "exec", dont_inherit=True), names)
+    return names
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_file_and_link_that_a_page_names_is_there(page: Path) -> None:
+    assert [name for name in named(page) if not (ROOT / name).exists()] == []
+    links = re.findall(r"\]\(([^)#:]+)\)", page.read_text())
+    assert [link for link in links if not (page.parent / link).exists()] == []
+
+
+def test_the_index_has_every_page() -> None:
+    index = (ROOT / "docs" / "README.md").read_text()
+    pages = [page.relative_to(ROOT / "docs").as_posix() for page in (ROOT / "docs").rglob("*.md")]
+    assert [page for page in pages if page != "README.md" and f"]({page})" not in index] == []
+    assert "docs/README.md" in (ROOT / "README.md").read_text()
+
+
+@pytest.mark.parametrize("page", RECIPES, ids=lambda page: page.stem)
+def test_a_recipe_is_a_page_that_says_what_to_copy_from(page: Path) -> None:
+    text = page.read_text()
+    assert len(text.splitlines()) <= 65
+    first = re.search(r"\*\*Copy from\*\* `([\w./-]+)`", text)
+    assert first is not None
+    assert (ROOT / first[1]).is_file()
+    assert f"`{first[1]}`" in (ROOT / "docs" / "README.md").read_text()
+
+
+@pytest.mark.parametrize("page", RECIPES, ids=lambda page: page.stem)
+def test_what_a_recipe_names_in_the_code_is_in_its_files(page: Path) -> None:
+    text = page.read_text()
+    prose = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    code = "".join((ROOT / name).read_text() for name in named(page) if (ROOT / name).is_file())
+    example = "".join(content for _, content in re.findall(r"```(\w+)\n(.*?)```", text, re.DOTALL))
+    names = [each.split(".")[-1] for each in SPAN.findall(prose) if re.fullmatch(r"_?[A-Za-z]\w*(\.\w+)?", each)]
+    assert len(names) >= 3
+    assert [name for name in names if name not in code and name not in example] == []
+
+
+def test_the_parameter_of_the_example_is_read() -> None:
+    reader, row, cell = blocks("monitored-parameter")
+    names = within(parameters, reader)
+    made: dict[str, Any] = eval("{" + row + "}", names)
+    value = estimate()
+    value.v_F = np.array([9.0, 9.0, 9.0, 1.0, -2.0, 2.0])
+    view = parameters.View(value, parameters.Reference((0.0,) * 3, (0.0,) * 6, (0.0,) * 6, (0.0,) * 6), None, (), (), 0.0)
+    assert made["flange_turn"].read(view, Gauge("t", "")) == (3.0, "flange")
+    assert set(made["flange_turn"]._fields) == set(parameters.Parameter._fields)
+    section = within(settings, f"class Made(Section, frozen=True):\n    {cell}")["Made"]()
+    assert (section.flange_turn.max, section.flange_turn.on) == (4.0, True)
+
+
+def test_the_shape_of_the_example_is_what_it_says() -> None:
+    field, shape = blocks("wall-shape")
+    made = within(shapes, "")
+    made["solids"] = type("Solids", (), {"capsule": staticmethod(within(solids, field)["capsule"])})
+    exec(compile(shape, "shapes", "exec", dont_inherit=True), made)
+    pill = msgspec.convert({"kind": "capsule", "radius": 0.1, "height": 0.2}, made["Capsule"])
+    distance = pill.field()
+    assert distance(0.0, 0.0, 0.5) == pytest.approx((0.3, 0.0, 0.0, 1.0))
+    assert distance(0.0, -0.3, 0.05) == pytest.approx((0.2, 0.0, -1.0, 0.0))
+    rng = np.random.default_rng(3)
+    axis = np.array([0.0, 0.0, 1.0]) * np.linspace(-0.1, 0.1, 2001)[:, None]
+    for point in [*rng.normal(0.0, 0.15, (50, 3)), np.zeros(3)]:
+        far, *slope = distance(*point.tolist())
+        assert far == pytest.approx(np.linalg.norm(point - axis, axis=1).min() - 0.1, abs=1e-6)
+        assert distance(*(point - far * np.array(slope)).tolist())[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_rule_of_the_example_sees_a_large_force() -> None:
+    name, rule, switches, use = blocks("contact-rule")
+    assert name.strip() == 'LEVEL = "level"'
+    level: Callable[..., bool] = within(contact_rules, rule)["level"]
+    thresholds = type("Limit", (), {"level_force": 40.0, "mass": limit().mass})()
+    history = History()
+    assert not level(history, thresholds)
+    for force, seen in ((39.0, False), (41.0, True)):
+        history.push(Signal(force, 0.0, 0.0, 0.0, 0.0, 0.0))
+        assert level(history, thresholds) is seen
+    made = within(settings, "class Made(Section, frozen=True):\n" + textwrap.indent(switches, "    "))["Made"]()
+    assert (made.level, made.level_force) == (False, 40.0)
+    for word in ("wanted", "counts", "hard_count", "misses", "seen", "NEW"):
+        assert word in use
+        assert word in (ROOT / "pendant" / "detector.py").read_text()
+
+
+def test_the_arm_of_the_example_is_one(tmp_path: Path) -> None:
+    (changed,) = blocks("arm", "yaml")
+    copied = yaml.safe_load((ROOT / "assets/robots/ur5e.yaml").read_text())
+    path = tmp_path / "my-arm.yaml"
+    path.write_text(yaml.safe_dump({**copied, **yaml.safe_load(changed)}))
+    arm = load_arm(path)
+    assert (arm.name, arm.title, arm.payload) == ("ur5e", "My arm", 6.0)
+
+
+def test_the_action_of_the_example_shakes() -> None:
+    (code,) = blocks("session-action")
+    shake = within(actions, code)["Shake"]
+    (written,) = yaml.safe_load(blocks("session-action", "yaml")[0])["timeline"]
+    action = msgspec.convert(written, shake)
+    assert action.push(0.0).force == (0.0, 0.0, 0.0)
+    assert action.push(1.0 / 12.0).force == pytest.approx((0.0, 60.0, 0.0))  # a quarter of 3 Hz
+    assert inspect.getdoc(shake)
+    with pytest.raises(BadInput, match="timeline"):
+        convert({"title": "t", "duration": 1.0, "timeline": [written]}, Session, "s.yaml")  # it is not there yet
