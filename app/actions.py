@@ -15,7 +15,6 @@ from sim.touch import ZERO, Push, Triple
 
 PLANNED_CONTROLS: dict[str, str] = {
     "confirm": "FD-8",
-    "restart_period": "FD-16",
     "register_waypoint": "FD-13",
     "axis_locks": "FD-4",
 }

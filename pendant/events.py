@@ -34,6 +34,7 @@ class Kind(StrEnum):
     NOT_YET = "not_yet"
     MANIPULATION = "manipulation"
     RESTARTED = "restarted"
+    PERIOD_ANEW = "period_anew"
     WALL_REACHED = "wall_reached"
     WRENCH_LOST = "wrench_lost"
     HOLD_SILENT = "hold_silent"

@@ -68,6 +68,7 @@ class FreeDrive:
 
     __slots__ = (
         "_absent",
+        "_anew",
         "_appeared",
         "_attempt",
         "_began",
@@ -119,6 +120,7 @@ class FreeDrive:
         self._absent = ABSENT  # ticks without the signal
         self._signal = NONE  # of activation, in this tick
         self._appeared = False  # it did in this tick
+        self._anew = False  # the running period is to begin anew in this tick
         self._attempt: Attempt | None = None
         self._held = False  # the button, as sensed in this tick
         self._began = False
@@ -186,6 +188,7 @@ class FreeDrive:
         """Begin a tick: the button, the signal of activation (None: as the button), the cool-down, the absence of the signal."""
         if signal is None:
             signal = BUTTON if held else NONE
+        self._anew = False
         self._appeared = bool(signal.source) and not self._signal.source
         self._signal = signal
         self._began = held and not self._held
@@ -199,13 +202,18 @@ class FreeDrive:
         elif signal.by_hand and self._cool > 0:
             self._blocked = True
 
+    def ask_anew(self) -> bool:
+        """The free-drive or restart period is to begin anew in this tick (FD-16). Returns whether one runs."""
+        self._anew = self.phase in (Phase.PERIOD, Phase.RESTART)
+        return self._anew
+
     def step(self, around: Surroundings, settings: Settings) -> list[Event]:
         """Decide the tick that `sense` began. Returns what happened, in order."""
         events = self._decide(around, settings)
         if self._posture is not None and self.phase not in KNOWN:
             if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
                 joints = way_back(self._posture, tuple(around.estimate.q.tolist()), self._joints)
-                if joints:
+                if joints and settings.free_drive.way_back:
                     events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints}))
             self._posture = None
         return events
@@ -248,7 +256,8 @@ class FreeDrive:
             events.append(_started(attempt, tick))
             outcome = attempt.first()
         else:
-            outcome = attempt.step(self._signal, around.hand_off)
+            static = around.still.count >= ticks(settings.static.time)  # an arm that a hand has left still swings
+            outcome = attempt.step(self._signal, around.hand_off and static)
         self.phase = attempt.phase
         if outcome is Outcome.CANCELLED:
             self._give_up()
@@ -347,7 +356,7 @@ class FreeDrive:
         self.use_wrench = around.wrench_ok
         self.baseline = around.mean.mean()
         if self.phase is Phase.PERIOD:
-            self._begin(Phase.PERIOD, settings.free_drive.period, around, settings)
+            self._begin(Phase.PERIOD, around, settings)
         self._hand = Hand(around.estimate, self.baseline)
         self._operation = Operation(around.estimate, settings, self.baseline, self._joints, self._rated)
         self._containment.enter(settings.walls)
@@ -374,8 +383,8 @@ class FreeDrive:
             self._pressed = 0
         elif self.phase is Phase.GUIDED:
             self._left = max(self._left - 1, 0)
-            if self._left == 0 and around.still.count >= self._total:
-                self._begin(Phase.RESTART, settings.free_drive.restart_period, around, settings)
+            if self._left == 0 and around.still.count >= self._total and settings.free_drive.maintained:
+                self._begin(Phase.RESTART, around, settings)
                 events.append(Event(Kind.RESTARTED, tick, {"period": self._total * TICK}))
         else:
             self._count(around, settings, events)
@@ -425,11 +434,15 @@ class FreeDrive:
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
             events.append(self._leave(Kind.LEFT_PRESS, tick, settings, values))
         else:
-            self._begin(Phase.PERIOD, settings.free_drive.period, around, settings)
+            self._begin(Phase.PERIOD, around, settings)
 
     def _count(self, around: Surroundings, settings: Settings, events: list[Event]) -> None:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick
+        if self._anew:
+            self._begin(self.phase, around, settings)
+            events.append(Event(Kind.PERIOD_ANEW, tick, {"period": self._total * TICK}))
+            return
         self._left -= 1
         assert self._maintained is not None
         excess = self._maintained.step(around.estimate, self.use_wrench)
@@ -442,9 +455,11 @@ class FreeDrive:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
             events.append(self._leave(kind, tick, settings, {"limit": self._total * TICK}))
 
-    def _begin(self, phase: Phase, seconds: float, around: Surroundings, settings: Settings) -> None:
-        self.phase = phase
-        self._total = self._left = ticks(seconds)
+    def _begin(self, phase: Phase, around: Surroundings, settings: Settings) -> None:
+        """The free-drive or the restart period begins; where none ends free-drive, the arm counts as guided (FD-24)."""
+        use = settings.free_drive
+        self.phase = phase if use.maintained else Phase.GUIDED
+        self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
         self._maintained = Maintained(around.estimate, settings, self.use_wrench, self._joints)
 
     def _disabled(self, around: Surroundings, settings: Settings) -> Event:

@@ -66,6 +66,11 @@ class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     restart_period: Annotated[
         float, _number(0.5, 30.0, "s", "FD-15", "leave when a guided arm stands still for this long", locked=False)
     ] = 3.0
+    anew: Annotated[bool, _switch("FD-16", "a signal begins the running period anew")] = True
+    longest: Annotated[float, _number(0.5, 30.0, "s", "FD-16", "longest that the two periods may be")] = 30.0
+    maintained: Annotated[bool, _switch("FD-24", "free-drive ends when nobody moves the arm for its periods")] = True
+    remainders: Annotated[bool, _switch("FD-20", "what is left of every period is published")] = True
+    way_back: Annotated[bool, _switch("FD-22", "the way back to the posture at activation is told")] = True
     cool_down: Annotated[float, _number(0.0, 30.0, "s", "FD-12c", "pause after a refusal or a leaving")] = 2.0
     gain: Annotated[float, _number(0.0, 3.0, "", "FD-3", "factor on the user's force")] = 1.0
     force_cap: Annotated[float, _number(5.0, 100.0, "N", "FD-3", "largest user force that is amplified")] = 50.0

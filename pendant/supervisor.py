@@ -272,6 +272,11 @@ class Supervisor:
             if command is Command.LEAVE_FREE_DRIVE:
                 if self._free.phase is not Phase.OFF:
                     self._happen(Event(Kind.DEACTIVATED, estimate.tick), events)
+            elif command is Command.RESTART_PERIOD:
+                if not self.settings.free_drive.anew:
+                    self._refuse(command, estimate, "periods are not begun anew here", events)
+                elif not self._free.ask_anew():
+                    self._refuse(command, estimate, "no period of free-drive runs", events)
             elif command in SWITCHABLE:
                 to = SWITCHABLE[command]
                 if self._mode not in RESTING:
@@ -480,7 +485,7 @@ class Supervisor:
             tooling.fitting,
             tooling.wizard.progress,
         )
-        periods = () if free.idle else free.periods()
+        periods = free.periods() if not free.idle and self.settings.free_drive.remainders else ()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
         walls = () if free.phase is Phase.OFF else free.walls()

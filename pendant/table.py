@@ -199,6 +199,7 @@ TABLE: dict[Kind, Row] = {
         ("parameter", "part", "value", "limit", "unit"),
     ),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
+    Kind.PERIOD_ANEW: _info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
     Kind.WALL_REACHED: Row(
         Effect.INFO,
         Severity.NOTICE,

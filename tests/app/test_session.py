@@ -76,7 +76,7 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         ({"posture": [0.0, 9.0, 0.0, 0.0, 0.0, 0.0]}, "posture[1] = 9.0: -6.28319 .. 6.28319 rad (shoulder of ur5e)"),
         ({"settings": {"free_drive.periode": 1}}, "settings.free_drive.periode"),
         ({"settings": {"free_drive.period": 99}}, "settings.free_drive.period = 99.0: a number from 0.5 to 30 s"),
-        ({"features": {"FD-16": "off"}}, "features.FD-16: FD-16: not available yet (planned)"),
+        ({"features": {"FD-4": "off"}}, "features.FD-4: FD-4: not available yet (planned)"),
         ({"features": {"FD-99": "off"}}, "features = FD-99: the id of a requirement"),
         ({"features": {"XX-1": "on"}}, "features = XX-1: the id of a requirement"),
         ({"world": "kitchen"}, "world = kitchen: a list of objects, or one of table, workshop"),

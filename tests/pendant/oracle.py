@@ -113,6 +113,7 @@ class World:
     stopped_at: int = 0  # tick of the stop
     unmeasured: bool = False  # a stop whose end has not been seen yet
     off_from: float = inf  # drive power is removed from this tick on
+    anew: bool = False  # the period that runs was asked to begin anew
     tried: bool = False  # the sensor was valid when the sequence began
 
 
@@ -252,12 +253,17 @@ def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[
 
 
 def _modes(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
+    w.anew = False
     for command in i.commands:
         if command is Command.LEAVE_FREE_DRIVE and w.phase is not Phase.OFF:
             kinds.append(Kind.DEACTIVATED)
             _end(w, t, present, cool=False)
             if w.mode is Mode.FREE_DRIVE:
                 w.mode, w.brake = w.back, True
+        if command is Command.RESTART_PERIOD:
+            w.anew = w.phase in (Phase.PERIOD, Phase.RESTART)
+            if not w.anew:
+                kinds.append(Kind.COMMAND_REFUSED)
         if command in (Command.NORMAL, Command.TEACH, Command.REMOTE):
             to = Mode(command.value.upper())
             if w.mode in (Mode.RUN, Mode.FREE_DRIVE, Mode.STOP):
@@ -444,13 +450,16 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
         if age >= _n(s.static.time) and static:
             kinds.append(Kind.RESTARTED)
             begin(Phase.RESTART)
+    elif w.anew:
+        kinds.append(Kind.PERIOD_ANEW)
+        begin(w.phase)
     elif guided:
         kinds.append(Kind.MANIPULATION)
         w.phase, w.since = Phase.GUIDED, t
-    elif w.phase is Phase.PERIOD and age == _n(s.free_drive.period):
-        _leave(w, t, Kind.LEFT_PERIOD, present, kinds)
-    elif w.phase is Phase.RESTART and age == _n(s.free_drive.restart_period):
-        _leave(w, t, Kind.LEFT_RESTART, present, kinds)
+    else:
+        first = w.phase is Phase.PERIOD
+        if age == _n(s.free_drive.period if first else s.free_drive.restart_period):
+            _leave(w, t, Kind.LEFT_PERIOD if first else Kind.LEFT_RESTART, present, kinds)
 
 
 def agree(stream: list[Step], settings: Settings) -> list[Seen]:

@@ -65,6 +65,16 @@ def test_a_signal_by_hand_enters_once_the_hand_is_off(name: str) -> None:
     assert source
 
 
+def test_an_arm_that_the_hand_has_left_comes_to_rest_before_the_sequence() -> None:
+    """FD-8a, FD-9: it is waited for as the hand is."""
+    bench = Bench(signals__push__on=True)
+    bench.run(1.1, force=20.0)
+    assert bench.run(0.5, qd=0.02).phase is Phase.LET_GO
+    assert bench.run(0.08).phase is Phase.LET_GO
+    assert bench.run(0.04).phase is Phase.SEQUENCE
+    assert Kind.REFUSED_MOVING not in bench.kinds
+
+
 @pytest.mark.parametrize("name", BY_HAND)
 def test_without_its_switch_nothing_happens(name: str) -> None:
     """FD-5."""
