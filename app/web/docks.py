@@ -15,6 +15,7 @@ from app.web.recording import RecordingSwitch
 from app.web.running import Running
 from app.web.settings_tab import SettingsTab
 from app.web.teach import Teach
+from app.web.tools_tab import ToolsTab
 from pendant.events import Event
 from sim.arm import Arm
 from sim.snapshot import Snapshot
@@ -39,6 +40,8 @@ class Docks:
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
+        with self._upper.add_tab("Tools"):
+            self.tools = ToolsTab(gui, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
             self.settings = SettingsTab(gui, self.settings_dock, loop)
         self._lower = gui.add_panel()
@@ -60,6 +63,10 @@ class Docks:
             self.lab.drop,
             self.lab.setup.begin,
             self.settings.defaults,
+            self.tools.use,
+            self.tools.enter,
+            self.tools.apply,
+            self.tools.clear,
             self.contacts.export,
             self.teach.save,
             self.teach.load,
@@ -78,6 +85,7 @@ class Docks:
             self.journal.show(fresh),
             self.lab.show(snapshot),
             self.teach.show(snapshot),
+            self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
             self.recording.show(),

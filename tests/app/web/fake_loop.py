@@ -11,7 +11,9 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
+from pendant.payload_wizard import IDLE
 from pendant.settings import Settings
+from pendant.tooling import Fitting
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
 from sim.scenario import Scenario
@@ -76,6 +78,8 @@ class FakeLoop:
         self.periods: tuple[Remaining, ...] = ()
         self.monitored: tuple[Monitored, ...] = ()
         self.configured = 0.0
+        self.fitting: Fitting | None = None
+        self.wizard = IDLE
         self.payload = 0.0
         self.q = HOME.copy()
         self.touches: tuple[Any, ...] = ()
@@ -116,6 +120,8 @@ class FakeLoop:
             self.periods,
             (),
             monitored=self.monitored,
+            fitting=self.fitting,
+            wizard=self.wizard,
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))

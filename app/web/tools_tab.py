@@ -1,0 +1,147 @@
+"""The tools tab: the table of tools, the payload beyond the tool, and the wizard that measures it."""
+
+from collections.abc import Callable, Sequence
+
+import viser
+
+from app.web import svg
+from app.web.html import Html, enable
+from app.web.running import Running
+from app.web.svg import Colour
+from pendant.inputs import Command
+from pendant.load import Load
+from pendant.modes import Mode, Phase
+from pendant.payload_fit import LEAST
+from pendant.payload_wizard import Progress
+from pendant.tooling import Fitting
+from sim.arm import Arm
+from sim.scenario import Scenario, table
+from sim.snapshot import Snapshot
+
+FARTHEST = 300.0
+"""Largest coordinate of a payload's centre that the page takes [mm]."""
+
+
+class ToolsTab:
+    """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+        self._loop = loop
+        self._scenario: Scenario | None = None
+        self._fitting: Fitting | None = None
+        self.now = Html(gui)
+        names = tuple(tool.name for tool in table(loop.scenario))
+        self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
+        self.about = Html(gui)
+        self.use = gui.add_button("Use this tool", color="gray")
+        with gui.add_folder("Payload wizard"):
+            self.progress = Html(gui)
+            self.measure = gui.add_button("Measure this posture", icon=viser.Icon.SCALE)
+            self.apply = gui.add_button("Apply the payload found", color="gray", disabled=True)
+            self.clear = gui.add_button("Begin again", color="gray", disabled=True)
+        with gui.add_folder("Payload beyond the tool", expand_by_default=False):
+            self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=arm.payload, step=0.01)
+            self.centre = tuple(
+                gui.add_number(f"Centre {axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0) for axis in "xyz"
+            )
+            self.enter = gui.add_button("Set payload", color="gray")
+        self._connect()
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show tool, payload and wizard; True if anything changed."""
+        decision = snapshot.decision
+        locked = decision.mode in (Mode.FREE_DRIVE, Mode.RUN) or decision.phase is Phase.SEQUENCE
+        wizard = decision.wizard
+        if self._loop.scenario is not self._scenario:
+            self._scenario = self._loop.scenario
+            self.tool.options = tuple(tool.name for tool in table(self._scenario))
+        if decision.fitting is not None and (self._fitting is None or decision.fitting.number != self._fitting.number):
+            self._take(decision.fitting)
+        self._fitting = decision.fitting
+        measuring = wizard.share > 0.0
+        changed = [
+            self.now.show(svg.facts(_facts(decision.fitting, locked))),
+            self.about.show(self._about()),
+            self.progress.show(_told(wizard, measuring)),
+            enable(self.use, not locked),
+            enable(self.enter, not locked),
+            enable(self.measure, decision.phase is Phase.OFF and not measuring),
+            enable(self.apply, wizard.finding is not None and not locked),
+            enable(self.clear, wizard.postures > 0 and not measuring),
+        ]
+        return any(changed)
+
+    def _take(self, fitting: Fitting) -> None:
+        """Another tool or payload: the controls say what it is."""
+        controls = (self.tool, self.mass, *self.centre)
+        values = (fitting.tool.name, fitting.load.mass, *(1000.0 * way for way in fitting.load.com))
+        for control, value in zip(controls, values, strict=True):
+            if control.value != value:
+                control.value = value
+
+    def _about(self) -> str:
+        """What the table says of the chosen tool, unless it is the one in use."""
+        tool = next((tool for tool in table(self._loop.scenario) if tool.name == self.tool.value), None)
+        if tool is None or (self._fitting is not None and tool.name == self._fitting.tool.name):
+            return ""
+        pairs = [("Tool centre point", _point(tool.tcp)), ("Mass", f"{tool.mass:.3f} kg"), ("Centre of mass", _point(tool.com))]
+        return svg.facts(pairs)
+
+    def _connect(self) -> None:
+        desk = self._loop.desk
+
+        def on(button: viser.GuiButtonHandle, act: Callable[[], None]) -> None:
+            @button.on_click
+            async def _(_: viser.GuiEvent) -> None:
+                act()
+
+        on(self.use, lambda: desk.choose(self.tool.value))
+        on(self.enter, lambda: desk.configure(self.entered()))
+        on(self.measure, lambda: desk.command(Command.WIZARD_MEASURE))
+        on(self.apply, lambda: desk.command(Command.WIZARD_APPLY))
+        on(self.clear, lambda: desk.command(Command.WIZARD_CLEAR))
+
+    def entered(self) -> Load:
+        """The payload that the numbers say."""
+        return Load(mass=float(self.mass.value), com=[float(way.value) / 1000.0 for way in self.centre])
+
+
+def _facts(fitting: Fitting | None, locked: bool) -> list[tuple[str, str]]:
+    if fitting is None:
+        return []
+    total = fitting.tool.mass + fitting.load.mass
+    if fitting.share < 1.0:
+        state = f"changing, {100.0 * fitting.share:.0f} %"
+    else:
+        state = "locked: the arm is free or runs" if locked else "in use"
+    return [
+        ("In use", f"{fitting.tool.name}, {fitting.tool.mass:.3f} kg"),
+        ("Tool centre point", _point(fitting.tool.tcp)),
+        ("Payload beyond it", f"{fitting.mass:.2f} kg"),
+        ("Together", f"{total:.2f} kg"),
+        ("Now", state),
+    ]
+
+
+def _told(wizard: Progress, measuring: bool) -> str:
+    """How far the wizard is, and what to do next."""
+    if measuring:
+        return svg.note(f"Measuring, {100.0 * wizard.share:.0f} %", "Hands off the arm.", Colour.BLUE)
+    found = wizard.finding
+    if found is not None:
+        x, y, z = (1000.0 * way for way in found.centre)
+        lines = [
+            f"Centre {x:.0f}, {y:.0f}, {z:.0f} mm, each ± {1000.0 * found.centre_deviation:.1f} mm",
+            f"Fit {found.force_fit:.2f} N, {found.torque_fit:.3f} N·m in {found.postures} postures",
+            f"Sensor offset {', '.join(f'{value:.1f}' for value in found.force_offset)} N",
+        ]
+        headline = f"{found.mass:.2f} ± {found.mass_deviation:.2f} kg"
+        return svg.note(headline, "Apply it, or measure more postures.", Colour.GREEN, lines)
+    if wizard.reason:
+        return svg.note("Not found yet", f"{wizard.reason}.", Colour.AMBER)
+    text = "Turn the wrist, let go, measure; then the next posture." if wizard.postures else "Let go of the arm and measure."
+    return svg.note(f"{wizard.postures} of at least {LEAST} postures", text, Colour.GREY)
+
+
+def _point(point: Sequence[float]) -> str:
+    return ", ".join(f"{1000.0 * way:.0f}" for way in point) + " mm"
