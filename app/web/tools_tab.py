@@ -73,9 +73,10 @@ class ToolsTab:
 
     def _take(self, fitting: Fitting) -> None:
         """Another tool or payload: the controls say what it is."""
-        controls = (self.tool, self.mass, *self.centre)
-        values = (fitting.tool.name, fitting.load.mass, *(1000.0 * way for way in fitting.load.com))
-        for control, value in zip(controls, values, strict=True):
+        load = fitting.load
+        if self.tool.value != fitting.tool.name:
+            self.tool.value = fitting.tool.name
+        for control, value in zip((self.mass, *self.centre), (load.mass, *(1000.0 * way for way in load.com)), strict=True):
             if control.value != value:
                 control.value = value
 
