@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from app.checked import BadInput, convert, load
+from app.checked import BadInput, convert, load, parse
 from app.prepare import MOUNTINGS, prepare
 from app.session import Session, Setup, bundled, find, folder
 from sim.scenario import table
@@ -226,3 +226,12 @@ def test_a_file_goes_before_a_bundled_name(tmp_path: Path, monkeypatch: pytest.M
 def test_a_missing_session_names_the_bundled_ones() -> None:
     with pytest.raises(BadInput, match=r"nowhere\.yaml.*bundled sessions: .*free-drive"):
         find("nowhere.yaml")
+
+
+def test_the_example_of_the_tools_page_is_a_session() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "tools.md").read_text(encoding="utf-8")
+    example = page.split("```yaml\n")[1].split("```")[0]
+    session = parse("title: example\nduration: 4.0\n" + example, Session, "tools.md")
+    prepared = prepare(session, "tools.md")
+    assert [tool.name for tool in table(prepared.scenario)] == ["gripper", "long gripper", "flange", "sphere"]
+    assert len(session.timeline) == 2
