@@ -3,6 +3,7 @@
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
+#   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make clean       remove what the above made
 
 PYTHON ?= python3
@@ -14,7 +15,7 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full clean lint types contracts unit e2e wheel browser
+.PHONY: run test bench bench-full soak soak-quick clean lint types contracts unit e2e wheel browser
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -80,6 +81,10 @@ bench bench-full: $(VENV)/dev.stamp
 	@failed=; for name in $(BENCHES); do \
 		$(BIN)/python -m benchmarks.$$name --seed $(SEED) $(if $(filter bench-full,$@),--full) || failed="$$failed $$name"; \
 	done; [ -z "$$failed" ] || { echo "missed a bar:$$failed" >&2; exit 1; }
+
+# By itself, and with the machine to itself: it measures memory and pace.
+soak soak-quick: $(VENV)/dev.stamp
+	$(BIN)/python -m benchmarks.soak --seed $(SEED) $(if $(filter soak,$@),--full)
 
 clean:
 	rm -rf $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage
