@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from app.log.reader import Log
 from app.report.summary import SLOW, Span, Summary
+from pendant.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 POINTS = 1500
@@ -31,10 +32,19 @@ COLOURS = {
     "SEQUENCE": "#f59f00",
     "HELD": "#1864ab",
     "PERIOD": "#4dabf7",
-    "GUIDED": "#1971c2",
+    "GUIDED": "#228be6",
     "RESTART": "#74c0fc",
 }
+DARK = frozenset({"NORMAL", "RUN", "REMOTE", "FREE_DRIVE", "STOP", "HELD", "GUIDED"})
+"""Colours on which text is white."""
+
 INK = "#212529"
+BAD = "#c92a2a"
+NAMES_A_ROW = 6
+"""Modes and phases in a row above their figure."""
+
+PARAMETERS_DRAWN = 6
+"""Monitored parameters in their chart: those nearest to their limits."""
 
 
 def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
@@ -44,37 +54,56 @@ def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
         return []
     force = np.linalg.norm(log.state["F_user"][:, :3], axis=1)
     torque = np.abs(log.state["tau_ext"])
-    return [
+    speeds = [("tcp", 1000 * log.state["v_tcp"]), ("elbow", 1000 * log.state["v_elbow"])]
+    torques = [(name, torque[:, i]) for i, name in enumerate(log.arm.chain.joints)]
+    marks = [event.t for event in (*summary.messages, *summary.contacts)]
+    drawn = [
         ("Modes, and phases of free-drive", _bars(summary.modes, summary.phases, summary)),
-        (
-            "Speed of tool centre point and elbow, against 250 mm/s",
-            _lines(t, [("tcp", 1000 * log.state["v_tcp"]), ("elbow", 1000 * log.state["v_elbow"])], "speed [mm/s]", 1000 * SLOW),
-        ),
-        ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]")),
-        (
-            "External torque of the joints, size",
-            _lines(t, [(name, torque[:, i]) for i, name in enumerate(log.arm.chain.joints)], "torque [N·m]"),
-        ),
+        ("Speed of tool centre point and elbow, against 250 mm/s", _lines(t, speeds, "speed [mm/s]", marks, 1000 * SLOW)),
+        ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]", marks)),
+        ("External torque of the joints, size", _lines(t, torques, "torque [N·m]", marks)),
     ]
+    shares = _shares(log)
+    if shares:
+        drawn.append(
+            ("Monitored values against their limits, while they are checked", _lines(t, shares, "of limit [%]", marks, 100))
+        )
+    return drawn
 
 
-def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, bar: float | None = None) -> str:
+def _shares(log: Log) -> list[tuple[str, Array]]:
+    """Monitored values over their limits [%], those that come nearest; NaN while they are not checked."""
+    found: list[tuple[float, str, Array]] = []
+    for name, row in PARAMETERS.items():
+        share = 100.0 * np.abs(log.state[f"monitored_{name}"] / log.state[f"limit_{name}"])
+        if np.isfinite(share).sum() > 1:
+            found.append((float(np.nanmax(share)), row.text, share))
+    return [(text, share) for _, text, share in sorted(found, key=lambda each: -each[0])[:PARAMETERS_DRAWN]]
+
+
+def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], bar: float = 0.0) -> str:
     figure, axes = _axes(2.1)
     for name, values in series:
         axes.plot(*thinned(t, values), linewidth=0.9, label=name)
-    if bar is not None:
-        axes.axhline(bar, color="#c92a2a", linewidth=0.9, linestyle="--")
+    for mark in marks:
+        axes.axvline(mark, color=INK, linewidth=0.7, linestyle=":")
+    if bar:
+        axes.axhline(bar, color=BAD, linewidth=0.9, linestyle="--")
     axes.set_ylabel(label, fontsize=7.5)
     axes.set_xlabel("time [s]", fontsize=7.5)
     axes.set_xlim(0.0, float(t[-1]))
-    axes.set_ylim(bottom=0.0)
+    rows = -(-len(series) // 3) if len(series) > 1 else 0
+    top = max(bar, *(float(np.nanmax(values)) for _, values in series))
+    axes.set_ylim(0.0, top * (1.06 + 0.13 * rows) or 1.0)  # room for the names above the lines
     if len(series) > 1:
-        axes.legend(loc="upper right", ncols=min(len(series), 3), frameon=False, fontsize=7)
+        axes.legend(loc="upper right", ncols=min(len(series), 3), frameon=False, fontsize=7, borderaxespad=0.1)
     return _svg(figure)
 
 
 def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> str:
-    figure, axes = _axes(1.5)
+    names = {span.name for span in (*modes, *phases)}
+    rows = -(-len(names) // NAMES_A_ROW)
+    figure, axes = _axes(1.25 + 0.17 * rows, 0.04 + 0.17 * rows)
     seen: dict[str, str] = {}
     for row, spans in ((1.0, modes), (0.0, phases)):
         for span in spans:
@@ -82,13 +111,13 @@ def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> st
             seen[span.name] = colour
             axes.barh(row, span.end - span.begin, left=span.begin, height=0.7, color=colour, edgecolor="white", linewidth=0.4)
             if span.end - span.begin > 0.09 * summary.duration:
-                text = span.name.replace("_", "-").lower()
-                axes.text((span.begin + span.end) / 2, row, text, ha="center", va="center", fontsize=6.5, color=INK)
+                text, ink = span.name.replace("_", "-").lower(), "white" if span.name in DARK else INK
+                axes.text((span.begin + span.end) / 2, row, text, ha="center", va="center", fontsize=6.5, color=ink)
     axes.set_yticks([0.0, 1.0], ["phase", "mode"])
     axes.set_xlim(0.0, summary.duration)
     axes.set_xlabel("time [s]", fontsize=7.5)
     handles = [Patch(color=colour, label=name) for name, colour in seen.items()]
-    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, fontsize=6.5)
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=NAMES_A_ROW, frameon=False, fontsize=6.5)
     return _svg(figure)
 
 
@@ -103,9 +132,11 @@ def thinned(t: Array, values: Array) -> tuple[Array, Array]:
     return np.append(t[at], t[whole:]), np.append(values[at], values[whole:])
 
 
-def _axes(height: float) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    axes = figure.add_subplot()
+def _axes(height: float, above: float = 0.1) -> tuple[Figure, Axes]:
+    """An empty figure of that height, with `above` [inch] for what stands above its axes."""
+    figure = Figure(figsize=(WIDTH, height))
+    # The same left and right for all figures: their times lie below each other.
+    axes = figure.add_axes((0.075, 0.4 / height, 0.915, 1.0 - (0.4 + above) / height))
     axes.tick_params(labelsize=7)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(True, linewidth=0.3, alpha=0.6)

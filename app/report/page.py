@@ -1,10 +1,14 @@
 """report.html: one file without anything from outside, to read in a browser and to print."""
 
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
 from app.events_file import Line
 from app.report.summary import NOT_A_VALIDATION, SLOW, Peak, Summary
+
+UNIT = re.compile(r"(?<=\d) (?=(?:s|ms|m|mm|m/s|N|N·m|rad|rad/s|kg)\b)")
+"""Between a number and its unit no line is broken."""
 
 STYLE = """
 :root { --ink: #212529; --soft: #495057; --line: #dee2e6; --bad: #c92a2a; --good: #2b8a3e; }
@@ -13,7 +17,7 @@ body { margin: 0 auto; max-width: 19cm; padding: 1.2cm 0.6cm; color: var(--ink);
   font: 10pt/1.45 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
 h1 { font-size: 17pt; margin: 0 0 0.2em; line-height: 1.2; }
 h2 { font-size: 12pt; margin: 1.5em 0 0.4em; border-bottom: 1px solid var(--line); break-after: avoid; }
-p { margin: 0.4em 0; }
+p { margin: 0.4em 0; } h2 + p { break-after: avoid; }
 .note { border-left: 4px solid #f59f00; background: #fff9db; padding: 0.5em 0.8em; }
 .verdict { font-size: 12pt; font-weight: 600; }
 .bad { color: var(--bad); font-weight: 600; } .good { color: var(--good); font-weight: 600; }
@@ -24,7 +28,8 @@ td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; }
 tr { break-inside: avoid; } thead { display: table-header-group; }
 figure { margin: 0.6em 0 0.9em; break-inside: avoid; } figure svg { width: 100%; height: auto; display: block; }
 figcaption { font-size: 8.5pt; color: var(--soft); }
-@page { size: A4; margin: 1.5cm 1.2cm; }
+@page { size: A4; margin: 1.4cm 1.2cm 1.6cm;
+  @bottom-right { content: counter(page) " / " counter(pages); font: 8pt Helvetica, Arial, sans-serif; color: #868e96; } }
 @media print { body { padding: 0; max-width: none; } .note { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 """
 
@@ -45,6 +50,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
             else []
         ),
         "<h2>Over time</h2>",
+        *(["<p>Dotted: refusals, leavings, stops and changes in contact.</p>"] if summary.messages or summary.contacts else []),
         *(f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>" for caption, svg in charts),
         "<h2>Modes and periods</h2>",
         _table(
@@ -143,7 +149,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]], empty: str = "") 
 
 
 def _cell(text: str) -> str:
-    return text if isinstance(text, _Raw) else escape(text)
+    return text if isinstance(text, _Raw) else UNIT.sub("\u00a0", escape(text))
 
 
 def _is_number(text: str) -> bool:

@@ -195,7 +195,21 @@ def _margins(log: Log) -> list[Margin]:
         if np.any(np.isfinite(share)):
             k = int(np.nanargmax(share))
             found.append(Margin(row.text, row.unit, float(value[k]), float(limit[k]), float(share[k]), float(log.t[k])))
+    for event in log.events:  # what ends a check at once is told by its event alone
+        worse = _told(event)
+        if worse is not None and all(worse.share > each.share for each in found if each.parameter == worse.parameter):
+            found = [*(each for each in found if each.parameter != worse.parameter), worse]
     return sorted(found, key=lambda margin: -margin.share)
+
+
+def _told(event: Line) -> Margin | None:
+    """The parameter beyond its limit that an event tells of."""
+    told = {"parameter", "value", "limit", "unit"}
+    values = event.values
+    if not told <= values.keys() or not float(values["limit"]):
+        return None
+    value, limit = float(values["value"]), float(values["limit"])
+    return Margin(str(values["parameter"]), str(values["unit"]), value, limit, abs(value / limit), event.t)
 
 
 def _matters(event: Line) -> bool:

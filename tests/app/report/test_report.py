@@ -72,6 +72,22 @@ def test_margins_are_the_worst_share(log: Log, summary: Summary) -> None:
     assert len(summary.margins) >= 8
 
 
+def test_what_ended_a_check_at_once_is_a_margin_too(log: Log) -> None:
+    def told(value: float, t: float) -> Line:
+        values: dict[str, Any] = {"parameter": "payload-like force", "part": "flange", "value": value, "limit": -5.3, "unit": "N"}
+        return Line(tick=1, t=t, kind="entry_prevented", severity="WARNING", headline="", guidance="", values=values)
+
+    before = {margin.parameter: margin for margin in summarise(log).margins}
+    log.events += [told(-0.001, 0.5), told(-19.6, 0.7), told(-10.0, 0.8)]
+    after = {margin.parameter: margin for margin in summarise(log).margins}
+    del log.events[-3:]
+    found = after.pop("payload-like force")
+    assert (found.value, found.limit, found.unit, found.t) == (-19.6, -5.3, "N", 0.7)
+    assert found.share == pytest.approx(19.6 / 5.3)
+    del before["payload-like force"]
+    assert after == before
+
+
 def test_a_stop_is_timed_until_the_arm_stands(log: Log, summary: Summary) -> None:
     (stop,) = summary.stops
     assert stop.time is not None
@@ -159,7 +175,9 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
     assert parser.open == []
     assert parser.foreign == []
     assert "http" not in re.sub(r'xmlns(:xlink)?="[^"]*"|<!DOCTYPE[^>]*>|<rdf:RDF.*?</rdf:RDF>', "", text, flags=re.S)
-    assert text.count("<svg") == 4
+    assert text.count("<svg") == 5
+    assert "at\u00a01\u00a0s" not in text
+    assert "at 1\u00a0s" in text  # a number stays with its unit
     assert "A &lt;report&gt; &amp; more" in text
     assert NOT_A_VALIDATION.split(":")[0] in text
     assert "1 of 2 expectations not met" in text
