@@ -7,6 +7,7 @@ from msgspec import Meta
 
 from app.profiles import AnyProfile, Constant, HalfSine, Ramp
 from app.triggers import When
+from pendant.axis_locks import PRESETS, freeing
 from pendant.inputs import Button, Command
 from sim.arm import Positive
 from sim.changes import AnyChange
@@ -16,7 +17,6 @@ from sim.touch import ZERO, Push, Triple
 PLANNED_CONTROLS: dict[str, str] = {
     "confirm": "FD-8",
     "register_waypoint": "FD-13",
-    "axis_locks": "FD-4",
 }
 """Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
 
@@ -31,7 +31,6 @@ Control = Literal[
     "confirm",
     "restart_period",
     "register_waypoint",
-    "axis_locks",
     "detection",
     "enabling_device",
     "enabling_device_full",
@@ -196,6 +195,30 @@ class Payload(Action, tag="payload", frozen=True, kw_only=True):
     load: Load
 
 
+class Axes(Action, tag="axes", frozen=True, kw_only=True):
+    """Axes of the tool are freed, and the others locked; one of `preset` and `free` says which."""
+
+    preset: Literal["all", "plane", "translation", "rotation"] | None = None
+    free: list[Literal["x", "y", "z", "rx", "ry", "rz"]] | None = None
+    frame: Literal["base", "tool", "user"] = "base"  # of the tool as it stands then
+    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # of the user's frame in the base [rad]
+
+    def __post_init__(self) -> None:
+        """Check that it says what is free, once, and that only the user's frame is turned."""
+        super().__post_init__()
+        if (self.preset is None) == (self.free is None):
+            raise ValueError("do: axes wants either `preset` or `free`")
+        if self.frame != "user" and any(self.rpy):
+            raise ValueError("rpy: turns the user's frame alone, so it wants `frame: user`")
+
+    @property
+    def set(self) -> dict[str, float | bool | str]:
+        """The changes of settings, by dotted name."""
+        free = PRESETS[self.preset] if self.preset is not None else frozenset[str](self.free or ())
+        turned = dict(zip(("axes.roll", "axes.pitch", "axes.yaw"), self.rpy, strict=True))
+        return {**freeing(free), "axes.tool": self.frame == "tool", **turned}
+
+
 class Laboratory(Action, tag="change", frozen=True, kw_only=True):
     """The true arm or world is changed: payload, sensors, friction, temperature, objects."""
 
@@ -216,6 +239,7 @@ AnyAction = (
     | Settings
     | SelectTool
     | Payload
+    | Axes
     | Laboratory
 )
 

@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from app.actions import Action, Effort, Laboratory, Payload, Program, SelectTool
+from app.actions import Action, Axes, Effort, Laboratory, Payload, Program, SelectTool
 from app.actions import Settings as SettingsAction
 from app.bodies import check_load, check_tool, check_tools, check_world
 from app.checked import ABSENT, BadInput, load
@@ -223,6 +223,8 @@ def _check_action(action: Action, field: str, session: Session, prepared: Prepar
         _one_of(action.tool, [tool.name for tool in table(prepared.scenario)], where, f"{field}.tool")
     elif isinstance(action, Payload):
         check_load(action.load, prepared.arm, where, f"{field}.load")
+    elif isinstance(action, Axes):
+        _applied(prepared.settings, action.set, where, field)
     elif isinstance(action, Program) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
     elif isinstance(action, Laboratory):

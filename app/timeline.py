@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from app.actions import (
     COMMAND_OF_PROGRAM,
     Action,
+    Axes,
     DigitalInput,
     Hold,
     Laboratory,
@@ -153,7 +154,7 @@ class Timeline:
                 now.commands.append(Command(action.control))
             case Program():
                 now.commands.append(COMMAND_OF_PROGRAM[action.command])
-            case Settings():
+            case Settings() | Axes():
                 now.settings.update(action.set)
             case SelectTool():
                 now.tool = action.tool

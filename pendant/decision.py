@@ -4,11 +4,13 @@ from typing import NamedTuple
 
 import msgspec
 
+from pendant.axis_locks import AxisLocks
 from pendant.contact import Contact
 from pendant.enabling import Grip
 from pendant.events import Event
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
+from pendant.nearness import Nearness
 from pendant.payload_wizard import IDLE, Progress
 from pendant.pose import Vector
 from pendant.program import Move, ProgramState
@@ -61,6 +63,8 @@ class Decision(msgspec.Struct, frozen=True):
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
+    locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
+    singularity: Nearness | None = None  # in free-drive (FD-4)
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload
     limits: str = ""  # checksum of all limits

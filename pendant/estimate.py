@@ -1,5 +1,6 @@
 """What the controller knows in one tick: measured or derived from measurement, never the truth."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -65,6 +66,7 @@ class Estimate:
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     load_mass: float = 0.0  # configured: payload and tool [kg]
+    singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
@@ -105,4 +107,5 @@ class Estimate:
             self.elbow.copy(),
             self.F_joints.copy(),
             self.load_mass,
+            self.singularity,
         )

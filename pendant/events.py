@@ -36,6 +36,7 @@ class Kind(StrEnum):
     RESTARTED = "restarted"
     PERIOD_ANEW = "period_anew"
     WALL_REACHED = "wall_reached"
+    SINGULARITY = "singularity"
     WRENCH_LOST = "wrench_lost"
     HOLD_SILENT = "hold_silent"
     LEFT_PERIOD = "left_period"

@@ -6,6 +6,7 @@ A period of N ticks that begins in tick t ends in tick t + N; its remainder is N
 from typing import NamedTuple
 
 from pendant.attempt import ABSENT, Attempt, Outcome
+from pendant.axis_locks import axis_locks
 from pendant.barrier import Consequence, Reading
 from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.decision import Remaining, WallState
@@ -17,6 +18,7 @@ from pendant.joint_zones import JointZones
 from pendant.limits import Monitored
 from pendant.maintain import Maintained
 from pendant.modes import TICK, Mode, Phase
+from pendant.nearness import Nearness, SingularityWatch
 from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
@@ -88,6 +90,7 @@ class FreeDrive:
         "_rated",
         "_sequence",
         "_signal",
+        "_singularity",
         "_total",
         "_verdict",
         "_zones",
@@ -129,6 +132,7 @@ class FreeDrive:
         self._maintained: Maintained | None = None
         self._containment = containment
         self._zones = zones
+        self._singularity = SingularityWatch()
         self._hand: Hand | None = None
         self._operation: Operation | None = None
         self._posture: tuple[float, ...] | None = None  # at activation (FD-22)
@@ -173,6 +177,11 @@ class FreeDrive:
     def damping(self) -> Damping | None:
         """Where free motion is resisted before a limit on its speed (FD-12b)."""
         return None if self._operation is None else self._operation.damping
+
+    @property
+    def singularity(self) -> Nearness | None:
+        """How near the arm is to a singularity, None outside of free-drive (FD-4)."""
+        return None if self._operation is None else self._singularity.status
 
     @property
     def zones(self) -> tuple[float, ...]:
@@ -361,6 +370,7 @@ class FreeDrive:
         self._operation = Operation(around.estimate, settings, self.baseline, self._joints, self._rated)
         self._containment.enter(settings.walls)
         self._zones.enter(settings.joint_limits)
+        self._singularity = SingularityWatch()
         self._containment.step(around.estimate, *NOBODY)
         gain = settings.free_drive.gain if self.use_wrench else 0.0
         return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})
@@ -406,6 +416,9 @@ class FreeDrive:
             events.append(Event(Kind.WALL_REACHED, estimate.tick, facts(reading)))
         assert self._operation is not None
         self._zones.step(estimate)
+        if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
+            values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
+            events.append(Event(Kind.SINGULARITY, estimate.tick, values))
         ending = self._operation.step(estimate, hand, self.use_wrench, self.caught or self._zones.pushing)
         if ending is None:
             return False

@@ -175,6 +175,25 @@ class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hard: Annotated[bool, _switch("FD-12b", "payload and drift lower the limits that end free-drive, too")] = False
 
 
+class Axes(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Freedom of the tool in free-drive, axis by axis, and what singularities do to it."""
+
+    on: Annotated[bool, _switch("FD-4", "axes can be locked", locked=False)] = True
+    x: Annotated[bool, _switch("FD-4", "the tool is free along x", locked=False)] = True
+    y: Annotated[bool, _switch("FD-4", "the tool is free along y", locked=False)] = True
+    z: Annotated[bool, _switch("FD-4", "the tool is free along z", locked=False)] = True
+    rx: Annotated[bool, _switch("FD-4", "the tool is free about x", locked=False)] = True
+    ry: Annotated[bool, _switch("FD-4", "the tool is free about y", locked=False)] = True
+    rz: Annotated[bool, _switch("FD-4", "the tool is free about z", locked=False)] = True
+    tool: Annotated[bool, _switch("FD-4", "the axes are the tool's when they are locked", locked=False)] = False
+    roll: Annotated[float, _number(-3.15, 3.15, "rad", "FD-4", "of the axes in the base, about its x", locked=False)] = 0.0
+    pitch: Annotated[float, _number(-3.15, 3.15, "rad", "FD-4", "of the axes in the base, about its y", locked=False)] = 0.0
+    yaw: Annotated[float, _number(-3.15, 3.15, "rad", "FD-4", "of the axes in the base, about its z", locked=False)] = 0.0
+    resistance: Annotated[bool, _switch("FD-4", "with a lock, motion towards a singularity is resisted")] = True
+    near: Annotated[float, _number(0.011, 0.1, "m", "FD-4", "near a singularity: smallest singular value below this")] = 0.04
+    too_near: Annotated[float, _number(0.001, 0.01, "m", "FD-4", "too near: with all of the resistance")] = 0.01
+
+
 class JointLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Zones before the joint limits in free-drive."""
 
@@ -312,6 +331,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     limits: Limits = Limits()
     unexplained: Unexplained = Unexplained()
     soft: Soft = Soft()
+    axes: Axes = Axes()
     joint_limits: JointLimits = JointLimits()
     walls: Walls = Walls()
     static: Static = Static()

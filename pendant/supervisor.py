@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from pendant.axis_locks import axis_locks
 from pendant.calls import Calls
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import ContactMonitor
@@ -442,6 +443,7 @@ class Supervisor:
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
         self._checksum = limits_checksum(self.settings)
+        self._locks = axis_locks(self.settings.axes)
         self._calls.refresh(self.settings)
         self._silence = ticks(self.settings.hold.silence)
         self._slow = self.settings.static.speed
@@ -475,9 +477,12 @@ class Supervisor:
         tooling = self._tooling
         self._holding = law is Law.HOLD and not free.caught and not tooling.changing
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
-        robot = (self._mode, self._safety, free.phase, law, free.helping, free.damping, free.zones, grip, speeds)
+        locks = self._locks if self._mode is Mode.FREE_DRIVE else None
+        robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
+        guided = (free.damping, free.zones, locks, free.singularity)
         key = (
             *robot,
+            *guided,
             sequencer.move,
             sequencer.state,
             sequencer.index,
@@ -516,6 +521,8 @@ class Supervisor:
             zones=free.zones,
             fitting=tooling.fitting,
             wizard=tooling.wizard.progress,
+            locks=locks,
+            singularity=free.singularity,
             limits=self._checksum,
         )
         self._key = key

@@ -207,6 +207,13 @@ TABLE: dict[Kind, Row] = {
         "{distance:.1f} mm out. Push it back, {way} of the base.",
         WALL,
     ),
+    Kind.SINGULARITY: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Singularity: {status}",
+        "Value {value:.3f} m, near below {limit:.3f} m. Locked axes: turn back, or free them.",
+        ("status", "value", "limit"),
+    ),
     Kind.WRENCH_LOST: Row(
         Effect.INFO,
         Severity.WARNING,

@@ -13,8 +13,10 @@ from pendant.pose import ORIGIN
 from sim.active_damping import ActiveDamping
 from sim.adaptive_friction import AdaptiveFriction
 from sim.arm import Arm
+from sim.axis_locks import AxisConstraint
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
+from sim.singularity import Singularity
 
 Array = NDArray[np.float64]
 
@@ -38,19 +40,23 @@ class FreeDriveLaw:
 
     Attributes:
         share: of the friction estimate that is taken off at most.
+        singularity: how near the arm is to one.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
         """
         Args:
             arm: the arm's numbers.
             calibration: error of the constants that the controller uses.
             dynamics: the controller's rigid model.
+            tcp: tool centre point in F (3,) [m].
         """
         self._dynamics, self._elbow = dynamics, arm.chain.elbow
         n = arm.n
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
+        self._constraint = AxisConstraint(arm, calibration, tcp)
+        self.singularity = Singularity(rotor)
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
@@ -67,6 +73,7 @@ class FreeDriveLaw:
         self._memory[2] = estimate.tau_ext
         self._turned[:] = estimate.R_BF
         self._damping.start()
+        self._constraint.release()
 
     def torque(
         self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction, with_friction: bool
@@ -89,6 +96,13 @@ class FreeDriveLaw:
             torque += decision.zones
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
+        self.singularity.update(jacobian)
+        locks = decision.locks
+        static, constraint = torque.copy(), self._constraint
+        if locks is None:
+            constraint.release()
+        else:
+            constraint.prepare(estimate, locks, jacobian, static)
         help = 1.0
         if decision.damping is not None:
             self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian, torque)
@@ -97,12 +111,17 @@ class FreeDriveLaw:
         if estimate.wrench_valid and decision.gain > 0.0:
             cap, gain = decision.force_cap, help * decision.gain
             _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
+            if locks is not None:
+                constraint.project(hand[1], gain, torque)
         else:
             hand[:] = 0.0
         if with_friction:
             felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
             rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
             _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, help * self.share, torque)
+        if locks is not None:
+            self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
+            constraint.hold(torque)
         return torque
 
 

@@ -127,6 +127,8 @@ class Simulation:
         learned = msgspec.structs.replace(use, adaptive=False) if self._braked else use
         estimate = self.estimator.update(sample, references.move_done, references.refusal, learned, references.answered)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
+        if self._decision is not None and self._decision.law is Law.FREE:
+            estimate.singularity = self.controller.free_drive.singularity.value
         decision = self.supervisor.step(estimate, wishes.inputs)
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
         self._braked = decision.law is Law.OFF

@@ -1,9 +1,11 @@
 from collections.abc import Callable
 
+import msgspec
 import pytest
 
 from app.actions import (
     Action,
+    Axes,
     Bump,
     Hold,
     Laboratory,
@@ -72,6 +74,24 @@ def test_tool_and_payload_are_passed_on_once() -> None:
     played = play([SelectTool(at=0.0, tool="gripper"), Payload(at=0.004, load=Load(mass=2.0))], 3)
     assert [wishes.inputs.tool for wishes in played] == ["gripper", "", ""]
     assert [wishes.inputs.load for wishes in played] == [None, Load(mass=2.0), None]
+
+
+def test_axes_are_freed_and_locked_by_settings() -> None:
+    plane, own = Axes(at=0.0, preset="plane", frame="tool"), Axes(at=0.004, free=["z", "rx"], frame="user", rpy=[0.1, 0.2, 0.3])
+    first, second = (wishes.inputs.settings for wishes in play([plane, own], 2))
+    free = {"x": True, "y": True, "z": False, "rx": False, "ry": False, "rz": True}
+    turned = {"axes.roll": 0.0, "axes.pitch": 0.0, "axes.yaw": 0.0}
+    assert first == {**{f"axes.{axis}": value for axis, value in free.items()}, "axes.tool": True, **turned}
+    assert [axis for axis in free if second[f"axes.{axis}"] is True] == ["z", "rx"]
+    assert (second["axes.tool"], second["axes.roll"], second["axes.yaw"]) == (False, 0.1, 0.3)
+
+
+@pytest.mark.parametrize(
+    "fields", [{}, {"preset": "all", "free": ["x"]}, {"free": [], "rpy": [0.1, 0.0, 0.0]}, {"preset": "all", "frame": "world"}]
+)
+def test_axes_say_what_is_free_once_and_turn_the_users_frame_alone(fields: dict[str, object]) -> None:
+    with pytest.raises(msgspec.ValidationError):
+        msgspec.convert({"do": "axes", "at": 0.0, **fields}, Axes)
 
 
 def test_the_program_is_loaded_in_the_first_tick() -> None:

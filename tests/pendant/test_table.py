@@ -15,6 +15,7 @@ EXAMPLE: Values = {
         "steps": 123,
         "action": "contact_pose",
         "state": "off",
+        "status": "too near",
     },
     "allowed": "TEACH, NORMAL",
     "category": 1,
