@@ -20,7 +20,7 @@ class ArmPose(NamedTuple):
 
     q: tuple[float, ...]  # (n,) output angles [rad]
     p_BT: Vector  # tool centre point [m]
-    R_BF: Rotation  # orientation of the flange, and of the tool
+    R_BF: Rotation  # orientation of the flange
 
 
 class Contact(NamedTuple):

@@ -10,7 +10,7 @@ from pendant.decision import WallState
 from pendant.enclosure import Enclosure, worst
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Values
-from pendant.pose import HERE, ORIGIN, Pose, Vector
+from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, product
 from pendant.settings import Walls
 from pendant.shapes import Sphere
 from pendant.walls import AnyBorder, Measure, Policy, Reaction, Start, Wall
@@ -43,7 +43,7 @@ def tether(walls: Walls) -> Wall:
 class Containment:
     """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
 
-    __slots__ = ("_borders", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned")
+    __slots__ = ("R_FT", "_borders", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned")
 
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
@@ -51,6 +51,7 @@ class Containment:
             borders: walls and areas besides the tether; `pendant.walls.problem` has found nothing.
             frames: poses X_BR of the frames and objects that they can lie in and that do not move in B.
         """
+        self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
         self._borders = borders
         self._frames = {"base": HERE, **frames}
         self._enclosure: Enclosure | None = None  # walls hold, or will
@@ -100,7 +101,8 @@ class Containment:
         if self._turned:
             (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
             turn = (a, b, c, d, e, f, g, h, i)
-            references = {**references, **{name: Pose(_point(name, estimate).p, turn) for name in self._turned}}
+            turns = {"flange": turn, "tcp": product(turn, self.R_FT)}
+            references = {**references, **{name: Pose(_point(name, estimate).p, turns[name]) for name in self._turned}}
         measures = _measures(estimate) if self._measured else {}
         self._reading = self._enclosure.step(Around(parts, references, user, payload, measures))
         return worst(self._reading)

@@ -36,6 +36,14 @@ def rotation(quaternion: Quaternion) -> Rotation:
     return (1.0 - yy - zz, xy - wz, xz + wy, xy + wz, 1.0 - xx - zz, yz - wx, xz - wy, yz + wx, 1.0 - xx - yy)
 
 
+def from_rpy(roll: float, pitch: float, yaw: float) -> Rotation:
+    """The matrix of a turn about the fixed axes x, y, z in this order [rad] (URDF convention)."""
+    a, b = math.cos(roll), math.sin(roll)
+    c, d = math.cos(pitch), math.sin(pitch)
+    e, f = math.cos(yaw), math.sin(yaw)
+    return e * c, e * d * b - f * a, e * d * a + f * b, f * c, f * d * b + e * a, f * d * a - e * b, -d, c * b, c * a
+
+
 def quaternion(R: Rotation) -> Quaternion:
     """The quaternion wxyz of unit length of a rotation matrix, by its largest component, which is taken positive."""
     a, b, c, d, e, f, g, h, i = R

@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from pendant.contact import ArmPose, Contact
+from pendant.pose import UNTURNED
 from pendant.reaction import REACTION_SPEED, Until, goal
 from pendant.settings import ticks
 
@@ -100,7 +101,7 @@ def misfit(program: Program, n_joints: int) -> str | None:
 class Sequencer:
     """Runs the loaded program step by step. A step paused half-way is begun again, with a new id, when resumed."""
 
-    __slots__ = ("_begun", "_from", "_left", "contact", "index", "move", "program", "state", "tool_on")
+    __slots__ = ("R_FT", "_begun", "_from", "_left", "contact", "index", "move", "program", "state", "tool_on")
 
     def __init__(self) -> None:
         self.program: Program | None = None
@@ -112,6 +113,7 @@ class Sequencer:
         self._from: ArmPose | None = None  # where the present move began
         self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
         self.tool_on = False
+        self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
 
     def load(self, program: Program) -> None:
         """Take a program; allowed unless one is RUNNING or PAUSED."""
@@ -166,7 +168,7 @@ class Sequencer:
         until: Until | None = getattr(self.program.steps[self.index], "until", None)
         assert contact is not None
         assert until is not None
-        there = goal(until, contact, self._from or now, now)
+        there = goal(until, contact, self._from or now, now, self.R_FT)
         if there is None:
             return self._next()
         self._begun += 1

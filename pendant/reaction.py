@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from pendant.contact import ArmPose, Change, Contact
-from pendant.pose import Vector, product, quaternion
+from pendant.pose import UNTURNED, Rotation, Vector, product, quaternion
 
 REACTION_SPEED = 0.05  # of straight reactions, slow enough to end where they should [m/s]
 
@@ -39,7 +39,7 @@ class Goal(msgspec.Struct, frozen=True):
     quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
 
 
-def goal(until: Until, contact: Contact, begun: ArmPose, now: ArmPose) -> Goal | None:
+def goal(until: Until, contact: Contact, begun: ArmPose, now: ArmPose, R_FT: Rotation = UNTURNED) -> Goal | None:
     """Where the arm goes after it has come to rest; None for nowhere.
 
     Args:
@@ -47,6 +47,7 @@ def goal(until: Until, contact: Contact, begun: ArmPose, now: ArmPose) -> Goal |
         contact: what happened.
         begun: where the move began.
         now: where the arm stands.
+        R_FT: orientation of the tool centre point in the flange.
     """
     there = contact.pose
     if until.then == "contact_pose":
@@ -55,12 +56,12 @@ def goal(until: Until, contact: Contact, begun: ArmPose, now: ArmPose) -> Goal |
         return Goal(q=begun.q)
     if until.then == "turn":
         c, s = math.cos(until.angle), math.sin(until.angle)
-        R = product(now.R_BF, (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0))
+        R = product(product(now.R_BF, R_FT), (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0))
         return Goal(position=now.p_BT, quaternion=quaternion(R))
     if until.then == "retract":
         (x, y, z), (u, v, w) = there.p_BT, begun.p_BT
         length = math.dist(there.p_BT, begun.p_BT)
         share = until.distance / length if length > 0.0 else 0.0
         position = (x + share * (u - x), y + share * (v - y), z + share * (w - z))
-        return Goal(position=position, quaternion=quaternion(there.R_BF))
+        return Goal(position=position, quaternion=quaternion(product(there.R_BF, R_FT)))
     return None

@@ -19,7 +19,7 @@ from pendant.joint_zones import JointZones
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
-from pendant.pose import Pose
+from pendant.pose import Pose, from_rpy
 from pendant.program import Program, ProgramState, Sequencer, misfit
 from pendant.reduced import Reduced
 from pendant.sensing import JointSensors
@@ -122,8 +122,10 @@ class Supervisor:
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
         zones = JointZones(rated, ranges or (math.inf,) * n_joints)
-        self._free = FreeDrive(self._joints, rated, Containment(borders, frames or {}), zones)
+        self._containment = Containment(borders, frames or {})
+        self._free = FreeDrive(self._joints, rated, self._containment, zones)
         self._tooling = Tooling(equipment or Equipment())
+        self._turn_tool()
         self._refresh()
         self._key: tuple[object, ...] = ()
         self._decision: Decision | None = None  # the last one, if the next may be the same
@@ -408,6 +410,11 @@ class Supervisor:
         if tooling.changing:
             self._calls.relearn()
             self._free.forget()
+            self._turn_tool()
+
+    def _turn_tool(self) -> None:
+        """Who needs to know how the tool centre point is turned in the flange."""
+        self._containment.R_FT = self._sequencer.R_FT = from_rpy(*self._tooling.fitting.tool.rpy)
 
     def _happen(self, event: Event, events: list[Event]) -> None:
         """Something outside of free-drive happens that ends it, too."""

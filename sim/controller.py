@@ -34,10 +34,11 @@ class Controller:
         calibration: error of the constants that the controller uses.
         dynamics: the controller's rigid model.
         tcp: tool centre point in F (3,) [m].
+        R_FT: its orientation in F (3, 3).
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
-        self.references = References(arm, calibration, dynamics, tcp)
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
+        self.references = References(arm, calibration, dynamics, tcp, R_FT)
         self.feed_forward = FeedForward(arm, calibration, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
         self.feedback = Feedback(arm, calibration, dynamics, tcp)

@@ -149,13 +149,15 @@ class LinearTrajectory:
     exceed its speed slows the whole move down, a line through a singularity or out of reach is refused.
     """
 
-    def __init__(self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, limits: tuple[Array, Array, Array]) -> None:
+    def __init__(
+        self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, R_FT: Array, limits: tuple[Array, Array, Array]
+    ) -> None:
         """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
         self._dynamics, self._tcp = dynamics, tcp
         p, R, _ = dynamics.update(q)
         self._start, self._R = p + R @ tcp, R.copy()
         self._way = np.array(move.position) - self._start
-        self._turn = _rotation_vector(R.T @ matrix_from_quaternion(move.quaternion))
+        self._turn = _rotation_vector(R.T @ matrix_from_quaternion(move.quaternion) @ R_FT.T)
         length, angle = float(np.linalg.norm(self._way)), float(np.linalg.norm(self._turn))
         span = max(length, 0.3 * angle)  # a pure turn counts as an arc of 0.3 m radius
         self._q, self._qd = q.copy(), np.zeros_like(q)

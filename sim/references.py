@@ -36,9 +36,9 @@ class References:
         refusal: why the move of this tick cannot be done, or "".
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
-        self._dynamics, self._tcp = dynamics, tcp
+        self._dynamics, self._tcp, self._R_FT = dynamics, tcp, R_FT
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._law: Law | None = None
@@ -114,7 +114,7 @@ class References:
             if isinstance(move, JointMove):
                 self._motion = JointTrajectory(q, move, self._limits)
             elif isinstance(move, LinearMove):
-                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._limits)
+                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._R_FT, self._limits)
             else:
                 self._motion = Stop(q, self._standing)
         except MoveRefused as refusal:

@@ -66,7 +66,7 @@ class Simulation:
         rigid = chain(arm)
         self._tools = {tool.name: tool for tool in table(scenario)}
         used = next(iter(self._tools.values()))
-        self.tcp = np.array(used.tcp)
+        self.tcp, self.R_FT = np.array(used.tcp), rotation_from_rpy(used.rpy)
         plate = plate_body(arm)
         self._before = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
@@ -81,7 +81,7 @@ class Simulation:
         walls, frames = tuple(scenario.walls), known_frames(scenario)
         self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment)
         self.fitting = self.supervisor.fitting
-        self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp)
+        self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
@@ -145,7 +145,7 @@ class Simulation:
         if fitting.number != self.fitting.number:
             self._before = self.dynamics.load
             self.estimator.transmission.forget()
-            self.tcp[:] = fitting.tool.tcp
+            self.tcp[:], self.R_FT[:] = fitting.tool.tcp, rotation_from_rpy(fitting.tool.rpy)
         self.fitting = fitting
         body = plate_body(self.arm) + tool_body(self._tools[fitting.tool.name]) + load_body(fitting.load)
         if fitting.share < 1.0:

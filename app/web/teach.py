@@ -18,7 +18,7 @@ from pendant.inputs import Command
 from pendant.modes import Mode
 from pendant.program import ProgramState
 from sim.arm import Arm
-from sim.frames import quaternion_from_matrix
+from sim.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.snapshot import Snapshot
 
 NONE = "none"
@@ -91,15 +91,14 @@ class Teach:
         if len(self.lesson.waypoints) >= MOST:
             return
         seen = snapshot.estimate
-        tool = self._loop.scenario.tool
-        tcp = np.array(tool.tcp if tool is not None else [0.0, 0.0, 0.0])
-        position = seen.p_BF + seen.R_BF @ tcp
+        fitting = snapshot.decision.fitting
+        R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
         name = self.lesson.free_name()
         waypoint = Waypoint(
             name=name,
             q=np.round(seen.q, 6).tolist(),
-            position=np.round(position, 6).tolist(),
-            quaternion=np.round(quaternion_from_matrix(seen.R_BF), 8).tolist(),
+            position=np.round(seen.tcp[:3], 6).tolist(),
+            quaternion=np.round(quaternion_from_matrix(R_BT), 8).tolist(),
         )
         self.lesson = self.lesson.with_waypoint(waypoint)
         self._refresh(name)

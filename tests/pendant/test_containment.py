@@ -12,7 +12,7 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import Law, Mode, Phase
-from pendant.pose import HERE, Pose
+from pendant.pose import HERE, Pose, from_rpy
 from pendant.settings import Settings, Walls, apply
 from pendant.shapes import Box, HalfSpace, Sphere
 from pendant.supervisor import Supervisor
@@ -224,6 +224,20 @@ def test_parts_and_references_are_where_the_estimate_says() -> None:
     # the box has turned about the flange with the frame that it lies in, and left the elbow behind: at (0.1, 0.3, 0.5) now
     found = {state.name: state for state in containment.states()}
     assert found["elbow"].distance == pytest.approx(math.hypot(0.3 - 0.1, 0.3 - 0.1))
+
+
+def test_a_tool_that_is_turned_in_the_flange_turns_what_lies_in_its_frame() -> None:
+    """VW-2: x of T is y of F."""
+    area = Area(name="blade", part="elbow", reference="tcp", shape=HalfSpace(normal=(1.0, 0.0, 0.0)))
+    containment = Containment((area,), {})
+    containment.R_FT = from_rpy(0.0, 0.0, math.pi / 2.0)
+    seen = at(0.1, tcp=[0.1, 0.2, 0.3, 0.0, 0.0, 0.0], elbow=[0.4, 0.05, 0.5, 0.0, 0.0, 0.0])
+    containment.begin(Start.ACTIVATION, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.step(seen, *NOBODY)
+    (state,) = containment.states()
+    assert state.distance == pytest.approx(0.05 - 0.2)
+    assert state.outward == pytest.approx((0.0, 1.0, 0.0))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.pose import HERE, Pose, finite, product, rotation, seen_from, turned, turned_back
+from pendant.pose import HERE, Pose, finite, from_rpy, product, rotation, seen_from, turned, turned_back
 
 numbers = st.floats(-2.0, 2.0)
 vectors = st.tuples(numbers, numbers, numbers)
@@ -33,6 +33,14 @@ def test_agrees_with_matrices(q: tuple[float, float, float, float], p: tuple[flo
 @given(quaternions, quaternions)
 def test_rotations_multiply_as_matrices(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> None:
     assert np.allclose(np.reshape(product(rotation(a), rotation(b)), (3, 3)), matrix(a) @ matrix(b), atol=1e-12)
+
+
+@given(vectors)
+def test_roll_pitch_and_yaw_are_turns_about_fixed_axes_in_this_order(rpy: tuple[float, float, float]) -> None:
+    roll, pitch, yaw = (
+        matrix((math.cos(angle / 2.0), *(math.sin(angle / 2.0) * np.eye(3)[axis]))) for axis, angle in enumerate(rpy)
+    )
+    assert np.allclose(np.reshape(from_rpy(*rpy), (3, 3)), yaw @ pitch @ roll, atol=1e-12)
 
 
 def test_a_quarter_turn_about_z_takes_x_to_y() -> None:

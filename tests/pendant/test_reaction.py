@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pendant.contact import ArmPose, Change, Contact
-from pendant.pose import UNTURNED, quaternion, rotation
+from pendant.pose import UNTURNED, from_rpy, quaternion, rotation
 from pendant.reaction import Until, goal
 
 BEGUN = ArmPose((0.0,) * 6, (0.0, 0.0, 0.5), UNTURNED)
@@ -62,6 +62,20 @@ def test_turn_about_the_tool_where_the_arm_stands() -> None:
     assert there is not None
     assert there.position == NOW.p_BT
     assert there.quaternion == pytest.approx((math.cos(0.2), 0.0, 0.0, math.sin(0.2)))
+
+
+def test_reactions_keep_and_turn_the_tool_where_it_is_turned_in_the_flange() -> None:
+    """A tool pitched by a quarter: its z axis is x of the flange."""
+    R_FT = from_rpy(0.0, math.pi / 2.0, 0.0)
+    back = goal(Until(then="retract"), contact(), BEGUN, NOW, R_FT)
+    assert back is not None
+    assert rotation(back.quaternion) == pytest.approx(R_FT, abs=1e-12)
+    there = goal(Until(then="turn", angle=0.4), contact(), BEGUN, NOW, R_FT)
+    assert there is not None
+    # About its own z, which is x of the base here: x of the tool, which pointed down, swings towards y.
+    R = rotation(there.quaternion)
+    assert (R[2], R[5], R[8]) == pytest.approx((1.0, 0.0, 0.0), abs=1e-12)
+    assert (R[0], R[3], R[6]) == pytest.approx((0.0, math.sin(0.4), -math.cos(0.4)), abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -12,6 +13,7 @@ from pendant.inputs import NOTHING as IDLE
 from pendant.inputs import Button, Command, Inputs
 from pendant.load import NOTHING, Load
 from pendant.modes import Law, Mode, Phase
+from pendant.pose import UNTURNED
 from pendant.program import Program, Wait
 from pendant.settings import Settings, ToolUse, apply
 from pendant.supervisor import Supervisor
@@ -286,6 +288,17 @@ def test_the_decision_says_what_the_controller_is_to_believe_in() -> None:
     assert robot.last.fitting is not None
     assert robot.last.fitting.tool is GRIPPER
     assert robot.last.law is Law.HOLD
+
+
+def test_the_frame_of_the_tool_is_told_to_walls_and_programs() -> None:
+    robot = Robot()
+    bent = msgspec.structs.replace(GRIPPER, rpy=[0.0, 0.0, math.pi / 2.0])
+    robot.supervisor = Supervisor(Settings(), 6, equipment=EQUIPMENT._replace(tools=(BARE, bent)))
+    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor._containment.R_FT):
+        assert turn == pytest.approx(UNTURNED)
+    robot.step(Inputs(tool="gripper"))
+    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor._containment.R_FT):
+        assert turn == pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 
 
 def test_an_idle_tick_after_a_change_gives_the_same_decision_again() -> None:

@@ -1,12 +1,16 @@
 """Tool and payload as the controller believes in them: changed between two ticks, led over while the arm stands."""
 
+import msgspec
 import numpy as np
 import pytest
 
 from pendant.events import Kind
 from pendant.inputs import Inputs
+from pendant.modes import Mode
+from pendant.program import LinearMove
 from pendant.settings import Settings, apply
 from sim.desk import Wishes
+from sim.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.scenario import Load, Scenario, Tool, table
 from tests.sim.bench import Bench
 
@@ -48,6 +52,23 @@ def test_a_tool_takes_its_point_and_its_load_from_the_next_tick_on() -> None:
     assert signal is not None
     assert signal.mass == pytest.approx(0.13 + 0.3)
     assert device.simulation.dynamics.load.inertia[0, 0] > 1e-3, "the inertia that the table says"
+
+
+def test_a_tool_that_is_turned_is_moved_by_its_own_frame_as_soon_as_it_is_in_use() -> None:
+    bent = msgspec.structs.replace(GRIPPER, name="bent", rpy=[0.3, 0.5, 0.0])
+    device = bench(Scenario(mismatch="nominal", tool=GRIPPER, payload_true=Load(mass=0.0), tools=[bent]), 0.0)
+    device.tick(wish("bent"))
+    device.run(0.5)
+    start = device.estimate
+    R_FT = rotation_from_rpy(bent.rpy)
+    position = np.add(start.tcp[:3], [0.0, 0.05, 0.0])
+    # The tool is to keep its orientation: so is the flange.
+    quaternion = quaternion_from_matrix(start.R_BF @ R_FT)
+    device.start(LinearMove(position=tuple(position.tolist()), quaternion=tuple(quaternion.tolist()), speed=0.2))
+    device.run(1.5)
+    assert device.mode is Mode.TEACH
+    assert device.estimate.tcp[:3] == pytest.approx(position, abs=3e-4)
+    assert pytest.approx(start.R_BF, abs=2e-3) == device.estimate.R_BF
 
 
 def test_the_load_goes_over_in_a_straight_line_of_mass_and_moment() -> None:

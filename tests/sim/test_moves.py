@@ -180,7 +180,17 @@ def line(
     p, R = tool(q)
     goal = R if turn is None else R @ turn
     move = LinearMove(position=tuple(p + way), quaternion=tuple(quaternion_from_matrix(goal)), **speeds)
-    return LinearTrajectory(q, move, model(), TCP, limits)
+    return LinearTrajectory(q, move, model(), TCP, np.eye(3), limits)
+
+
+def test_a_line_ends_with_the_tools_own_frame_where_it_was_told() -> None:
+    p, R = tool(HOME)
+    R_FT, goal = rotation_from_rpy([0.0, 0.4, 1.2]), R @ rotation_from_rpy([0.2, 0.0, 0.3])
+    move = LinearMove(position=tuple(np.add(p, [0.0, 0.1, 0.05])), quaternion=tuple(quaternion_from_matrix(goal @ R_FT)))
+    rows = play(LinearTrajectory(HOME, move, model(), TCP, R_FT, LIMITS))
+    end, flange = tool(rows[-1].q)
+    assert np.linalg.norm(end - p - [0.0, 0.1, 0.05]) < 1.5e-4
+    assert angle_between(flange @ R_FT, goal @ R_FT) < 1e-3
 
 
 def angle_between(a: Array, b: Array) -> float:
