@@ -24,10 +24,10 @@ class Preferences:
 
     Args:
         tab: where they are.
-        theme: gives the page of a client its colours, dark or light.
+        theme: gives the page of a client its colours, dark (True) or light.
     """
 
-    def __init__(self, guard: Guard, tab: viser.GuiTabHandle, theme: Callable[[viser.GuiApi, bool], None]) -> None:
+    def __init__(self, guard: Guard, tab: viser.GuiTabHandle, theme: Callable[[viser.ClientHandle, bool], None]) -> None:
         self._guard, self._tab, self._theme = guard, tab, theme
         self._pages: dict[int, Page] = {}
         self._before: Decision | None = None
@@ -45,7 +45,7 @@ class Preferences:
 
         @page.dark.on_update
         async def _(_: viser.GuiEvent) -> None:
-            self._theme(client.gui, page.dark.value)
+            self._theme(client, page.dark.value)
 
         @page.sound.on_update
         async def _(_: viser.GuiEvent) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
+from app.web.stage import DARK, LIGHT, lay
 from sim.arm import Arm
 from sim.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.snapshot import Snapshot
@@ -25,7 +26,6 @@ SHORTEST = 0.06
 LONGEST = 0.4
 """Length of the arrows of touches [m]."""
 
-FLOOR = "/floor"
 TOOL = "/arm/tool"
 """Name of the tool's node."""
 
@@ -188,31 +188,18 @@ class Scene:
             )
 
     def _stage(self) -> None:
-        """Light, floor and background."""
+        """Lamps, floor and background."""
         scene = self._server.scene
         scene.set_up_direction("+z")
         # Light from lamps alone: an environment map makes a frame 25 times as long where there is no graphics card.
         scene.configure_environment_map(None)
         scene.configure_default_lights(False)
         scene.add_light_hemisphere("/light/sky", sky_color=(255, 255, 255), ground_color=(176, 182, 190), intensity=2.6)
-        self._floor = scene.add_grid(
-            FLOOR,
-            width=6.0,
-            height=6.0,
-            cell_size=0.1,
-            section_size=0.5,
-            cell_color=(226, 230, 234),
-            section_color=(203, 209, 215),
-            cell_thickness=0.6,
-            section_thickness=1.0,
-            fade_distance=6.0,
-            fade_from="origin",
-            plane_color=(244, 246, 248),
-            plane_opacity=1.0,
-            shadow_opacity=0.0,
-        )
-        shades = np.linspace((214, 221, 229), (247, 248, 250), 128).astype(np.uint8)
-        scene.set_background_image(np.repeat(shades[:, None, :], 2, axis=1), format="png")
+        self._floor = lay(scene, LIGHT)
+
+    def set_theme(self, scene: viser.SceneApi, dark: bool) -> None:
+        """Floor and background of one client's page."""
+        lay(scene, DARK if dark else LIGHT).position = self._floor.position
 
     def _frame(self, points: Array, reach: float) -> None:
         """Look at the arm and light it from its front, a little from above, so that its whole reach is in view."""

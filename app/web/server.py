@@ -48,7 +48,7 @@ class Served(Site):
         self.docks = Docks(self.server, self.guard, loop, self.hand, arm, recording)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
-        self.preferences = Preferences(self.guard, self.docks.settings_dock, self.set_theme)
+        self.preferences = Preferences(self.guard, self.docks.settings_dock, self._paint_page)
         self.keys = Keys(self.server, self.guard, loop, self.docks, self.preferences)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
@@ -82,6 +82,10 @@ class Served(Site):
             self.preferences.show(snapshot.decision)
         self._frame += 1
         return True
+
+    def _paint_page(self, client: viser.ClientHandle, dark: bool) -> None:
+        self.set_theme(client.gui, dark)
+        self.scene.set_theme(client.scene, dark)
 
     async def _welcome(self, client: viser.ClientHandle) -> None:
         self.control.welcome(client)

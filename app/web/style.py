@@ -66,6 +66,8 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 .pd-steps{{margin:2px 12px 8px;padding-left:22px;font-size:12px;line-height:1.5;max-height:130px;overflow:auto}}
 .pd-steps .pd-now{{font-weight:700}} .pd-steps em{{font-style:normal;color:#1971c2}}
 .pd-fine{{margin:-2px 12px 8px;font-size:11px;line-height:1.3;opacity:.6}}
+[data-mantine-color-scheme="dark"] :is(.pd-light span,.pd-loads em,.pd-steps em){{
+  color:color-mix(in srgb,var(--c,#1971c2) 55%,#fff)}}
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 .mantine-Button-section{{margin-inline-end:8px!important}}

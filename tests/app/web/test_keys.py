@@ -104,21 +104,40 @@ def test_a_key_held_down_counts_once(served: Served, join: Join, loop: FakeLoop)
     assert len(served.docks.teach.lesson.waypoints) == 1
 
 
+def painted(client: RawClient, dark: bool, floor: float) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Wait until the page is dark or light, and its new floor lies where it did; its theme and the look of its floor."""
+    seen: dict[str, dict[str, Any]] = {}
+
+    def see(message: dict[str, Any]) -> bool:
+        if message["type"] == "ThemeConfigurationMessage":
+            seen.clear()
+        seen[message["type"]] = message
+        there = message["type"] == "SetPositionMessage" and message["name"] == "/floor"
+        theme = seen.get("ThemeConfigurationMessage", {"dark_mode": not dark})
+        return there and abs(message["position"][2] - floor) < 1e-6 and theme["dark_mode"] is dark and "GridMessage" in seen
+
+    client.messages_until(see)
+    return seen["ThemeConfigurationMessage"], seen["GridMessage"]["props"]
+
+
 def test_each_page_is_dark_or_light_for_itself(served: Served, join: Join) -> None:
+    served.scene._floor.position = (0.0, 0.0, -0.4)
     operator, watcher = join(), join()
     operator.set(served.control._strips[0].take._impl.uuid, value=True)
     pages = served.preferences._pages
     until(lambda: len(pages) == 2, "both have their switches")
     press(served, watcher, "T")
-    told = watcher.messages_until(lambda m: m["type"] == "ThemeConfigurationMessage" and m["dark_mode"])
-    assert told[-1]["colors"] is not None  # as in the light
+    theme, floor = painted(watcher, True, -0.4)
+    assert theme["colors"] is not None  # as in the light
+    assert max(floor["plane_color"]) < 100
     assert (pages[0].dark.value, pages[1].dark.value) == (False, True)
     watcher.set(pages[1].dark._impl.uuid, value=False)
-    watcher.messages_until(lambda m: m["type"] == "ThemeConfigurationMessage" and not m["dark_mode"])
+    assert min(painted(watcher, False, -0.4)[1]["plane_color"]) > 200
     press(served, watcher, "B")
     until(lambda: pages[1].speaker is not None, "sound")
     served.server.gui.set_panel_label("mark")
     served.server.flush()
-    themes = operator.messages_until(lambda m: m["type"] == "SetGuiPanelLabelMessage" and m["label"] == "mark")
-    assert [m["dark_mode"] for m in themes if m["type"] == "ThemeConfigurationMessage"] == [False]
+    told = operator.messages_until(lambda m: m["type"] == "SetGuiPanelLabelMessage" and m["label"] == "mark")
+    assert [m["dark_mode"] for m in told if m["type"] == "ThemeConfigurationMessage"] == [False]
+    assert [min(m["props"]["plane_color"]) > 200 for m in told if m["type"] == "GridMessage"] == [True]
     assert served.guard.refused.total() == 0
