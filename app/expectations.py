@@ -100,6 +100,13 @@ class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
     """No event of a kind happens in the interval."""
 
 
+class Heard(During, tag="tone", frozen=True, kw_only=True):
+    """A page with sound lets a tone be heard in the interval, after its first tick, at least `times` times (app/tones.py)."""
+
+    tone: Literal["STOP", "ASK", "FREE", "HELD", "WALL", "COUNT"]
+    times: Annotated[int, Meta(ge=1)] = 1
+
+
 class Bounds(During, frozen=True, kw_only=True):
     """Base of what must stay within bounds."""
 
@@ -161,4 +168,4 @@ class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
         return "CD-16"
 
 
-AnyExpectation = State | Happens | Never | Value | Displacement | Period | ContactDelay
+AnyExpectation = State | Happens | Never | Heard | Value | Displacement | Period | ContactDelay

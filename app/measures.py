@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.expectations import AnyExpectation, Displacement, Happens, Never, Period, State, Value
+from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, State, Value
 from app.parts import point_of
 from app.triggers import Trigger
-from app.watch import EventWatch, PeriodWatch, StateWatch, Watch, at
+from app.watch import EventWatch, PeriodWatch, StateWatch, ToneWatch, Watch, at
 from pendant.decision import Decision
 from pendant.modes import TICK
 from pendant.settings import ticks
@@ -183,6 +183,8 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
             return PeriodWatch(joints, trigger, wanted=expectation)
     begin, end = ticks(expectation.begin), None if expectation.end is None else ticks(expectation.end)
     match expectation:
+        case Heard():
+            return ToneWatch(joints, trigger, begin, end, wanted=expectation)
         case Happens() | Never():
             return EventWatch(joints, trigger, begin, end, wanted=expectation)
         case Value():

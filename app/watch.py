@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.expectations import Happens, Never, Period, State
+from app.expectations import Happens, Heard, Never, Period, State
+from app.tones import tone_for
 from app.triggers import NEVER, Trigger
 from pendant.decision import Decision
 from pendant.modes import TICK
@@ -162,8 +163,37 @@ class EventWatch(Watch):
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
-        seen = "none" if not self.found else f"{len(self.found)}, at {', '.join(at(tick) for tick in self.found[:5])}"
-        return self.settled() == isinstance(self.wanted, Happens), seen
+        return self.settled() == isinstance(self.wanted, Happens), listed(self.found)
+
+
+@dataclass(slots=True)
+class ToneWatch(Watch):
+    """Follows `Heard`."""
+
+    wanted: Heard = field(kw_only=True)
+    before: Decision | None = None  # of the tick before
+    found: list[int] = field(default_factory=list)
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        if self.before is not None:
+            tone = tone_for(self.before, decision)
+            if tone is not None and tone.name == self.wanted.tone:
+                self.found.append(tick)
+        self.before = decision
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return len(self.found) >= self.wanted.times
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        times = f" {self.wanted.times} times" if self.wanted.times > 1 else ""
+        return f"tone {self.wanted.tone}{times} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        return self.settled(), listed(self.found)
 
 
 @dataclass(slots=True)
@@ -198,6 +228,11 @@ class PeriodWatch(Watch):
         # Half a tick of grace, since lengths are whole ticks.
         passed = abs(length * TICK - self.wanted.length) <= self.wanted.tolerance + 0.5 * TICK
         return passed, f"{length * TICK:.3f} s, from {at(first)}"
+
+
+def listed(found: list[int]) -> str:
+    """When something was seen, in words."""
+    return "none" if not found else f"{len(found)}, at {', '.join(at(tick) for tick in found[:5])}"
 
 
 def at(tick: int) -> str:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import viser
 
+from app.tones import tone_for
 from app.web.guard import Guard
-from app.web.sound import Speaker, tone_for
+from app.web.sound import Speaker
 from pendant.decision import Decision
 
 

@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.expectations import AnyExpectation, Displacement, Happens, Never, Period, State, Value
+from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, State, Value
 from app.measures import watch
 from app.watch import Verdict
 from pendant.decision import Decision, Remaining
@@ -102,6 +102,21 @@ def test_events_are_told_apart_by_their_words() -> None:
     verdict = follow(Happens(kind=Kind.SIGNAL_SEEN, values={"source": "twist"}), 10, decide)
     assert not verdict.passed
     assert verdict.expected.startswith("event signal_seen (source twist) from")
+
+
+def test_a_tone_is_heard_at_the_change_that_has_it() -> None:
+    def decide(tick: int) -> Decision:
+        return decision(periods=(Remaining("restart", 1600 - tick, 2000),) if tick < 1600 else ())
+
+    verdict = follow(Heard(tone="COUNT", times=3), 1700, decide)
+    assert verdict.passed
+    assert verdict.expected == "tone COUNT 3 times from 0.000 s to the end"
+    assert verdict.seen == "3, at 0.200 s, 1.200 s, 2.200 s"
+    assert not follow(Heard(tone="COUNT", times=4), 1700, decide).passed
+    assert follow(Heard(tone="COUNT", begin=2.0, end=2.4), 1700, decide).passed
+    assert not follow(Heard(tone="COUNT", begin=2.3, end=2.4), 1700, decide).passed
+    assert follow(Heard(tone="FREE"), 10, enters_at(5)).seen == "1, at 0.010 s"
+    assert follow(Heard(tone="HELD"), 10, enters_at(5)).seen == "none"
 
 
 def test_events_are_counted() -> None:
