@@ -36,7 +36,7 @@ def test_the_link_lets_in_and_a_text_stays_a_text(browser: Browser, network: Ser
     page.get_by_role("button", name="Take").click(timeout=60_000)
     page.get_by_text("You have control").wait_for()
     page.get_by_role("button", name="Register waypoint").click()
-    page.locator(".mantine-TextInput-input").fill(EVIL)
+    page.locator(".mantine-TextInput-input:visible").fill(EVIL)
     page.get_by_role("button", name="Add", exact=True).click()
     page.get_by_text(f"Move to {EVIL}").wait_for()
     assert page.evaluate("window.evil") is None
