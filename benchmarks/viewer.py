@@ -17,7 +17,7 @@ import zstandard
 from websockets import Subprotocol
 from websockets.sync.client import ClientConnection, connect
 
-PROTOCOL = Subprotocol("viser-v1.1.1")
+VERSION = Subprotocol("viser-v1.1.1")
 HOLD_RATE = 20.0  # of the messages of a held button, and of a drag, as a browser sends them [Hz]
 SLIDER_RATE = 10.0  # of a slider that is being moved [Hz]
 ENTRY = 2.6  # until the held button and the activation sequence have brought free-drive [s]
@@ -68,7 +68,7 @@ class Viewer:
     def __init__(self, task: Task) -> None:
         self._task = task
         self.seen = Seen()
-        self._socket: ClientConnection = connect(task.url, subprotocols=[PROTOCOL], max_size=None, proxy=None)
+        self._socket: ClientConnection = connect(task.url, subprotocols=[VERSION], max_size=None, proxy=None)
         self._unpack = zstandard.ZstdDecompressor()
 
     def run(self) -> None:

@@ -10,7 +10,7 @@ from pendant.decision import WallState
 from pendant.enclosure import Enclosure, worst
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Values
-from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, product
+from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
 from pendant.settings import Walls
 from pendant.shapes import Sphere
 from pendant.walls import AnyBorder, Measure, Policy, Reaction, Start, Wall
@@ -99,9 +99,8 @@ class Containment:
             parts[name] = _point(name, estimate)
         references = self._frames
         if self._turned:
-            (a, b, c), (d, e, f), (g, h, i) = estimate.R_BF.tolist()
-            turn = (a, b, c, d, e, f, g, h, i)
-            turns = {"flange": turn, "tcp": product(turn, self.R_FT)}
+            R_BF = flat(estimate.R_BF)
+            turns = {"flange": R_BF, "tcp": product(R_BF, self.R_FT)}
             references = {**references, **{name: Pose(_point(name, estimate).p, turns[name]) for name in self._turned}}
         measures = _measures(estimate) if self._measured else {}
         self._reading = self._enclosure.step(Around(parts, references, user, payload, measures))

@@ -193,10 +193,8 @@ class FreeDrive:
         """The user's force is amplified: not while a payload may have dropped (FD-19)."""
         return self.use_wrench and not (self._operation is not None and self._operation.suspect)
 
-    def sense(self, held: bool, signal: Presence | None = None) -> None:
-        """Begin a tick: the button, the signal of activation (None: as the button), the cool-down, the absence of the signal."""
-        if signal is None:
-            signal = BUTTON if held else NONE
+    def sense(self, held: bool, signal: Presence) -> None:
+        """Begin a tick: the button, the signal of activation, the cool-down, the absence of the signal."""
         self._anew = False
         self._appeared = bool(signal.source) and not self._signal.source
         self._signal = signal
@@ -256,7 +254,7 @@ class FreeDrive:
         attempt = self._attempt
         counting = attempt is not None and attempt.phase is Phase.ACTIVATION and not self._signal.source
         if not counting and not may_enter(around.mode, settings):
-            return [self._refuse(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
+            return [self._over(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
         if not around.enabled:
             return [self._disabled(around, settings)]
         if attempt is None:
@@ -291,11 +289,11 @@ class FreeDrive:
             return Event(Kind.CONFIRM_ASKED, tick, values)
         if outcome is Outcome.UNCONFIRMED:
             values = {"source": attempt.source, "limit": handshake.window}
-            return self._refuse(Kind.REFUSED_UNCONFIRMED, tick, settings, values)
+            return self._over(Kind.REFUSED_UNCONFIRMED, tick, settings, values)
         values = {"force": around.felt, "limit": off.force, "within": off.within}
         if outcome is Outcome.LET_GO:
             return Event(Kind.LET_GO_ASKED, tick, values)
-        return self._refuse(Kind.REFUSED_STILL_HELD, tick, settings, values)
+        return self._over(Kind.REFUSED_STILL_HELD, tick, settings, values)
 
     def _give_up(self) -> None:
         """The attempt ends without a cause to refuse it."""
@@ -308,12 +306,12 @@ class FreeDrive:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
-            return [self._refuse(Kind.REFUSED_SENSORS, tick, settings, {"sensor": JOINTS_SENSED})]
+            return [self._over(Kind.REFUSED_SENSORS, tick, settings, {"sensor": JOINTS_SENSED})]
         if around.changing is not None:
-            return [self._refuse(Kind.REFUSED_CHANGING, tick, settings, {"mass": around.changing})]
+            return [self._over(Kind.REFUSED_CHANGING, tick, settings, {"mass": around.changing})]
         if around.still.count < ticks(settings.static.time):
             values = moving(around.still, self._joints, settings)
-            return [self._refuse(Kind.REFUSED_MOVING, tick, settings, values)]
+            return [self._over(Kind.REFUSED_MOVING, tick, settings, values)]
         self._posture = tuple(around.estimate.q.tolist())
         if not settings.sequence.on:
             return [self._enter(around, settings)]
@@ -331,7 +329,7 @@ class FreeDrive:
         self._left -= 1
         if not may_enter(around.mode, settings):
             values: Values = {"mode": around.mode, "allowed": origins(settings)}
-            return [self._refuse(Kind.REFUSED_MODE, around.estimate.tick, settings, values)]
+            return [self._over(Kind.REFUSED_MODE, around.estimate.tick, settings, values)]
         events = self._judge(around, settings)
         if not events and self._left == 0:
             events.append(self._enter(around, settings))
@@ -344,7 +342,7 @@ class FreeDrive:
         now = seen(around)
         missing = sequence.missing(now)
         if missing:
-            return [self._refuse(Kind.REFUSED_SENSORS, around.estimate.tick, settings, {"sensor": missing})]
+            return [self._over(Kind.REFUSED_SENSORS, around.estimate.tick, settings, {"sensor": missing})]
         beyond = sequence.check(now)
         reading = self._containment.step(around.estimate, *NOBODY)
         if not beyond and reading is not None:
@@ -378,7 +376,7 @@ class FreeDrive:
     def _stay(self, around: Surroundings, settings: Settings) -> list[Event]:
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
-            return [self._leave(Kind.SENSORS_LOST, tick, settings, {"sensor": JOINTS_SENSED})]
+            return [self._over(Kind.SENSORS_LOST, tick, settings, {"sensor": JOINTS_SENSED})]
         events: list[Event] = []
         if self.use_wrench and not around.wrench_ok:
             self.use_wrench = False
@@ -410,7 +408,7 @@ class FreeDrive:
         before, self.caught = self.caught, caught(reading)
         if reading is not None and not self.caught:
             kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
-            events.append(self._leave(kind, estimate.tick, settings, facts(reading)))
+            events.append(self._over(kind, estimate.tick, settings, facts(reading)))
             return True
         if reading is not None and not before:
             events.append(Event(Kind.WALL_REACHED, estimate.tick, facts(reading)))
@@ -422,7 +420,7 @@ class FreeDrive:
         ending = self._operation.step(estimate, hand, self.use_wrench, self.caught or self._zones.pushing)
         if ending is None:
             return False
-        events.append(self._leave(ending.kind, estimate.tick, settings, ending.values))
+        events.append(self._over(ending.kind, estimate.tick, settings, ending.values))
         return True
 
     def _refuse_wall(self, reading: Reading, tick: int, settings: Settings) -> Event:
@@ -431,8 +429,8 @@ class FreeDrive:
         if settings.sequence.protective_stop:
             metres = float(values["distance"]) / 1000.0
             values = {"parameter": f"wall {values['wall']}", "part": values["part"], "value": metres, "limit": 0.0, "unit": "m"}
-            return self._refuse(Kind.SEQUENCE_STOPPED, tick, settings, values)
-        return self._refuse(Kind.REFUSED_WALL, tick, settings, values)
+            return self._over(Kind.SEQUENCE_STOPPED, tick, settings, values)
+        return self._over(Kind.REFUSED_WALL, tick, settings, values)
 
     def _hold(self, around: Surroundings, settings: Settings, events: list[Event]) -> None:
         """The button was held in the tick before."""
@@ -442,10 +440,10 @@ class FreeDrive:
         if not self._ended:
             return
         if settings.button.hold_to_run:
-            events.append(self._leave(Kind.LEFT_RELEASE, tick, settings, {}))
+            events.append(self._over(Kind.LEFT_RELEASE, tick, settings, {}))
         elif 0 <= self._pressed < ticks(settings.button.short_press):
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
-            events.append(self._leave(Kind.LEFT_PRESS, tick, settings, values))
+            events.append(self._over(Kind.LEFT_PRESS, tick, settings, values))
         else:
             self._begin(Phase.PERIOD, around, settings)
 
@@ -466,7 +464,7 @@ class FreeDrive:
             events.append(Event(Kind.MANIPULATION, tick, dict(excess._asdict())))
         elif self._left == 0:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
-            events.append(self._leave(kind, tick, settings, {"limit": self._total * TICK}))
+            events.append(self._over(kind, tick, settings, {"limit": self._total * TICK}))
 
     def _begin(self, phase: Phase, around: Surroundings, settings: Settings) -> None:
         """The free-drive or the restart period begins; where none ends free-drive, the arm counts as guided (FD-24)."""
@@ -478,13 +476,10 @@ class FreeDrive:
     def _disabled(self, around: Surroundings, settings: Settings) -> Event:
         """The enabling device is not in its middle position."""
         kind = Kind.LEFT_ENABLING if self.phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
-        return self._refuse(kind, around.estimate.tick, settings, {"grip": around.grip or ""})
+        return self._over(kind, around.estimate.tick, settings, {"grip": around.grip or ""})
 
-    def _refuse(self, kind: Kind, tick: int, settings: Settings, values: Values) -> Event:
-        self._end(kind, settings)
-        return Event(kind, tick, values)
-
-    def _leave(self, kind: Kind, tick: int, settings: Settings, values: Values) -> Event:
+    def _over(self, kind: Kind, tick: int, settings: Settings, values: Values) -> Event:
+        """Free-drive is left, or its activation refused, because of an event of `kind`."""
         self._end(kind, settings)
         return Event(kind, tick, values)
 

@@ -36,19 +36,15 @@ class View(NamedTuple):
 Reader = Callable[[View, Gauge], tuple[float, str]]
 
 
-def _size(x: float, y: float, z: float) -> float:
-    return math.sqrt(x * x + y * y + z * z)
-
-
 def _flange_displacement(view: View, _: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.p_BF.tolist()
     x0, y0, z0 = view.since.position
-    return _size(x - x0, y - y0, z - z0), "flange"
+    return math.hypot(x - x0, y - y0, z - z0), "flange"
 
 
 def _flange_speed(view: View, _: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.v_F.tolist()[:3]
-    return _size(x, y, z), "flange"
+    return math.hypot(x, y, z), "flange"
 
 
 def beyond_gravity(estimate: Estimate) -> float:
@@ -56,7 +52,7 @@ def beyond_gravity(estimate: Estimate) -> float:
     x, y, z = estimate.a_F.tolist()
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
     gx, gy, gz = estimate.g_B.tolist()
-    return _size(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz)
+    return math.hypot(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz)
 
 
 def _flange_acceleration(view: View, _: Gauge) -> tuple[float, str]:

@@ -3,15 +3,12 @@
 import math
 from collections.abc import Sequence
 
+from pendant.pose import Rotation, Vector, turned
 from pendant.schema import ticks
 from pendant.signal_settings import Push, Twist
 
 STAYS = 0.75
 """A signal that is present stays so down to this share of its threshold: a hand trembles."""
-
-
-def _size(x: float, y: float, z: float) -> float:
-    return math.sqrt(x * x + y * y + z * z)
 
 
 class PushSignal:
@@ -28,46 +25,36 @@ class PushSignal:
         """All of its state, to compare."""
         return (self.present, self._calm)
 
-    def step(self, change: Sequence[float], rotation: Sequence[Sequence[float]], use: Push) -> bool:
+    def step(self, change: Sequence[float], R_BF: Rotation, use: Push) -> bool:
         """One tick.
 
         Args:
             change: of the user's wrench from the untouched state: force [N], torque about the flange's origin [N·m], axes of B.
-            rotation: R_BF, rows.
+            R_BF: of the flange.
             use: settings.
         """
         fx, fy, fz, tx, ty, tz = change
-        torque = _size(tx, ty, tz)
+        torque = math.hypot(tx, ty, tz)
         self._calm = self._calm + 1 if torque <= use.torque_limit else 0
-        force = _size(fx, fy, fz)
+        force = math.hypot(fx, fy, fz)
         needed = use.threshold * STAYS if self.present else use.threshold
         self.present = (
             needed < force <= use.force_limit
             and self._calm > ticks(use.torque_period)
-            and _right_way((fx, fy, fz), force, rotation, use)
-            and (use.radius == 0.0 or _at_place(change, force, rotation, use))
+            and _right_way((fx, fy, fz), force, R_BF, use)
+            and (use.radius == 0.0 or _at_place(change, force, R_BF, use))
         )
         return self.present
 
 
-def _turned(rotation: Sequence[Sequence[float]], vector: tuple[float, float, float]) -> tuple[float, float, float]:
-    x, y, z = vector
-    a, b, c = rotation
-    return (
-        a[0] * x + a[1] * y + a[2] * z,
-        b[0] * x + b[1] * y + b[2] * z,
-        c[0] * x + c[1] * y + c[2] * z,
-    )
-
-
-def _right_way(f: tuple[float, float, float], force: float, rotation: Sequence[Sequence[float]], use: Push) -> bool:
+def _right_way(f: Vector, force: float, R_BF: Rotation, use: Push) -> bool:
     """Within the cone around the axis or, for a band, near the plane across it; not too much force off the axis."""
-    length = _size(use.x, use.y, use.z)
+    length = math.hypot(use.x, use.y, use.z)
     if length == 0.0:
         return True
     axis = (use.x / length, use.y / length, use.z / length)
     if use.flange_axes:
-        axis = _turned(rotation, axis)
+        axis = turned(R_BF, axis)
     along = f[0] * axis[0] + f[1] * axis[1] + f[2] * axis[2]
     across = math.sqrt(max(force * force - along * along, 0.0))
     if use.band:
@@ -75,11 +62,11 @@ def _right_way(f: tuple[float, float, float], force: float, rotation: Sequence[S
     return across <= use.off_axis and math.atan2(across, along) <= math.radians(use.angle)
 
 
-def _at_place(change: Sequence[float], force: float, rotation: Sequence[Sequence[float]], use: Push) -> bool:
+def _at_place(change: Sequence[float], force: float, R_BF: Rotation, use: Push) -> bool:
     """The wrench's line of action passes the place: the torque about it is the force times its distance from the line."""
     fx, fy, fz, tx, ty, tz = change
-    px, py, pz = _turned(rotation, (use.place_x, use.place_y, use.place_z))
-    return _size(tx - (py * fz - pz * fy), ty - (pz * fx - px * fz), tz - (px * fy - py * fx)) <= use.radius * force
+    px, py, pz = turned(R_BF, (use.place_x, use.place_y, use.place_z))
+    return math.hypot(tx - (py * fz - pz * fy), ty - (pz * fx - px * fz), tz - (px * fy - py * fx)) <= use.radius * force
 
 
 class TwistSignal:
@@ -99,5 +86,5 @@ class TwistSignal:
         """One tick of the change of the user's wrench, as `PushSignal.step` takes it."""
         fx, fy, fz, tx, ty, tz = change
         needed = use.threshold * STAYS if self.present else use.threshold
-        self.present = _size(fx, fy, fz) < use.force_limit and _size(tx, ty, tz) > needed
+        self.present = math.hypot(fx, fy, fz) < use.force_limit and math.hypot(tx, ty, tz) > needed
         return self.present

@@ -7,6 +7,7 @@ from pendant.estimate import Estimate
 from pendant.gestures import PatternSignal, StepSignal, TapSignal, TurnSignal
 from pendant.joint_push import JointPushSignal
 from pendant.parameters import beyond_gravity
+from pendant.pose import flat
 from pendant.push import PushSignal, TwistSignal
 from pendant.schema import ticks
 from pendant.signal_settings import LetGo, Signals
@@ -157,7 +158,7 @@ class Sources:
         change = self._wrench.step(estimate.F_user.tolist())
         found = NONE
         if pushing:
-            present = self._push.step(change, estimate.R_BF.tolist(), use.push)
+            present = self._push.step(change, flat(estimate.R_BF), use.push)
             self._told = min(self._told + 1, TOLD_AFTER + 1) if present and use.push.told else 0
             if present and use.push.on:
                 found = Presence("push", by_hand=True)

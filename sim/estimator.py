@@ -16,6 +16,7 @@ from sim.chain import Body
 from sim.dynamics import Dynamics
 from sim.frames import skew
 from sim.moves import Reference
+from sim.newton_euler import cross
 from sim.sensors import Sample
 from sim.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
 
@@ -328,25 +329,20 @@ def _differentiate(gyro, last, turn, smoothing) -> None:
 
 
 @numba.njit(cache=True)
-def _cross(a, b):
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@numba.njit(cache=True)
 def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
     """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
 
     The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
     c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
     """
-    tangential = _cross(turn, com)
-    normal = _cross(gyro, _cross(gyro, com))
-    lever = _cross(com, force)
+    tangential = cross(turn, com)
+    normal = cross(gyro, cross(gyro, com))
+    lever = cross(com, force)
     spin, torque = np.empty(3), np.empty(3)
     for k in range(3):
         spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
         torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
-    whirl = _cross(gyro, spin)
+    whirl = cross(gyro, spin)
     rest = np.empty(6)
     for k in range(3):
         rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]

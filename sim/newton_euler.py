@@ -70,7 +70,8 @@ class NewtonEuler:
 
 
 @numba.njit(cache=True)
-def _cross(a, b):
+def cross(a, b):
+    """Cross product of two triples or vectors, as a triple."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
@@ -128,7 +129,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, outcome):
         origins[i] = p[i]
         z = (R[i, 0, 2], R[i, 1, 2], R[i, 2, 2])
         arm = (p_F[0] - p[i, 0], p_F[1] - p[i, 1], p_F[2] - p[i, 2])
-        linear = _cross(z, arm)
+        linear = cross(z, arm)
         for k in range(3):
             jacobian[k, i], jacobian[3 + k, i] = linear[k], z[k]
     v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque, bend)
@@ -137,7 +138,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, outcome):
         for i in range(n):
             v_F[k] += jacobian[k, i] * motion[1, i]
     offset = _turn(R_F, tcp)
-    swing = _cross((v_F[3], v_F[4], v_F[5]), offset)
+    swing = cross((v_F[3], v_F[4], v_F[5]), offset)
     for k in range(3):
         tip[k], tip[3 + k] = p_F[k] + offset[k], v_F[k] + swing[k]
     return _norm((v_F[0] + swing[0], v_F[1] + swing[1], v_F[2] + swing[2])), v_elbow
@@ -158,16 +159,16 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
     for i in range(n):
         here, qd, qdd = (p[i, 0], p[i, 1], p[i, 2]), motion[1, i], motion[2, i]
         step = (here[0] - last[0], here[1] - last[1], here[2] - last[2])
-        tangential, whirl = _cross(alpha, step), _cross(w, step)
+        tangential, whirl = cross(alpha, step), cross(w, step)
         v = (v[0] + whirl[0], v[1] + whirl[1], v[2] + whirl[2])
-        normal = _cross(w, whirl)
+        normal = cross(w, whirl)
         a = (a[0] + tangential[0] + normal[0], a[1] + tangential[1] + normal[1], a[2] + tangential[2] + normal[2])
         if i == elbow:
             v_elbow = _norm(v)
             for k in range(3):
                 bend[k], bend[3 + k] = here[k], v[k]
         spin = (R[i, 0, 2] * qd, R[i, 1, 2] * qd, R[i, 2, 2] * qd)
-        turn = _cross(w, spin)
+        turn = cross(w, spin)
         alpha = (
             alpha[0] + R[i, 0, 2] * qdd + turn[0],
             alpha[1] + R[i, 1, 2] * qdd + turn[1],
@@ -178,23 +179,23 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
 
         row = constants[i]
         com = _turn(R[i], (row[COM], row[COM + 1], row[COM + 2]))
-        tangential, normal = _cross(alpha, com), _cross(w, _cross(w, com))
+        tangential, normal = cross(alpha, com), cross(w, cross(w, com))
         inertia = row[INERTIA:WIDTH].reshape(3, 3)
         rate, local = _turn_back(R[i], alpha), _turn_back(R[i], w)
-        whirl = _cross(local, _turn(inertia, local))
+        whirl = cross(local, _turn(inertia, local))
         change = _turn(inertia, rate)
         moment_com = _turn(R[i], (change[0] + whirl[0], change[1] + whirl[1], change[2] + whirl[2]))
         for k in range(3):
             force[i, k] = row[MASS] * (a[k] + tangential[k] + normal[k])
             moment[i, k] = moment_com[k]
-        lever = _cross(com, (force[i, 0], force[i, 1], force[i, 2]))
+        lever = cross(com, (force[i, 0], force[i, 1], force[i, 2]))
         for k in range(3):
             moment[i, k] += lever[k]
     f, m = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)  # what passes on at the joint after this
     for i in range(n - 1, -1, -1):
         if i < n - 1:
             ahead = (p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1], p[i + 1, 2] - p[i, 2])
-            lever = _cross(ahead, f)
+            lever = cross(ahead, f)
             m = (m[0] + lever[0], m[1] + lever[1], m[2] + lever[2])
         f = (f[0] + force[i, 0], f[1] + force[i, 1], f[2] + force[i, 2])
         m = (m[0] + moment[i, 0], m[1] + moment[i, 1], m[2] + moment[i, 2])

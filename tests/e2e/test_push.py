@@ -15,13 +15,18 @@ pytestmark = pytest.mark.e2e
 Visit = Callable[[], Page]
 
 
-def enter_free_drive(page: Page, cell: Cell) -> None:
-    """Hold the free-drive button with the pointer until free-drive is on, then let go."""
+def hold_free_drive(page: Page, cell: Cell) -> None:
+    """Press the free-drive button with the pointer and hold it until free-drive is on."""
     box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.down()
     cell.wait(lambda: cell.loop.latest().decision.phase is Phase.HELD, "free-drive, button held")
+
+
+def enter_free_drive(page: Page, cell: Cell) -> None:
+    """Hold the free-drive button until free-drive is on, then let go."""
+    hold_free_drive(page, cell)
     page.mouse.up()
     cell.wait(lambda: cell.loop.latest().decision.phase is Phase.PERIOD, "free-drive, button let go")
 
@@ -74,11 +79,7 @@ def test_held_the_arm_gives_way_by_less_than_three_millimetres_and_comes_back(vi
 
 def test_closing_the_tab_while_holding_ends_the_hold_at_once(visit: Visit, cell: Cell) -> None:
     page = visit()
-    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 20, box["y"] + 20)
-    page.mouse.down()
-    cell.wait(lambda: cell.loop.latest().decision.phase is Phase.HELD, "free-drive, button held")
+    hold_free_drive(page, cell)
     page.context.close()
     cell.wait(lambda: cell.loop.latest().decision.phase is not Phase.HELD, "the hold has ended", 5.0)
     assert not cell.happened(Kind.HOLD_SILENT)
@@ -96,11 +97,7 @@ def test_closing_the_tab_while_dragging_lets_go_at_once(visit: Visit, cell: Cell
 
 def test_a_page_that_falls_silent_counts_as_released(visit: Visit, cell: Cell) -> None:
     page = visit()
-    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 20, box["y"] + 20)
-    page.mouse.down()
-    cell.wait(lambda: cell.loop.latest().decision.phase is Phase.HELD, "free-drive, button held")
+    hold_free_drive(page, cell)
     page.evaluate("setTimeout(() => { const start = Date.now(); while (Date.now() - start < 3000); }, 0)")
     cell.wait(lambda: cell.happened(Kind.HOLD_SILENT), "the silence is seen", 5.0)
     silent = next(event for event in cell.loop.events(0) if event.kind is Kind.HOLD_SILENT)
@@ -109,11 +106,7 @@ def test_a_page_that_falls_silent_counts_as_released(visit: Visit, cell: Cell) -
 
 def test_the_stop_of_a_second_finger_is_not_lost_while_the_button_is_held(visit: Visit, cell: Cell) -> None:
     page = visit()
-    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 20, box["y"] + 20)
-    page.mouse.down()
-    cell.wait(lambda: cell.loop.latest().decision.phase is Phase.HELD, "free-drive, button held")
+    hold_free_drive(page, cell)
     page.get_by_role("button", name="EMERGENCY STOP").dispatch_event("click")
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped", 5.0)
     page.mouse.up()

@@ -25,6 +25,13 @@ def served(loop: FakeLoop) -> Iterator[Served]:
 
 
 @pytest.fixture
+def still(served: Served) -> Served:
+    """It, but only the test brings its page up to date."""
+    served.stop_drawing()
+    return served
+
+
+@pytest.fixture
 def join(served: Served) -> Iterator[Callable[[], RawClient]]:
     """Connects one client after the other; client n has the number n."""
     clients: list[RawClient] = []

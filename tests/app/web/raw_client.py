@@ -6,22 +6,10 @@ from typing import Any
 
 import msgspec
 import zstandard
-from websockets import Origin, Subprotocol
+from websockets import Origin
 from websockets.sync.client import ClientConnection, connect
 
-VERSION = Subprotocol("viser-v1.1.1")
-CAMERA: dict[str, Any] = {
-    "type": "ViewerCameraMessage",
-    "wxyz": [1.0, 0.0, 0.0, 0.0],
-    "position": [2.0, 0.0, 1.0],
-    "fov": 0.7,
-    "near": 0.01,
-    "far": 1000.0,
-    "image_height": 800,
-    "image_width": 1280,
-    "look_at": [0.0, 0.0, 0.0],
-    "up_direction": [0.0, 0.0, 1.0],
-}
+from benchmarks.viewer import CAMERA, VERSION
 
 
 def until(true: Callable[[], bool], what: str, seconds: float = 5.0) -> None:

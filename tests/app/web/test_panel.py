@@ -1,10 +1,10 @@
 """What the pendant shows of a snapshot and its events, and what its controls do."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
-from app.web.server import Served, serve
+from app.web.server import Served
 from app.web.svg import Colour
 from pendant.decision import Remaining
 from pendant.events import Kind
@@ -12,20 +12,10 @@ from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import Mode, Phase, Safety
 from pendant.settings import Settings, apply, limits_checksum
-from sim.scenario import Scenario
-from tests.app.web.fake_loop import ARM, FakeLoop
+from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
-
-
-@pytest.fixture
-def still(loop: FakeLoop) -> Iterator[Served]:
-    """A web app whose painter does not run, so that the test alone brings the pendant up to date."""
-    app = serve(loop, ARM, Scenario())
-    app.stop_drawing()
-    yield app
-    app.close()
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,15 @@
 
 import csv
 import io
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from app.web.plots import SAMPLES, View
-from app.web.server import Served, serve
+from app.web.server import Served
 from pendant.events import Kind
-from sim.scenario import Scenario
-from tests.app.web.fake_loop import ARM, FakeLoop
+from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
@@ -31,14 +30,6 @@ TOUCH = {
     "z": 0.2,
     "action": "stop",
 }
-
-
-@pytest.fixture
-def still(loop: FakeLoop) -> Iterator[Served]:
-    app = serve(loop, ARM, Scenario())
-    app.stop_drawing()
-    yield app
-    app.close()
 
 
 def test_a_sample_is_taken_twenty_times_a_second_and_memory_is_fixed(loop: FakeLoop, still: Served) -> None:
