@@ -82,7 +82,7 @@ def _shares(log: Log) -> list[tuple[str, Array]]:
 
 
 def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], bar: float = 0.0) -> str:
-    figure, axes = _axes(2.1)
+    figure, axes = _axes(1.9)
     for name, values in series:
         axes.plot(*thinned(t, values), linewidth=0.9, label=name)
     for mark in marks:

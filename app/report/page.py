@@ -18,7 +18,7 @@ body { margin: 0 auto; max-width: 19cm; padding: 1.2cm 0.6cm; color: var(--ink);
 h1 { font-size: 17pt; margin: 0 0 0.2em; line-height: 1.2; }
 h2 { font-size: 12pt; margin: 1.5em 0 0.4em; border-bottom: 1px solid var(--line); break-after: avoid; }
 p { margin: 0.4em 0; } h2 + p { break-after: avoid; }
-.note { border-left: 4px solid #f59f00; background: #fff9db; padding: 0.5em 0.8em; }
+.note { border-left: 4px solid #f59f00; background: #fff9db; padding: 0.5em 0.8em; break-inside: avoid; }
 .verdict { font-size: 12pt; font-weight: 600; }
 .bad { color: var(--bad); font-weight: 600; } .good { color: var(--good); font-weight: 600; }
 table { border-collapse: collapse; width: 100%; font-size: 8.5pt; }
