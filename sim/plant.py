@@ -80,6 +80,8 @@ class Plant:
         own = (self.q, self.theta, self.qd, self.theta_d, self.tau_J)
         self._gathered = (*state, self._addresses, *self._springs_of, *own)
         self._applied, self._measured = data.qfrc_applied, data.history
+        self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
+        self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)
         self.load = scenario.payload_true
         self.fallen: Array | None = None
@@ -259,16 +261,11 @@ class Plant:
 
     def poses(self) -> Array:
         """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
-        return _poses(self.data.xpos, self.data.xquat, self._links)
-
-    @property
-    def flange_body(self) -> int:
-        """MuJoCo's number of the tool-side face of the flange sensor."""
-        return self._parts["flange"]
+        return _poses(*self.frames, self._links)
 
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
-        return _poses(self.data.xpos, self.data.xquat, self._objects)
+        return _poses(*self.frames, self._objects)
 
     def payload_pose(self) -> Array | None:
         """Pose (7,) in W of the payload's centre, attached or fallen; None without one."""

@@ -27,7 +27,6 @@ class Block(NamedTuple):
     ticks: np.ndarray[Any, Any]  # (k,)
     numbers: np.ndarray[Any, Any]  # (k, ...) of /state
     codes: list[tuple[int, ...]]  # of each tick
-    singles: list[tuple[float, ...]]  # of each tick: numbers of /state that come one by one
     truth: np.ndarray[Any, Any]  # (k, ...) of /truth
     pictures: list[Picture]
     events: list[tuple[int, Event]]

@@ -13,7 +13,7 @@ from app.checked import ABSENT, BadInput
 from app.log import layout
 from app.log.block import Block, Picture
 from app.log.layout import STATE, TRUTH
-from app.log.writer import SINGLES, Writer
+from app.log.writer import Writer
 from pendant.decision import Decision
 from pendant.events import Event, Kind
 from pendant.modes import Mode, Phase, Safety
@@ -21,8 +21,7 @@ from pendant.parameters import PARAMETERS
 from pendant.program import ProgramState
 from pendant.settings import Settings
 from sim.loop import SNAPSHOT_TICKS
-from sim.plant import Plant
-from sim.rows import fill_estimate, fill_truth
+from sim.rows import fill_rows
 from sim.simulation import Simulation
 
 BLOCK = 125
@@ -60,7 +59,7 @@ class Recorder:
         self._waits = waits
         self._n = n = simulation.arm.n
         self._writer = Writer(path, simulation, title)
-        self._vectors = layout.width(STATE, n) - 2 * len(AT) - SINGLES  # numbers that come as arrays
+        self._vectors = layout.width(STATE, n) - 2 * len(AT)  # numbers before those of monitored parameters
         self._offset, self._last = 0, 0  # of the log's ticks over the simulation's; the log's last tick
         self._full = 1  # the first tick goes by itself, so that a log can be shown as soon as it is there
         self._begin()
@@ -89,8 +88,7 @@ class Recorder:
         self._last = tick
         k = self._count
         self._ticks[k] = tick
-        self._take_state(simulation, decision, self._numbers[k])
-        self._take_truth(simulation.plant, self._truth[k])
+        self._take(simulation, decision, k)
         if simulation.tick_count % SNAPSHOT_TICKS == 1:
             plant = simulation.plant
             poses = (plant.poses(), plant.object_poses(), plant.payload_pose())
@@ -122,7 +120,6 @@ class Recorder:
         self._ticks = np.zeros(BLOCK, dtype=np.uint64)
         self._numbers = np.full((BLOCK, layout.width(STATE, n)), math.nan)
         self._codes: list[tuple[int, ...]] = []
-        self._singles: list[tuple[float, ...]] = []
         self._truth = np.zeros((BLOCK, layout.width(TRUTH, n)))
         self._pictures: list[Picture] = []
         self._events: list[tuple[int, Event]] = []
@@ -134,7 +131,6 @@ class Recorder:
             self._ticks[:k],
             self._numbers[:k],
             self._codes,
-            self._singles,
             self._truth[:k],
             self._pictures,
             self._events,
@@ -146,27 +142,19 @@ class Recorder:
             self._queue.put(block)
         self._begin()
 
-    def _take_state(self, simulation: Simulation, decision: Decision, row: np.ndarray) -> None:
+    def _take(self, simulation: Simulation, decision: Decision, k: int) -> None:
         e = simulation.estimate
-        k = self._vectors
-        fill_estimate(e, row)
-        for monitored in decision.monitored:
-            at = AT.get(monitored.name)
-            if at is not None:
-                row[k + SINGLES + at] = monitored.value
-                row[k + SINGLES + len(AT) + at] = monitored.limit
-        self._singles.append((e.v_tcp, e.v_elbow, decision.gain, simulation.fitting.mass))
+        fill_rows(e, simulation.plant, decision.gain, simulation.fitting.mass, self._numbers, self._truth, k)
+        if decision.monitored:
+            row, at = self._numbers[k], self._vectors
+            for monitored in decision.monitored:
+                number = AT.get(monitored.name)
+                if number is not None:
+                    row[at + number] = monitored.value
+                    row[at + len(AT) + number] = monitored.limit
         valid = e.joints_valid + 2 * e.wrench_valid + 4 * e.acceleration_valid
         states = (MODES[decision.mode], SAFETIES[decision.safety], PHASES[decision.phase], PROGRAMS[decision.program])
         self._codes.append((*states, min(decision.step, 255), valid))
-
-    def _take_truth(self, plant: Plant, row: np.ndarray) -> None:
-        fill_truth(plant, row)
-        for _, _, force, _ in plant.hands.touched:
-            row[-4] += force[0]
-            row[-3] += force[1]
-            row[-2] += force[2]
-        row[-1] = plant.load.mass
 
     def _write(self) -> None:
         """The recorder's own thread."""

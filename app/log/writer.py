@@ -16,14 +16,10 @@ from app.log.container import Container
 from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
 from app.versions import versions
 from pendant.events import Event
-from pendant.parameters import PARAMETERS
 from pendant.settings import describe, digest, limits_checksum, value_of
 from pendant.table import TABLE, render
 from sim.scenario import Plane, Scenario
 from sim.simulation import Simulation
-
-SINGLES = 4
-"""Numbers of /state that come one by one: speeds of tcp and elbow, gain, configured mass."""
 
 
 class Writer:
@@ -48,8 +44,6 @@ class Writer:
             raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
         self._state_type = layout.record(layout.width(STATE, n), len(CODES))
         self._truth_type = layout.record(layout.width(TRUTH, n), 0)
-        singles = layout.width(STATE, n) - 2 * len(PARAMETERS)
-        self._singles = slice(singles - SINGLES, singles)
 
     def close(self) -> None:
         """Write the end of the file. Raises OSError: the disk is full or gone."""
@@ -67,8 +61,6 @@ class Writer:
             self._say("/log", tick, foxglove.line(tick, TABLE[event.kind].severity, text))
         for picture in block.pictures:
             self._draw(picture.tick, picture)
-        if block.singles:
-            block.numbers[:, self._singles] = block.singles
         rows = [
             self._records(self._state_type, "/state", block.ticks, block.numbers, block.codes),
             self._records(self._truth_type, "/truth", block.ticks, block.truth, []),
