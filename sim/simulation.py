@@ -67,8 +67,9 @@ class Simulation:
         self._tools = {tool.name: tool for tool in table(scenario)}
         used = next(iter(self._tools.values()))
         self.tcp, self.R_FT = np.array(used.tcp), rotation_from_rpy(used.rpy)
-        plate = plate_body(arm)
-        self._before = plate + tool_body(used) + load_body(scenario.payload_configured)
+        self._plate = plate = plate_body(arm)
+        # What the controller takes to be beyond the flange, before a change and after it.
+        self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
@@ -146,10 +147,9 @@ class Simulation:
             self._before = self.dynamics.load
             self.estimator.transmission.forget()
             self.tcp[:], self.R_FT[:] = fitting.tool.tcp, rotation_from_rpy(fitting.tool.rpy)
+            self._after = self._plate + tool_body(self._tools[fitting.tool.name]) + load_body(fitting.load)
         self.fitting = fitting
-        body = plate_body(self.arm) + tool_body(self._tools[fitting.tool.name]) + load_body(fitting.load)
-        if fitting.share < 1.0:
-            body = self._before.blend(body, fitting.share)
+        body = self._after if fitting.share == 1.0 else self._before.blend(self._after, fitting.share)
         self.dynamics.set_load(body)
         self.estimator.set_load(body)
         self.contact_sources.set_load(body)

@@ -27,6 +27,7 @@ class Lab:
     def __init__(self, gui: viser.GuiApi, loop: Running, hand: Hand, arm: Arm) -> None:
         self._gui, self._loop, self._hand, self._arm = gui, loop, hand, arm
         self._shown: object = None
+        self._number = 0  # of the last change of tool or payload
         self.scenarios = Scenarios(gui, loop, arm)
         self.clock = gui.add_button_group("Clock", ("Run", "Pause", "Step"))
         self.speed = gui.add_slider("Speed", min=0.1, max=1.0, step=0.1, initial_value=1.0)
@@ -51,6 +52,10 @@ class Lab:
         if self._loop.scenario is not self._shown:
             self._shown = self._loop.scenario
             self._back(snapshot)
+        fitting = decision.fitting
+        if fitting is not None and fitting.number != self._number and fitting.share == 1.0:
+            self._number = fitting.number
+            self._tell(self.configured, min(fitting.mass, self._arm.payload))
         changed = [
             self.rates.show(svg.facts(pairs)),
             self.loads.show(svg.loads(snapshot.truth_payload_mass, snapshot.configured_mass)),
@@ -89,8 +94,11 @@ class Lab:
             (self.wear, 1.0),
         ]
         for control, value in starts:
-            if control.value != value:
-                control.value = value
+            self._tell(control, value)
+
+    def _tell(self, control: Any, value: float | bool) -> None:
+        if control.value != value:
+            control.value = value
 
     def _connect(self) -> None:
         desk = self._loop.desk

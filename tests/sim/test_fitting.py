@@ -127,3 +127,16 @@ def test_what_the_joints_learned_from_the_old_load_is_forgotten() -> None:
     device.tick(wish(load=Load(mass=2.0, com=[0.02, 0.0, 0.06])))
     device.run(0.4)
     assert np.abs(learned).max() == 0.0
+
+
+@pytest.mark.parametrize("wished", [wish("gripper"), wish(load=Load(mass=3.0))], ids=["tool", "payload"])
+def test_a_change_at_once_is_no_contact_and_no_push(wished: Wishes) -> None:
+    """With every detector and source on; the estimates jump by 20 N and 10 N."""
+    names = ("contact.on", "contact.flange", "signals.push.on", "signals.push.told", "signals.joints.on", "signals.twist.on")
+    two = Load(mass=2.0)
+    settings = apply(Settings(), {"tools.ramp": 0.0, "signals.push.angle": 90.0} | dict.fromkeys(names, True))
+    device = Bench(Scenario(seed=1, payload_true=two, payload_configured=two, tools=[GRIPPER]), settings)
+    device.run(1.0)
+    device.tick(wished)
+    device.run(2.5)
+    assert {event.kind for event in device.events} <= {Kind.TOOL_CHANGED, Kind.PAYLOAD_CHANGED}

@@ -5,10 +5,12 @@ from collections.abc import Callable
 import pytest
 
 from app.checked import load
+from app.library import load_tool
 from app.session import Session, bundled, folder
 from app.web.scenarios import scenarios
 from app.web.server import Served
 from pendant.modes import Mode
+from pendant.tooling import Fitting
 from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, SensorFault, Temperature
 from sim.scenario import Load, Scenario
 from tests.app.web.fake_loop import FakeLoop
@@ -47,6 +49,15 @@ def test_the_controller_is_told_of_a_payload_and_the_difference_is_shown(served:
     until(lambda: "+2.0 kg wrong" in served.lab.loads.shown, "the difference")
     loop.configured = 3.5
     until(lambda: "as configured" in served.lab.loads.shown, "none")
+
+
+def test_a_payload_that_was_led_over_is_on_the_slider(served: Served, join: Join, loop: FakeLoop) -> None:
+    join()
+    loop.fitting = Fitting(1, load_tool("flange"), Load(mass=1.992), 0.5, 1.0)
+    until(lambda: "1.00 kg" in served.docks.tools.now.shown, "on its way")
+    assert served.lab.configured.value == 0.0, "a slider that somebody drags is left alone"
+    loop.fitting = Fitting(1, load_tool("flange"), Load(mass=1.992), 1.0, 1.992)
+    until(lambda: served.lab.configured.value == 1.992, "done")
 
 
 def test_the_configured_payload_is_locked_while_the_arm_is_free(served: Served, join: Join, loop: FakeLoop) -> None:
