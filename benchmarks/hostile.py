@@ -122,8 +122,8 @@ def suffer(report: Report, loop: "Loop", served: "Served", seconds: float) -> No
     """Every attack, with peace before and after it."""
     process = multiprocessing.get_context("spawn")
     slider = served.lab.force._impl.uuid
+    before = rate(loop, seconds)
     for kind, name in enumerate(ATTACKS):
-        before = rate(loop, seconds)
         here, there = process.Pipe()
         attacker = process.Process(target=attack, args=(kind, served.url, slider, seconds + 2.0 * SETTLE, there))
         attacker.start()
@@ -139,6 +139,7 @@ def suffer(report: Report, loop: "Loop", served: "Served", seconds: float) -> No
         report.row(f"{name.__name__}: rate, of that in peace", during / max(before, after), at_least=FEWEST)
         report.row(f"{name.__name__}: done", count)
         report.row(f"{name.__name__}: time lost by stalls", dropped, "s")
+        before = after
     report.row("rate in peace", before, "1/s")
     report.row("clients left", len(served.server.get_clients()), at_most=0)
     report.notes.append(f"refused: {dict(served.guard.refused)}")

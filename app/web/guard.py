@@ -2,8 +2,8 @@
 
 viser 1.1.1 takes from every client any attribute of any control, presses of disabled buttons, values beyond the range, requests
 to open a public tunnel, uploads, and connections of any web page, and tells the other clients before a callback sees it. Here
-every connection is a `Gate`, whose `recv` hands on only what `Guard.admit` allows; the door checks Host and Origin before there
-is a connection at all. Whatever is refused is dropped and counted.
+every connection is a `Gate`, whose `recv` hands on only what `Guard.admit` allows; the `Door` asks for Host, Origin and token
+before there is a connection at all. Whatever is refused is dropped and counted.
 """
 
 import functools

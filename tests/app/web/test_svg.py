@@ -6,7 +6,7 @@ import re
 import pytest
 
 from app.web import svg
-from app.web.svg import Colour
+from app.web.svg import Bar, Colour
 
 EVIL = '<img src=x onerror="alert(1)">&\'</style>'
 
@@ -20,6 +20,12 @@ EVIL = '<img src=x onerror="alert(1)">&\'</style>'
         svg.who(EVIL, Colour.GREY),
         svg.facts([(EVIL, EVIL)]),
         svg.table([(EVIL, EVIL, Colour.AMBER)]),
+        svg.note("", "", Colour.RED, [EVIL]),
+        svg.bars([Bar(EVIL, EVIL, 1.0, 2.0, EVIL)], 1),
+        svg.fine_print(EVIL),
+        svg.contacts([(EVIL, EVIL)]),
+        svg.steps([(EVIL, False)], ""),
+        svg.steps([(EVIL, True)], EVIL),
     ],
 )
 def test_texts_are_escaped(html: str) -> None:
