@@ -58,6 +58,7 @@ class Surroundings(NamedTuple):
     hand_off: bool = True  # no hand is felt (FD-8a)
     felt: float = 0.0  # change of the force at the flange from the untouched state [N]
     changing: float | None = None  # the configured payload by now, while it is being changed [kg]
+    guided: bool = False  # a step of a program asks for free-drive (CD-15)
 
     @property
     def enabled(self) -> bool:
@@ -253,7 +254,7 @@ class FreeDrive:
             return [Event(Kind.NOT_YET, tick, {"remaining": self._cool * TICK})] if self._appeared else events
         attempt = self._attempt
         counting = attempt is not None and attempt.phase is Phase.ACTIVATION and not self._signal.source
-        if not counting and not may_enter(around.mode, settings):
+        if not counting and not around.guided and not may_enter(around.mode, settings):
             return [self._over(Kind.REFUSED_MODE, tick, settings, {"mode": around.mode, "allowed": origins(settings)})]
         if not around.enabled:
             return [self._disabled(around, settings)]
@@ -327,7 +328,7 @@ class FreeDrive:
     def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The activation sequence runs; the button does not matter any more (FD-8a)."""
         self._left -= 1
-        if not may_enter(around.mode, settings):
+        if not around.guided and not may_enter(around.mode, settings):
             values: Values = {"mode": around.mode, "allowed": origins(settings)}
             return [self._over(Kind.REFUSED_MODE, around.estimate.tick, settings, values)]
         events = self._judge(around, settings)

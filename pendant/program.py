@@ -1,6 +1,7 @@
 """Programs: a list of moves, and the sequencer that runs them in mode RUN."""
 
 import math
+from collections.abc import Callable
 from enum import StrEnum
 from typing import Annotated
 
@@ -8,9 +9,14 @@ import msgspec
 from msgspec import Meta
 
 from pendant.contact import ArmPose, Contact
-from pendant.pose import UNTURNED
+from pendant.pose import UNTURNED, Vector
 from pendant.reaction import REACTION_SPEED, Until, goal
 from pendant.settings import ticks
+
+UNFELT: Vector = (0.0, 0.0, 0.0)
+
+LEAST_FORCE, MOST_FORCE = 1.0, 90.0
+"""That a program may push with [N]: beyond the sensor's noise, and within its range."""
 
 Fraction = Annotated[float, Meta(gt=0.0, le=1.0)]
 
@@ -69,7 +75,28 @@ class SwitchTool(Move, tag="tool", frozen=True, forbid_unknown_fields=True, kw_o
     on: bool
 
 
-AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool
+class ApplyForce(Move, tag="force", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Push with a force, going on along it until that is felt, and keep it for a time (CD-15)."""
+
+    force: tuple[float, float, float]  # of the arm on what it touches, axes of B [N]
+    duration: Annotated[float, Meta(ge=0.0, le=3600.0)] = 1.0  # that it lasts, once reached [s]
+    tolerance: Annotated[float, Meta(ge=0.5, le=50.0)] = 2.0  # within which it counts as reached [N]
+    speed: Annotated[float, Meta(gt=0.0, le=0.1)] = 0.005  # at most [m/s]
+    distance: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.05  # at most; nothing that resists within it: it fails [m]
+    untouched: tuple[float, float, float] = UNFELT  # F_user where nothing touches; files leave it out [N]
+
+    def __post_init__(self) -> None:
+        _finite(self.force + self.untouched)
+        if not LEAST_FORCE <= math.hypot(*self.force) <= MOST_FORCE:
+            allowed = f"{LEAST_FORCE:g} .. {MOST_FORCE:g} N"
+            raise ValueError(f"force: its size is {math.hypot(*self.force):.4g}, allowed: {allowed}")
+
+
+class HandGuide(Move, tag="hand_guide", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The arm is guided by hand, as in free-drive and with its activation; the program goes on when that ends (CD-15)."""
+
+
+AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool | ApplyForce | HandGuide
 
 
 class Program(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -101,7 +128,20 @@ def misfit(program: Program, n_joints: int) -> str | None:
 class Sequencer:
     """Runs the loaded program step by step. A step paused half-way is begun again, with a new id, when resumed."""
 
-    __slots__ = ("R_FT", "_begun", "_from", "_left", "contact", "index", "move", "program", "state", "tool_on")
+    __slots__ = (
+        "R_FT",
+        "_begun",
+        "_from",
+        "_left",
+        "_untouched",
+        "contact",
+        "guided",
+        "index",
+        "move",
+        "program",
+        "state",
+        "tool_on",
+    )
 
     def __init__(self) -> None:
         self.program: Program | None = None
@@ -112,6 +152,8 @@ class Sequencer:
         self._left = 0  # ticks left of a wait
         self._from: ArmPose | None = None  # where the present move began
         self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
+        self.guided = False  # the arm was guided by hand, until it has come to rest
+        self._untouched: Vector = UNFELT  # F_user when the arm last began to move [N]
         self.tool_on = False
         self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
 
@@ -120,10 +162,11 @@ class Sequencer:
         self.program = program
         self.stop()
 
-    def start(self) -> None:
-        """Begin the first step."""
+    def start(self, felt: Vector = UNFELT) -> None:
+        """Begin the first step; `felt` is the force of F_user now [N]."""
         self.index = 0
         self._left = 0
+        self._untouched = felt
         self.resume()
 
     def pause(self) -> None:
@@ -161,9 +204,25 @@ class Sequencer:
         self.contact, self.move = contact, None
         return True
 
+    @property
+    def guiding(self) -> bool:
+        """The present step has the arm guided by hand."""
+        return isinstance(self.move, HandGuide)
+
+    def let_go(self) -> None:
+        """Guiding by hand has ended."""
+        self.guided, self.move = True, None
+
+    @property
+    def braked(self) -> bool:
+        """The present step goes on when the arm has come to rest."""
+        return self.guided or self.contact is not None
+
     def rest(self, now: ArmPose) -> bool:
-        """The arm has come to rest after `touch`: do what the step asks for. Returns as `step`."""
+        """The arm has come to rest after `touch` or `let_go`: do what the step asks for. Returns as `step`."""
         assert self.program is not None
+        if self.guided:
+            return self._next()
         contact, self.contact = self.contact, None
         until: Until | None = getattr(self.program.steps[self.index], "until", None)
         assert contact is not None
@@ -178,19 +237,22 @@ class Sequencer:
             self.move = LinearMove(id=self._begun, position=there.position, quaternion=there.quaternion, speed=REACTION_SPEED)
         return False
 
-    def step(self, move_done: int, now: ArmPose | None = None) -> bool:
+    def step(self, move_done: int, now: ArmPose | None = None, felt: Callable[[], Vector] = lambda: UNFELT) -> bool:
         """One tick of a RUNNING program.
 
         Args:
             move_done: id of the last move that the FOLLOW law finished.
             now: where the arm is.
+            felt: tells the mean force of F_user [N].
 
         Returns:
             True when this tick ended the program.
         """
         if self._from is None:
             self._from = now
-        if isinstance(self.move, WaitForContact):
+            if isinstance(self.move, JointMove | LinearMove):
+                self._untouched = felt()
+        if isinstance(self.move, WaitForContact | HandGuide):
             return False
         if isinstance(self.move, SwitchTool):
             self.tool_on = self.move.on
@@ -215,10 +277,10 @@ class Sequencer:
     def memory(self) -> tuple[object, ...]:
         """All of the sequencer's state, to compare."""
         own = (self.program, self.state, self.index, self.move, self._begun, self._left)
-        return (*own, self._from, self.contact, self.tool_on)
+        return (*own, self._from, self.contact, self.guided, self._untouched, self.tool_on)
 
     def _drop(self) -> None:
-        self.move, self.contact = None, None
+        self.move, self.contact, self.guided = None, None, False
 
     def _begin(self) -> None:
         assert self.program is not None
@@ -227,6 +289,8 @@ class Sequencer:
         self._from = None
         step = self.program.steps[self.index]
         self.move = msgspec.structs.replace(step, id=self._begun)
+        if isinstance(self.move, ApplyForce):
+            self.move = msgspec.structs.replace(self.move, untouched=self._untouched)
         if isinstance(step, Wait) and self._left == 0:
             self._left = ticks(step.duration)
 

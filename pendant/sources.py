@@ -34,6 +34,8 @@ class Presence(NamedTuple):
 NONE = Presence()
 BUTTON = Presence("button")
 DIGITAL = Presence("digital input")
+PROGRAM = Presence("program", whole=True)
+"""A step of a program asks for the arm to be guided by hand (CD-15)."""
 
 
 class Sources:

@@ -13,18 +13,19 @@ from pendant.decision import Decision
 from pendant.enabling import EnablingDevice, Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
-from pendant.freedrive import FreeDrive, Surroundings, moving
+from pendant.freedrive import ASKED_FOR, FreeDrive, Surroundings, moving
 from pendant.inputs import Button, Command, Inputs
 from pendant.joint_zones import JointZones
 from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, Safety, way_out
-from pendant.pose import Pose, from_rpy
+from pendant.pose import Pose, Vector, from_rpy
 from pendant.program import Program, ProgramState, Sequencer, misfit
 from pendant.reduced import Reduced
 from pendant.sensing import JointSensors
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, limits_checksum, ticks
+from pendant.sources import PROGRAM
 from pendant.stopping import Stopping
 from pendant.table import TABLE, Effect
 from pendant.tooling import Fitting, Tooling
@@ -42,6 +43,12 @@ STOPPING = {
     Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
 }
 
+
+DONE_GUIDING = ASKED_FOR | {Kind.LEFT_PERIOD, Kind.LEFT_RESTART}
+"""Endings of free-drive with which a program goes on; after any other one somebody must look first."""
+
+STILL_OFF = frozenset({Kind.NOT_YET, Kind.RESIDUAL_GONE, Kind.RESIDUAL_STAYED})
+"""What is told while free-drive has not been begun."""
 
 TOLD = {
     Change.GAINED: Kind.CONTACT_GAINED,
@@ -192,8 +199,13 @@ class Supervisor:
         wrench = self._mean.step(estimate)
         calls, state = self._calls, self._sequencer.state
         events += calls.step(estimate, inputs, wrench, self._holding, self.settings, state, self._button.held)
-        self._free.sense(self._button.held, calls.signal)
+        self._free.sense(self._button.held, PROGRAM if self._asks_for_a_hand and not calls.signal.source else calls.signal)
         return wrench
+
+    @property
+    def _asks_for_a_hand(self) -> bool:
+        """A step of the program wants free-drive, which is off, and the arm stands."""
+        return self._sequencer.guiding and self._static and self._mode is Mode.RUN and self._free.phase is Phase.OFF
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
@@ -300,8 +312,8 @@ class Supervisor:
                     self._refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate, events)
-        braked = sequencer.contact is not None
-        if not braked and (move is None or sequencer.move is not move):
+        braked = sequencer.braked
+        if self._mode is Mode.FREE_DRIVE or (not braked and (move is None or sequencer.move is not move)):
             return
         tool_on = sequencer.tool_on
         if not motion_ok(estimate):
@@ -317,10 +329,15 @@ class Supervisor:
             self._fail(estimate.move_refused, estimate.tick, events)
         elif sequencer.missed(estimate.move_done):
             self._fail("it ended without a contact", estimate.tick, events)
-        elif sequencer.step(estimate.move_done, self._monitor.now):
+        elif sequencer.step(estimate.move_done, self._monitor.now, self._felt):
             self._finish(estimate.tick, events)
         if sequencer.tool_on is not tool_on:
             events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+
+    def _felt(self) -> Vector:
+        """Mean force of F_user [N]."""
+        x, y, z = self._mean.mean()[:3]
+        return x, y, z
 
     def _finish(self, tick: int, events: list[Event]) -> None:
         self._mode = self._origin
@@ -374,7 +391,7 @@ class Supervisor:
         if command is Command.START_PROGRAM:
             self._origin = self._mode
             self._mode = Mode.RUN
-            sequencer.start()
+            sequencer.start(self._felt())
             events.append(Event(Kind.PROGRAM_STARTED, estimate.tick, {"name": self._name}))
         elif command is Command.PAUSE_PROGRAM:
             self._pause(estimate.tick, events)
@@ -399,10 +416,14 @@ class Supervisor:
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
         calls = self._calls
         changing = self._tooling.fitting.mass if self._tooling.changing else None
-        felt = (calls.hand_off, calls.force)
-        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, *felt, changing)
+        felt, guided = (calls.hand_off, calls.force), self._sequencer.guiding
+        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, *felt, changing, guided)
+        trying = self._free.phase is not Phase.OFF
         for event in self._free.step(around, self.settings):
             self._take_effect(event, events)
+            trying = trying or event.kind not in STILL_OFF
+        if trying and self._free.phase is Phase.OFF and self._sequencer.guiding:
+            self._fail("free-drive was not entered", estimate.tick, events)
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
         tooling = self._tooling
@@ -426,7 +447,7 @@ class Supervisor:
         events.append(event)
         effect = TABLE[event.kind].effect
         if effect in (Effect.TRY, Effect.ENTER):
-            if self._sequencer.state is ProgramState.RUNNING:
+            if self._sequencer.state is ProgramState.RUNNING and not self._sequencer.guiding:
                 self._pause(event.tick, events)
             if effect is Effect.ENTER:
                 self._remembered = self._mode
@@ -434,6 +455,10 @@ class Supervisor:
         elif effect is Effect.LEAVE:
             if self._mode is Mode.FREE_DRIVE:
                 self._mode = self._remembered
+            if self._sequencer.guiding and event.kind in DONE_GUIDING:
+                self._sequencer.let_go()
+            elif self._sequencer.guiding:
+                self._pause(event.tick, events)
             if event.kind is Kind.LEFT_ENABLING:
                 self._stopping.begin(event.kind, TABLE[event.kind].category, self._static)
         elif effect in STOPPING:

@@ -98,7 +98,7 @@ class Controller:
         references = self.references
         reference = references.step(estimate, decision)
         helped = use.friction and use.feed_forward and references.driven
-        torque = self.feed_forward.torque(reference, friction if helped else None, use.feed_forward)
+        torque = self.feed_forward.torque(reference, friction if helped else None, use.feed_forward, references.push)
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None

@@ -28,13 +28,14 @@ class FeedForward:
         self._no_friction = np.zeros(arm.n)
         self.tau_J = np.zeros(arm.n)
 
-    def torque(self, reference: Reference, friction: AdaptiveFriction | None, motion: bool) -> Array:
+    def torque(self, reference: Reference, friction: AdaptiveFriction | None, motion: bool, push: Array | None = None) -> Array:
         """Motor torque (n,) [N·m]; puts the desired transmission torque into `tau_J`, a new array each time.
 
         Args:
             reference: the desired motion.
             friction: its estimate; None counts none.
             motion: count inertia and speed; else gravity alone, as under PD + gravity.
+            push: with which the joints push against the outside besides (n,) [N·m].
         """
         torque = np.empty_like(self._rotor)
         if not motion:
@@ -42,6 +43,8 @@ class FeedForward:
             _add(reference.qdd, self._no_friction, 0.0, self._no_friction, self.tau_J, torque)
             return torque
         self.tau_J = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
+        if push is not None:
+            self.tau_J = self.tau_J + push
         total, share = self._no_friction, 0.0
         if friction is not None:
             total, share = friction.at(reference.qd, self.tau_J), friction.output_share

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pendant.modes import TICK
 from pendant.program import JointMove, LinearMove
 from sim.dynamics import Dynamics
-from sim.frames import matrix_from_quaternion, quaternion_from_matrix
+from sim.frames import matrix_from_quaternion
+from sim.line import Line, rotation_vector
 
 Array = NDArray[np.float64]
 
@@ -20,8 +21,6 @@ LEAST_BRAKING = 0.1  # of it, where gravity takes all of that
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
 SPACING = 0.01  # between the places along a line that are looked at beforehand [m]
 SAMPLES = (24, 200)  # fewest and most of them
-SINGULAR = 0.02  # smallest singular value of the tool's Jacobian that a line may pass: shoulder, elbow or wrist aligned
-LINE_GAIN = 20.0  # pulls the line's reference back onto the line [1/s]
 
 
 class Reference(NamedTuple):
@@ -100,7 +99,7 @@ class JointTrajectory:
     def __init__(self, q: Array, move: JointMove, limits: tuple[Array, Array, Array]) -> None:
         """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
         speed, acceleration, position = limits
-        _check_range(np.array(move.q), position, "joint move")
+        check_range(np.array(move.q), position, "joint move")
         n = q.size
         entry = ruckig.InputParameter(n)
         entry.current_position, entry.target_position = q.tolist(), list(move.q)
@@ -153,12 +152,10 @@ class LinearTrajectory:
         self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, R_FT: Array, limits: tuple[Array, Array, Array]
     ) -> None:
         """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
-        self._dynamics, self._tcp = dynamics, tcp
-        p, R, _ = dynamics.update(q)
-        self._start, self._R = p + R @ tcp, R.copy()
-        self._way = np.array(move.position) - self._start
-        self._turn = _rotation_vector(R.T @ matrix_from_quaternion(move.quaternion) @ R_FT.T)
-        length, angle = float(np.linalg.norm(self._way)), float(np.linalg.norm(self._turn))
+        self._line = line = Line(dynamics, tcp, q)
+        line.way = np.array(move.position) - line.start
+        line.turn = rotation_vector(line.R.T @ matrix_from_quaternion(move.quaternion) @ R_FT.T)
+        length, angle = float(np.linalg.norm(line.way)), float(np.linalg.norm(line.turn))
         span = max(length, 0.3 * angle)  # a pure turn counts as an arc of 0.3 m radius
         self._q, self._qd = q.copy(), np.zeros_like(q)
         self._time, self.done = 0.0, span < 1e-6
@@ -180,35 +177,17 @@ class LinearTrajectory:
         pace = move.speed / span
         q, worst, previous = q.copy(), 1e-9, None
         for k in range(count + 1):
-            if np.linalg.svd(self._jacobian(q)[2], compute_uv=False)[-1] < SINGULAR:
-                way = 1000.0 * k / count * float(np.linalg.norm(self._way))
+            if self._line.singular(q):
+                way = 1000.0 * k / count * float(np.linalg.norm(self._line.way))
                 raise MoveRefused(f"linear move: out of reach or singular {way:.0f} mm on its way; use a joint move")
-            rate = self._solve(q, k / count, 1.0)
+            rate = self._line.solve(q, k / count, 1.0)
             worst = max(worst, float((np.abs(rate) * pace / speed).max()))
             if previous is not None:
                 worst = max(worst, math.sqrt(float((np.abs(rate - previous) * count * pace**2 / acceleration).max())))
             previous = rate
-            _check_range(q, position, "linear move")
+            check_range(q, position, "linear move")
             q = q + rate / count
         return 1.0 / worst
-
-    def _jacobian(self, q: Array) -> tuple[Array, Array, Array]:
-        """Tool centre point (3,), orientation (3, 3) and the Jacobian (6, n) of the tool centre point, in axes of B."""
-        p, R, jacobian = self._dynamics.update(q)
-        lever = R @ self._tcp
-        at_tcp = jacobian.copy()
-        at_tcp[:3] += np.cross(jacobian[3:].T, lever).T
-        return p + lever, R, at_tcp
-
-    def _solve(self, q: Array, s: float, rate: float) -> Array:
-        """Joint speeds (n,) for path position s in 0..1 and its rate [1/s]."""
-        point, R, jacobian = self._jacobian(q)
-        twist = np.empty(6)
-        twist[:3] = rate * self._way + LINE_GAIN * (self._start + s * self._way - point)
-        error = _rotation_vector(R.T @ self._R @ _rotation(s * self._turn))
-        twist[3:] = self._R @ (rate * self._turn) + LINE_GAIN * (R @ error)
-        # Damping only bites near a singularity, where the plan has been refused already.
-        return np.asarray(np.linalg.solve(jacobian.T @ jacobian + 1e-8 * np.eye(q.size), jacobian.T @ twist), dtype=np.float64)
 
     def step(self) -> Reference:
         """The reference of the next tick; at the end it stays at the target."""
@@ -216,29 +195,16 @@ class LinearTrajectory:
             self._time += TICK
             self.done = self._time >= self._trajectory.duration
             position, velocity, _ = self._trajectory.at_time(min(self._time, self._trajectory.duration))
-            qd = self._solve(self._q, position[0], velocity[0])
+            qd = self._line.solve(self._q, position[0], velocity[0])
             qdd = (qd - self._qd) / TICK
             self._q, self._qd = self._q + TICK * qd, qd
             return Reference(self._q, qd, qdd)
         return Reference(self._q, np.zeros_like(self._q), np.zeros_like(self._q))
 
 
-def _check_range(q: Array, position: Array, move: str) -> None:
+def check_range(q: Array, position: Array, move: str) -> None:
+    """Raise MoveRefused where a joint would leave ±`position` [rad]; `move` is the kind of move."""
     beyond = np.abs(q) - position
     joint = int(np.argmax(beyond))
     if beyond[joint] > 0.0:
         raise MoveRefused(f"{move}: joint {joint + 1} would reach {q[joint]:.4f} rad, allowed ±{position[joint]:.4f}")
-
-
-def _rotation_vector(R: Array) -> Array:
-    """Axis times angle (3,) [rad] of a rotation matrix."""
-    w, *v = quaternion_from_matrix(R)
-    size = math.sqrt(sum(float(x) ** 2 for x in v))
-    return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
-
-
-def _rotation(vector: Array) -> Array:
-    """Rotation matrix (3, 3) of axis times angle (3,) [rad]."""
-    angle = float(np.linalg.norm(vector))
-    half = 0.5 * angle
-    return matrix_from_quaternion([math.cos(half), *(vector * (math.sin(half) / angle if angle > 1e-12 else 0.5))])

@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import Law
-from pendant.program import JointMove, LinearMove, Move
+from pendant.program import ApplyForce, JointMove, LinearMove, Move
 from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
+from sim.force_move import ForceTrajectory
 from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, stop_time
 from sim.sensors import LATENCY
 
@@ -23,6 +24,8 @@ DELAY = LATENCY + 1
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
 STANDING = 0.02  # [rad/s]
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
+PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
+GONE = 0.01  # [N·m]
 
 
 class References:
@@ -34,6 +37,7 @@ class References:
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
+        push: torque (n,) with which the joints push against the outside besides [N·m], None for none.
     """
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
@@ -52,6 +56,7 @@ class References:
         self.driven = False
         self.move_done = 0
         self.refusal = ""
+        self.push: Array | None = None
 
     def skip(self) -> None:
         """A tick without a reference: free-drive."""
@@ -86,7 +91,16 @@ class References:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
+        if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
+            self._motion.feel(estimate)
+            self.refusal = self._motion.problem
         self.now = self._motion.step()
+        if isinstance(self._motion, ForceTrajectory):
+            self.push = self._motion.push
+        elif self.fresh:
+            self.push = None
+        elif self.push is not None and self.now.qd.any():  # on the next way the integral of the position takes it over
+            self.push = None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
         self._past.append(self.now)
         if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
             self.move_done = self._move.id
@@ -115,6 +129,8 @@ class References:
                 self._motion = JointTrajectory(q, move, self._limits)
             elif isinstance(move, LinearMove):
                 self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._R_FT, self._limits)
+            elif isinstance(move, ApplyForce):
+                self._motion = ForceTrajectory(q, move, self._dynamics, self._tcp, self._limits[2])
             else:
                 self._motion = Stop(q, self._standing)
         except MoveRefused as refusal:
