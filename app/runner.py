@@ -106,7 +106,7 @@ def run(
     outcome = Outcome(seconds=session.duration)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
-        last = ticks(session.duration)
+        last, tenth = ticks(session.duration), ticks(0.1)
         for tick in range(1, last + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
@@ -118,7 +118,7 @@ def run(
             outcome.events += decision.events
             if not outcome.modes or outcome.modes[-1][1] is not decision.mode:
                 outcome.modes.append((tick * TICK, decision.mode))
-            if tick % ticks(0.1) == 0:
+            if tick % tenth == 0:
                 progress(tick * TICK)
             if realtime:
                 time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
