@@ -18,7 +18,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.sync.client import ClientConnection, connect
 
 from benchmarks.common import Report, main
-from benchmarks.viewer import CAMERA, PROTOCOL
+from benchmarks.viewer import CAMERA, VERSION
 
 if TYPE_CHECKING:  # an attacker starts without them
     from app.web.server import Served
@@ -31,7 +31,7 @@ Attack = Callable[[str, str, float], int]
 
 def join(url: str, **options: object) -> ClientConnection:
     """A connection that has said where its camera is."""
-    made = connect(url.replace("http", "ws", 1), subprotocols=[PROTOCOL], max_size=None, proxy=None, **options)  # type: ignore[arg-type]
+    made = connect(url.replace("http", "ws", 1), subprotocols=[VERSION], max_size=None, proxy=None, **options)  # type: ignore[arg-type]
     made.send(msgspec.msgpack.encode(CAMERA))
     return made
 

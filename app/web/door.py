@@ -11,7 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from http import HTTPStatus
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
@@ -81,7 +81,7 @@ class Door:
     def _ask_for_token(self, token: str, connection: ServerConnection, request: Request) -> Response | None:
         """A refusal, or the way from the link with the token to the page; None if the cookie has the token."""
         cookie = f"pendant-{connection.local_address[1]}"  # a browser does not keep the cookies of two ports apart
-        shown = parse_qs(urlsplit(request.path).query).get("token", [])[-1:]
+        shown = parse_qs(request.path.partition("?")[2]).get("token", [])[-1:]
         if shown and _same(shown[0], token):
             headers = Headers({"Location": "/", "Content-Length": "0"})
             headers["Cache-Control"] = "no-store"
@@ -111,7 +111,7 @@ def _same(shown: str, token: str) -> bool:
 
 
 def _path(request: Request) -> str:
-    return urlsplit(request.path).path
+    return request.path.partition("?")[0]
 
 
 def _listed(headers: Headers, name: str) -> list[str]:

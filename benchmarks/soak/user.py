@@ -13,7 +13,7 @@ import zstandard
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
-from benchmarks.viewer import CAMERA, PROTOCOL
+from benchmarks.viewer import CAMERA, VERSION
 
 SPARED = ("Clock", "Speed", "Record", "Mounting", "Tilt [°]")
 """Not set at random: the clock is paused for a moment only, disks stay free, and the arm stands on the floor."""
@@ -56,7 +56,7 @@ class User:
     def _come(self) -> None:
         self.done["come"] += 1
         self._things.clear()
-        self._socket = connect(self._url, subprotocols=[PROTOCOL], max_size=None, proxy=None)
+        self._socket = connect(self._url, subprotocols=[VERSION], max_size=None, proxy=None)
         self._send(CAMERA)
         self._look(ARRIVE)
 

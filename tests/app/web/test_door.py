@@ -88,7 +88,9 @@ def test_the_link_becomes_a_cookie_with_which_the_page_and_its_connection_come_i
     assert network.refused.total() == 0
 
 
-@pytest.mark.parametrize("path", ["/", "/index.html", "/assets/index.js", "/?websocket=ws://evil.example", "/?token="])
+@pytest.mark.parametrize(
+    "path", ["/", "/index.html", "/assets/index.js", "/?websocket=ws://evil.example", "/?token=", "//[x", "?", "*"]
+)
 def test_without_a_token_there_is_no_page_and_no_file(network: Caller, path: str) -> None:
     said = network.turned_away(network.ask(path), 401, "no token")
     assert said == "refused: no token: open the link that pendant has printed in its terminal\n"
