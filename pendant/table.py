@@ -377,13 +377,13 @@ TABLE: dict[Kind, Row] = {
     # Tool and payload
     Kind.TOOL_CHANGED: _info(
         "Tool {name}",
-        "It was {old}. Tool centre point {x:.0f}, {y:.0f}, {z:.0f} mm, {mass:.2f} kg; no payload beyond it.",
+        "It was {old}. Tool centre point {x:z.0f}, {y:z.0f}, {z:z.0f} mm, {mass:.2f} kg; no payload beyond it.",
         ("name", "old", "mass", "x", "y", "z"),
     ),
     Kind.TOOL_REFUSED: _denied("Not changed: {what}", "{reason}.", ("what", "reason")),
     Kind.PAYLOAD_CHANGED: _info(
         "Payload {mass:.2f} kg",
-        "Centre {x:.0f}, {y:.0f}, {z:.0f} mm; with tool {tool} {total:.2f} kg.",
+        "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm; with tool {tool} {total:.2f} kg.",
         ("mass", "x", "y", "z", "tool", "total"),
     ),
     Kind.POSTURE_MEASURED: _info(
@@ -396,7 +396,7 @@ TABLE: dict[Kind, Row] = {
         Effect.INFO,
         Severity.NOTICE,
         "Found: {mass:.2f} ± {mass_deviation:.2f} kg",
-        "Centre {x:.0f}, {y:.0f}, {z:.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
+        "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
         ("mass", "mass_deviation", "x", "y", "z", "centre_deviation", "fit", "postures"),
     ),
     # Settings

@@ -132,7 +132,7 @@ def _told(wizard: Progress, measuring: bool) -> str:
     if found is not None:
         x, y, z = (1000.0 * way for way in found.centre)
         lines = [
-            f"Centre {x:.0f}, {y:.0f}, {z:.0f} mm, each ± {1000.0 * found.centre_deviation:.1f} mm",
+            f"Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm, each ± {1000.0 * found.centre_deviation:.1f} mm",
             f"Fit {found.force_fit:.2f} N, {found.torque_fit:.3f} N·m in {found.postures} postures",
             f"Sensor offset {', '.join(f'{value:.1f}' for value in found.force_offset)} N",
         ]
@@ -145,4 +145,4 @@ def _told(wizard: Progress, measuring: bool) -> str:
 
 
 def _point(point: Sequence[float]) -> str:
-    return ", ".join(f"{1000.0 * way:.0f}" for way in point) + " mm"
+    return ", ".join(f"{1000.0 * way:z.0f}" for way in point) + " mm"

@@ -17,6 +17,7 @@ from pendant.pose import UNTURNED
 from pendant.program import Program, Wait
 from pendant.settings import Settings, ToolUse, apply
 from pendant.supervisor import Supervisor
+from pendant.table import render
 from pendant.tooling import Fitting, Tooling
 from pendant.tools import BARE, Equipment, Tool
 from pendant.watch import WINDOW
@@ -90,6 +91,8 @@ def test_a_payload_is_led_over_evenly_and_to_the_tick() -> None:
         {"mass": 3.0, "x": 0.0, "y": 0.0, "z": 50.0, "tool": "flange", "total": 3.0},
     )
     assert seen[-1].mass == 3.0
+    small = Event(event.kind, 0, {**event.values, "x": -0.3})
+    assert render(small) == ("Payload 3.00 kg", "Centre 0, 0, 50 mm; with tool flange 3.00 kg."), "no minus before a nought"
 
 
 def test_it_changes_until_the_means_of_the_estimates_hold_the_new_load_alone() -> None:
