@@ -90,7 +90,7 @@ def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[Outcome, Outcom
 def _row(claim: Claim, name: str, session: Session, on: Outcome, off: Outcome) -> Row:
     checks = tuple(verdict.expected for verdict in on.verdicts)
     unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
-    return Row(claim, name, checks, session.switch, on.passed and bool(checks), not off.passed, unmet)
+    return Row(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)
 
 
 def write(rows: list[Row], out: Path) -> None:

@@ -60,6 +60,11 @@ class Outcome:
         """Whether every expectation was met."""
         return all(verdict.passed for verdict in self.verdicts)
 
+    @property
+    def unmet(self) -> bool:
+        """Whether something was seen that an expectation forbids; what it waits for was there."""
+        return any(verdict.looked and not verdict.passed for verdict in self.verdicts)
+
 
 def simulate(prepared: Prepared) -> Simulation:
     """A simulation of what a session or a configuration asks for."""
@@ -126,5 +131,5 @@ def run(
     outcome.verdicts = [each.verdict() for each in watches]
     for place, action in timeline.unstarted():
         seen = f'"{action.after}" never came (time {action.nth}), or too late'
-        outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen))
+        outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))
     return outcome

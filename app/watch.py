@@ -18,6 +18,7 @@ class Verdict:
     passed: bool
     expected: str
     seen: str  # with the time at which it was seen
+    looked: bool = True  # its moment or interval came, so that something could be seen
 
 
 @dataclass(slots=True)
@@ -62,9 +63,9 @@ class Watch:
         """The end of the run: what became of it."""
         start = self.trigger.happened
         if start is None:
-            return Verdict(False, self.expected(), f'"{self.trigger.after}" never came (time {self.trigger.nth})')
+            return Verdict(False, self.expected(), f'"{self.trigger.after}" never came (time {self.trigger.nth})', False)
         if self.last < start + (self.end if self.end is not None else self.begin) and not self.settled():
-            return Verdict(False, self.expected(), f"the session ended at {at(self.last)}, before the interval did")
+            return Verdict(False, self.expected(), f"the session ended at {at(self.last)}, before the interval did", False)
         passed, seen = self.judge()
         return Verdict(passed, self.expected(), seen)
 

@@ -17,6 +17,7 @@ from app.watch import Verdict
 
 SESSIONS = claiming()
 MET = Outcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s")])
+LATE = Outcome(verdicts=[Verdict(False, "mode STOP", "never came", looked=False)])
 UNMET = Outcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s"), Verdict(False, "mode STOP", "mode TEACH | at 2 s")])
 
 
@@ -38,7 +39,7 @@ def test_a_claiming_session_holds(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", SESSIONS)
 def test_and_fails_without_its_switch(name: str, tmp_path: Path) -> None:
-    assert not ran(without(SESSIONS[name]), tmp_path).passed
+    assert ran(without(SESSIONS[name]), tmp_path).unmet
 
 
 def test_the_rows_are_those_of_the_sources() -> None:
@@ -84,6 +85,7 @@ def test_rows_say_what_is_shown_and_what_is_missing() -> None:
     assert coverage.totals(rows) == {"shown": 2, "fails": 0, "holds without its switch": 0, "missing": len(CLAIMS) - 2}
     assert _states(session, MET, MET) == {"holds without its switch"}
     assert _states(session, UNMET, UNMET) == {"fails"}
+    assert _states(session, MET, LATE) == {"holds without its switch"}  # nothing that it expects was looked at
     assert _states(session, Outcome(), UNMET) == {"fails"}  # one that expects nothing shows nothing
 
 

@@ -85,6 +85,7 @@ def test_a_session_that_ends_too_soon_fails() -> None:
     verdict = follow(Value(of="user_force", begin=0.0, end=1.0, max=1.0), 499)
     assert not verdict.passed
     assert verdict.seen == "the session ended at 0.998 s, before the interval did"
+    assert not verdict.looked
 
 
 @pytest.mark.parametrize(("at", "passed"), [(499, False), (500, True), (1000, True), (1001, False)])
