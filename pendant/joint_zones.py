@@ -60,18 +60,20 @@ class JointZones:
         settings = self._settings
         if settings is None:
             return
-        self.pushing = False
         angles = estimate.theta.tolist()
-        inside = [abs(angle) > inner for angle, inner in zip(angles, self._inner, strict=True)]
-        if not any(inside):
+        for angle, inner in zip(angles, self._inner, strict=True):
+            if angle > inner or -angle > inner:
+                break
+        else:
             if self.torque:
                 self._guards = [None] * len(angles)
-                self.torque = ()
+                self.torque, self.pushing = (), False
             return
+        self.pushing = False
         speeds = estimate.theta_d.tolist()
         torques = [0.0] * len(angles)
         for joint, angle in enumerate(angles):
-            if inside[joint]:
+            if abs(angle) > self._inner[joint]:
                 torques[joint] = self._resist(joint, angle, speeds[joint], settings)
             else:
                 self._guards[joint] = None

@@ -39,7 +39,9 @@ class ActiveDamping:
     """
 
     def __init__(self, rated: Array, rotor: Array, elbow: int) -> None:
-        self._rated, self._rotor, self._elbow = rated, rotor, elbow
+        self._joints, self._elbow = np.stack([rated, rotor]), elbow
+        self._asked: tuple[Damping | None, SpeedLimits | None] = (None, None)
+        self._how = np.zeros(6)  # what is asked: limits of tcp, elbow, joints; onset, force, torque
         self._limits = np.full(3, math.inf)  # of tcp, elbow, joints, as they have fallen
         self.help = 1.0
 
@@ -57,23 +59,25 @@ class ActiveDamping:
             reduced: limits that hold besides, in REDUCED.
             jacobian: of the flange (6, n), linear first, axes of B.
         """
-        wanted = damping[:3]
-        if reduced is not None:
-            wanted = (min(wanted[0], reduced[0]), min(wanted[1], reduced[1]), min(wanted[2], reduced[2]))
-        near = _resist(
-            wanted, damping[3:], estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow, self._elbow,
-            self._rated, self._rotor, self._limits, torque,
-        )  # fmt: skip
+        if damping is not self._asked[0] or reduced is not self._asked[1]:
+            self._asked = (damping, reduced)
+            self._how[:] = damping
+            if reduced is not None:
+                self._how[:3] = np.minimum(self._how[:3], reduced)
+        points = (estimate.p_BF, estimate.tcp, estimate.elbow)
+        near = _resist(self._how, estimate.theta_d, jacobian, points, self._elbow, self._joints, self._limits, torque)
         self.help += TICK / FADE * (1.0 - near - self.help)
 
 
 @numba.njit(cache=True)
-def _resist(wanted, how, speed, jacobian, p_BF, tcp, elbow, moving, rated, rotor, limits, torque) -> float:
+def _resist(how, speed, jacobian, points, moving, joints, limits, torque) -> float:
     """How near the speed is to a limit: 0 at its onset, 1 at it."""
-    onset, force, share = how
+    onset, force, share = how[3], how[4], how[5]
+    p_BF, tcp, elbow = points
+    rated, rotor = joints[0], joints[1]
     for k in range(3):
-        falling = limits[k] + TICK / FALL * (wanted[k] - limits[k])
-        limits[k] = wanted[k] if math.isinf(limits[k]) or wanted[k] >= limits[k] else falling
+        falling = limits[k] + TICK / FALL * (how[k] - limits[k])
+        limits[k] = how[k] if math.isinf(limits[k]) or how[k] >= limits[k] else falling
     near = 0.0
     width = (1.0 - onset) * limits[2]
     for i in range(speed.size):

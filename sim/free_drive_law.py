@@ -98,10 +98,11 @@ class FreeDriveLaw:
             return torque
         self.singularity.update(jacobian)
         locks = decision.locks
-        static, constraint = torque.copy(), self._constraint
+        constraint, static = self._constraint, torque
         if locks is None:
             constraint.release()
         else:
+            static = torque.copy()
             constraint.prepare(estimate, locks, jacobian, static)
         help = 1.0
         if decision.damping is not None:
