@@ -4,6 +4,7 @@ import viser
 
 from app.log.live import LiveRecording
 from app.web import style
+from app.web.axes_tab import AxesTab
 from app.web.contacts import Contacts
 from app.web.guard import Guard
 from app.web.hand import Hand
@@ -38,6 +39,8 @@ class Docks:
         self._upper = gui.add_panel()
         with self._upper.add_tab("Teach"):
             self.teach = Teach(server, loop, arm)
+        with self._upper.add_tab("Axes"):
+            self.axes = AxesTab(gui, loop)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm)
         with self._upper.add_tab("Tools"):
@@ -85,6 +88,7 @@ class Docks:
             self.journal.show(fresh),
             self.lab.show(snapshot),
             self.teach.show(snapshot),
+            self.axes.show(snapshot),
             self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),

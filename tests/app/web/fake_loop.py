@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.library import load_arm
+from pendant.axis_locks import AxisLocks
 from pendant.decision import Decision, Remaining
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
+from pendant.nearness import Nearness
 from pendant.payload_wizard import IDLE
 from pendant.settings import Settings
 from pendant.tooling import Fitting
@@ -80,6 +82,8 @@ class FakeLoop:
         self.configured = 0.0
         self.fitting: Fitting | None = None
         self.wizard = IDLE
+        self.locks: AxisLocks | None = None
+        self.singularity: Nearness | None = None
         self.payload = 0.0
         self.q = HOME.copy()
         self.touches: tuple[Any, ...] = ()
@@ -122,6 +126,8 @@ class FakeLoop:
             monitored=self.monitored,
             fitting=self.fitting,
             wizard=self.wizard,
+            locks=self.locks,
+            singularity=self.singularity,
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))
