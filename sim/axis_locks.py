@@ -45,14 +45,15 @@ class AxisConstraint:
         arm: the arm's numbers.
         calibration: error of the constants that the controller uses.
         tcp: tool centre point in F (3,) [m].
+        R_FT: its orientation in F (3, 3).
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, tcp: Array, R_FT: Array) -> None:
         spring = arm.transmissions
         stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         self._constants = np.stack([1.0 / stiffness, rotor, MOST * np.array(arm.limits.torque)])
-        self._tcp = tcp
+        self._tcp, self._R_FT = tcp, R_FT
         self._locks: AxisLocks | None = None
         self._locked = np.zeros(6, dtype=np.bool_)
         self._frame, self._turn = np.eye(3), np.eye(3)  # axes and orientation of the tool at the beginning, in B
@@ -101,7 +102,7 @@ class AxisConstraint:
         self._locks = locks
         self._locked[:] = locks.locked
         R = estimate.R_BF
-        self._frame[:] = R if locks.tool else np.reshape(locks.R_BU, (3, 3))
+        self._frame[:] = R @ self._R_FT if locks.tool else np.reshape(locks.R_BU, (3, 3))
         self._turn[:] = R
         self._place[:] = estimate.p_BF + R @ self._tcp
         self._bent[:] = estimate.theta - estimate.q - self._constants[0] * static

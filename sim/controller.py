@@ -42,7 +42,7 @@ class Controller:
         self.feed_forward = FeedForward(arm, calibration, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
         self.feedback = Feedback(arm, calibration, dynamics, tcp)
-        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp)
+        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp, R_FT)
         self.motor = MotorController(arm, calibration)
         self._dynamics = dynamics
         self._law: Law | None = None

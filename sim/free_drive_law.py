@@ -43,19 +43,20 @@ class FreeDriveLaw:
         singularity: how near the arm is to one.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
         """
         Args:
             arm: the arm's numbers.
             calibration: error of the constants that the controller uses.
             dynamics: the controller's rigid model.
             tcp: tool centre point in F (3,) [m].
+            R_FT: its orientation in F (3, 3).
         """
         self._dynamics, self._elbow = dynamics, arm.chain.elbow
         n = arm.n
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
-        self._constraint = AxisConstraint(arm, calibration, tcp)
+        self._constraint = AxisConstraint(arm, calibration, tcp, R_FT)
         self.singularity = Singularity(rotor)
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))

@@ -26,6 +26,7 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 .pd-light span{{font-size:12.5px;color:var(--c);font-weight:600}}
 .pd-light em{{font-style:normal;font-size:10.5px;text-align:right;opacity:.75;text-transform:uppercase;letter-spacing:.06em}}
 .pd-light strong{{display:block;font-size:12px;letter-spacing:0}}
+[role=tab]{{padding-left:8px!important;padding-right:8px!important}}
 .pd-rings{{display:flex;gap:10px;justify-content:center;align-items:center;min-height:86px;margin:0 12px 6px}}
 .pd-rings figure{{margin:0;text-align:center}} .pd-rings svg{{display:block;margin:0 auto}}
 .pd-rings figcaption{{font-size:11.5px;margin-top:3px;opacity:.8}}

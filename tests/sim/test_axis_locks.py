@@ -24,8 +24,10 @@ from tests.sim.control import EXACT, N, dynamics, estimate
 MODEL = dynamics()
 HOME = np.array(UR5E.chain.home)
 TCP = np.array([0.02, -0.03, 0.15])
+TURNED = rotation(0, 0.6)  # orientation of the tool in F
 ROTOR, RATED = np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque)
 NOTHING = np.zeros(N)
+FLANGE = tuple(MODEL.update(HOME)[1].ravel().tolist())
 FRAME = from_rpy((0.3, -0.4, 1.2))
 
 
@@ -38,7 +40,7 @@ class Held:
 
     def __init__(self, kept: AxisLocks, q: np.ndarray = HOME) -> None:
         self.locks = kept
-        self.module = AxisConstraint(UR5E, EXACT, TCP)
+        self.module = AxisConstraint(UR5E, EXACT, TCP, TURNED)
         self.at(q)
 
     def at(self, q: np.ndarray, qd: np.ndarray = NOTHING, static: np.ndarray = NOTHING) -> "Held":
@@ -87,8 +89,8 @@ def test_its_jacobian_is_the_derivative_of_what_is_locked(free: set[str], tool: 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_free_turns_may_be_large(axis: int) -> None:
-    """The last joint turns the tool about its own z: free, it moves nothing that is locked; the others stay locked."""
-    held = Held(locks("x", "y", "z", "rz", tool=True))
+    """The last joint turns the tool about the flange's z: free, it moves nothing that is locked; the others stay locked."""
+    held = Held(locks("x", "y", "z", "rz", R_BU=FLANGE))
     for angle in (0.5, 2.0, 3.0, -3.0):
         q = HOME + np.array([0.0, 0.0, 0.0, 0.0, 0.0, angle])
         assert np.abs(held.at(q).values).max() < 1e-9
@@ -98,7 +100,7 @@ def test_free_turns_may_be_large(axis: int) -> None:
 
 def test_a_twist_is_told_from_a_swing() -> None:
     """With rz alone locked, swinging about x and y is free, turning about z is not."""
-    held = Held(locks("x", "y", "z", "rx", "ry", tool=True))
+    held = Held(locks("x", "y", "z", "rx", "ry", R_BU=FLANGE))
     angles = (0.3, 1.0, 2.5)
     twists = [held.at(HOME + np.array([0.0, 0.0, 0.0, 0.0, 0.0, angle])).values[0] for angle in angles]
     np.testing.assert_allclose(np.abs(twists), np.minimum(0.2 * np.array(angles), FURTHEST), rtol=1e-6)
@@ -250,11 +252,10 @@ def test_through_a_singularity_nothing_blows_up(posture: list[float]) -> None:
     assert np.hypot(ways[-1, 0], ways[-1, 1]) > 100.0
 
 
-def test_a_turned_frame_locks_its_own_axes() -> None:
-    held = Held(locks("y", "z", "rx", "ry", "rz", R_BU=tuple(rotation(2, 0.5).ravel().tolist())))
-    p, _, jacobian = MODEL.update(HOME)
-    along = rotation(2, 0.5)[:, 0]
-    offset = MODEL.update(HOME)[1] @ TCP
-    at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, offset).T
+@pytest.mark.parametrize("tool", [False, True])
+def test_a_turned_frame_locks_its_own_axes(tool: bool) -> None:
+    held = Held(locks("x", "z", "rx", "ry", "rz", tool=tool, R_BU=tuple(rotation(2, 0.5).ravel().tolist())))
+    _, R, jacobian = MODEL.update(HOME)
+    along = (R @ TURNED if tool else rotation(2, 0.5))[:, 1]
+    at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, R @ TCP).T
     np.testing.assert_allclose(held.rows[0], along @ at_tcp, atol=1e-9)
-    assert p.size == 3

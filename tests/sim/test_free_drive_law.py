@@ -22,7 +22,7 @@ BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
 
 
 def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
-    module = FreeDriveLaw(UR5E, EXACT, dynamics(), np.zeros(3))
+    module = FreeDriveLaw(UR5E, EXACT, dynamics(), np.zeros(3), np.eye(3))
     module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
     return module
 
