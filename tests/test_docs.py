@@ -17,6 +17,7 @@ from app import actions
 from app.checked import BadInput, convert
 from app.library import load_arm
 from app.session import Session
+from docs import modules
 from pendant import contact_rules, parameters, settings, shapes, solids
 from pendant.history import History
 from pendant.limits import Gauge
@@ -155,3 +156,14 @@ def test_the_action_of_the_example_shakes() -> None:
     assert inspect.getdoc(shake)
     with pytest.raises(BadInput, match="timeline"):
         convert({"title": "t", "duration": 1.0, "timeline": [written]}, Session, "s.yaml")  # it is not there yet
+
+
+def test_the_list_of_modules_is_up_to_date() -> None:
+    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m docs.modules"
+
+
+def test_a_module_that_says_nothing_of_itself_is_named(tmp_path: Path) -> None:
+    silent = tmp_path / "silent.py"
+    silent.write_text("x = 1\n")
+    with pytest.raises(ValueError, match=r"^silent\.py has no docstring$"):
+        modules.first_line(silent)

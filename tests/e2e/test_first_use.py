@@ -12,18 +12,10 @@ from pendant.modes import Mode
 from sim.changes import AttachPayload
 from sim.scenario import Load
 from tests.e2e.cell import Cell
-from tests.e2e.test_push import enter_free_drive
+from tests.e2e.test_push import enter_free_drive, hold_until
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[[], Page]
-
-
-def press(page: Page) -> None:
-    """Put the pointer on the free-drive button and press."""
-    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 90, box["y"] + 20)
-    page.mouse.down()
 
 
 def test_two_kilograms_too_much_are_refused_with_numbers_corrected_they_enter_and_left_alone_it_ends(
@@ -35,8 +27,7 @@ def test_two_kilograms_too_much_are_refused_with_numbers_corrected_they_enter_an
     cell.wait(lambda: cell.loop.latest().truth_payload_mass == 2.0, "it hangs")
     page.get_by_role("tab", name="Lab").click()
     page.get_by_text("+2.0 kg wrong").wait_for()
-    press(page)
-    cell.wait(lambda: cell.happened(Kind.REFUSED_PAYLOAD), "refused")
+    hold_until(page, cell, lambda: cell.happened(Kind.REFUSED_PAYLOAD), "refused")
     page.get_by_text("Consistent with").or_(page.get_by_text("kg more than configured")).first.wait_for()
     page.mouse.up()
     assert not cell.happened(Kind.ENTERED)
