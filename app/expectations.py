@@ -135,6 +135,10 @@ class Value(Bounds, tag="value", frozen=True, kw_only=True):
             raise ValueError(f"joint goes with {' and '.join(OF_A_JOINT)}, and only with these; of = {self.of}")
 
 
+class Reaches(Value, tag="reaches", frozen=True, kw_only=True):
+    """A quantity is within bounds in one tick of the interval at least."""
+
+
 class Displacement(Bounds, tag="displacement", frozen=True, kw_only=True):
     """How far a part is from its place at the interval's begin [m]: the largest in the interval, or what is left at its end."""
 
@@ -168,4 +172,4 @@ class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
         return "CD-16"
 
 
-AnyExpectation = State | Happens | Never | Heard | Value | Displacement | Period | ContactDelay
+AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period | ContactDelay

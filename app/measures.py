@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, State, Value
+from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
 from app.parts import point_of
 from app.triggers import Trigger
 from app.watch import EventWatch, PeriodWatch, StateWatch, ToneWatch, Watch, at
@@ -134,6 +134,34 @@ class ValueWatch(BoundsWatch):
 
 
 @dataclass(slots=True)
+class ReachWatch(ValueWatch):
+    """Follows `Reaches`."""
+
+    met: int | None = None  # first tick of the interval in which it was within bounds
+
+    def number(self, value: float, tick: int) -> None:
+        """See `BoundsWatch.number`."""
+        BoundsWatch.number(self, value, tick)
+        above = self.min is None or value >= self.min
+        if self.met is None and above and (self.max is None or value <= self.max):
+            self.met = tick
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return self.met is not None
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        return ValueWatch.name(self) + " at some time"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.met is not None:
+            return True, f"reached at {at(self.met)}"
+        return False, f"{self.low[0]:.6g} to {self.high[0]:.6g} {self.unit()}"
+
+
+@dataclass(slots=True)
 class DisplacementWatch(BoundsWatch):
     """Follows `Displacement`."""
 
@@ -187,6 +215,8 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
             return ToneWatch(joints, trigger, begin, end, wanted=expectation)
         case Happens() | Never():
             return EventWatch(joints, trigger, begin, end, wanted=expectation)
+        case Reaches():
+            return ReachWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Value():
             return ValueWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Displacement():

@@ -8,6 +8,7 @@ from pendant.axis_locks import AxisLocks
 from pendant.contact import Contact
 from pendant.enabling import Grip
 from pendant.events import Event
+from pendant.haptics import Shake
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.nearness import Nearness
@@ -65,6 +66,7 @@ class Decision(msgspec.Struct, frozen=True):
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
     locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
+    shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload
     limits: str = ""  # checksum of all limits

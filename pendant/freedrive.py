@@ -59,6 +59,7 @@ class Surroundings(NamedTuple):
     felt: float = 0.0  # change of the force at the flange from the untouched state [N]
     changing: float | None = None  # the configured payload by now, while it is being changed [kg]
     guided: bool = False  # a step of a program asks for free-drive (CD-15)
+    shaken: bool = False  # haptic feedback moves the arm: not what a hand does (FD-19)
 
     @property
     def enabled(self) -> bool:
@@ -418,7 +419,7 @@ class FreeDrive:
         if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
             values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, estimate.tick, values))
-        ending = self._operation.step(estimate, hand, self.use_wrench, self.caught or self._zones.pushing)
+        ending = self._operation.step(estimate, hand, self.use_wrench, around.shaken or self.caught or self._zones.pushing)
         if ending is None:
             return False
         events.append(self._over(ending.kind, estimate.tick, settings, ending.values))
@@ -457,7 +458,7 @@ class FreeDrive:
             return
         self._left -= 1
         assert self._maintained is not None
-        excess = self._maintained.step(around.estimate, self.use_wrench)
+        excess = None if around.shaken else self._maintained.step(around.estimate, self.use_wrench)
         if excess is not None:
             self.phase = Phase.GUIDED
             # static again: for its whole time after the manipulation began

@@ -6,6 +6,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 import msgspec
 from msgspec import Meta
 
+from pendant.haptics import HapticUse
 from pendant.schema import Limit, Row, Section, SettingError, Value, ticks
 from pendant.schema import limit as _limit
 from pendant.schema import number as _number
@@ -334,6 +335,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     axes: Axes = Axes()
     joint_limits: JointLimits = JointLimits()
     walls: Walls = Walls()
+    haptics: HapticUse = HapticUse()
     static: Static = Static()
     tools: ToolUse = ToolUse()
     joint_control: JointControl = JointControl()

@@ -14,6 +14,7 @@ from pendant.enabling import EnablingDevice, Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.freedrive import ASKED_FOR, FreeDrive, Surroundings, moving
+from pendant.haptics import Haptics, Moment
 from pendant.inputs import Button, Command, Inputs
 from pendant.joint_zones import JointZones
 from pendant.keepalive import KeepAlive
@@ -49,6 +50,9 @@ DONE_GUIDING = ASKED_FOR | {Kind.LEFT_PERIOD, Kind.LEFT_RESTART}
 
 STILL_OFF = frozenset({Kind.NOT_YET, Kind.RESIDUAL_GONE, Kind.RESIDUAL_STAYED})
 """What is told while free-drive has not been begun."""
+
+ENDING = ("free-drive", "restart")
+"""Periods that end free-drive."""
 
 TOLD = {
     Change.GAINED: Kind.CONTACT_GAINED,
@@ -119,6 +123,7 @@ class Supervisor:
         self._reduced = Reduced()
         self._safeguard = False  # the safety input is open
         self._stopping = Stopping()
+        self._haptics = Haptics()
         self._calls = Calls(n_joints)
         self._holding = False  # the arm was held in the last tick
         self._still = Stillness()
@@ -157,7 +162,7 @@ class Supervisor:
         still = (self._still.count, self._still.joint, self._still.speed)
         devices = (self._enabling.memory, self._reduced.memory, self._safeguard, self._stopping.memory)
         own = (self._mode, self._safety, self._remembered, self._origin, self._braking, self._freed, button, still)
-        own += (self._calls.memory, self._holding, self._tooling.memory)
+        own += (self._calls.memory, self._holding, self._tooling.memory, self._haptics.memory)
         lost = self._sensors.lost
         return (self.settings, *own, *devices, self._mean.memory, lost, self._sequencer.memory, self._free.memory)
 
@@ -210,7 +215,7 @@ class Supervisor:
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
         sequencer, use = self._sequencer, self.settings.contact
-        on = (use.on or sequencer.until is not None) and not self._tooling.changing
+        on = (use.on or sequencer.until is not None) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, self._mode, on)
         for contact in self._contacts:
             until = sequencer.until
@@ -416,8 +421,10 @@ class Supervisor:
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
         calls = self._calls
         changing = self._tooling.fitting.mass if self._tooling.changing else None
-        felt, guided = (calls.hand_off, calls.force), self._sequencer.guiding
-        around = Surroundings(estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, *felt, changing, guided)
+        felt, guided, shaken = (calls.hand_off, calls.force), self._sequencer.guiding, self._haptics.busy
+        around = Surroundings(
+            estimate, self._mode, wrench_ok, self._still, self._mean, self._grip, *felt, changing, guided, shaken
+        )
         trying = self._free.phase is not Phase.OFF
         for event in self._free.step(around, self.settings):
             self._take_effect(event, events)
@@ -501,17 +508,28 @@ class Supervisor:
             self._braking = False
         return Law.BRAKE if self._braking else Law.HOLD
 
+    def _shake(self, law: Law, events: list[Event]) -> None:
+        """What is to be felt in this tick (HF-1)."""
+        free = self._free
+        near = any(wall.near > 0.0 for wall in free.walls()) if self._mode is Mode.FREE_DRIVE else False
+        left = next((period.ticks for period in free.periods() if period.name in ENDING), -1)
+        feedback = ticks(self.settings.handshake.feedback)
+        self._haptics.step(Moment(self._mode, law, free.phase, events, near, left, feedback), self.settings.haptics)
+
     def _publish(self, estimate: Estimate, events: list[Event]) -> Decision:
         """The decision; the last one again when nothing is different."""
         free = self._free
         sequencer = self._sequencer
         law = self._law()
         tooling = self._tooling
-        self._holding = law is Law.HOLD and not free.caught and not tooling.changing
+        haptics = self._haptics
+        if self.settings.haptics.on or haptics.busy:
+            self._shake(law, events)
+        self._holding = law is Law.HOLD and not (free.caught or tooling.changing or haptics.busy)
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
         locks = self._locks if self._mode is Mode.FREE_DRIVE else None
         robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
-        guided = (free.damping, free.zones, locks, free.singularity)
+        guided = (free.damping, free.zones, locks, free.singularity, haptics.shake)
         key = (
             *robot,
             *guided,
@@ -555,6 +573,7 @@ class Supervisor:
             wizard=tooling.wizard.progress,
             locks=locks,
             singularity=free.singularity,
+            shake=haptics.shake,
             limits=self._checksum,
         )
         self._key = key

@@ -97,7 +97,7 @@ class Controller:
     def _track(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, use: JointControl) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
-        helped = use.friction and use.feed_forward and references.driven
+        helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
         torque = self.feed_forward.torque(reference, friction if helped else None, use.feed_forward, references.push)
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.

@@ -16,6 +16,7 @@ from sim.arm import Arm
 from sim.axis_locks import AxisConstraint
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
+from sim.shaker import Shaker
 from sim.singularity import Singularity
 
 Array = NDArray[np.float64]
@@ -58,6 +59,7 @@ class FreeDriveLaw:
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
         self._constraint = AxisConstraint(arm, calibration, tcp, R_FT)
         self.singularity = Singularity(rotor)
+        self._shaker = Shaker(rotor[-1], arm.limits.torque[-1])
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
@@ -75,6 +77,7 @@ class FreeDriveLaw:
         self._turned[:] = estimate.R_BF
         self._damping.start()
         self._constraint.release()
+        self._shaker.stop()
 
     def torque(
         self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction, with_friction: bool
@@ -124,6 +127,10 @@ class FreeDriveLaw:
         if locks is not None:
             self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
             constraint.hold(torque)
+        if decision.shake is None:
+            self._shaker.stop()
+        else:
+            torque[-1] += self._shaker.torque(decision.shake, estimate, float(friction.breakaway[-1]))
         return torque
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+from pendant.haptics import Shake
 from pendant.modes import Law
 from pendant.program import ApplyForce, JointMove, LinearMove, Move
 from sim.arm import Arm
@@ -101,11 +102,12 @@ class References:
             self.push = None
         elif self.push is not None and self.now.qd.any():  # on the next way the integral of the position takes it over
             self.push = None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
-        self._past.append(self.now)
+        answer = self.now if decision.shake is None else _shaken(self.now, decision.shake)
+        self._past.append(answer)
         if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
             self.move_done = self._move.id
         self._law = law
-        return self.now
+        return answer
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
@@ -136,3 +138,12 @@ class References:
         except MoveRefused as refusal:
             self.refusal = str(refusal)
             self._motion = Stop(q, self._standing)
+
+
+def _shaken(reference: Reference, shake: Shake) -> Reference:
+    """The reference with the last joint's part in haptic feedback (HF-1)."""
+    q, qd, qdd = (values.copy() for values in reference)
+    q[-1] += shake.angle
+    qd[-1] += shake.speed
+    qdd[-1] += shake.acceleration
+    return Reference(q, qd, qdd)

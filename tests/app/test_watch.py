@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, State, Value
+from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
 from app.measures import watch
 from app.watch import Verdict
 from pendant.decision import Decision, Remaining
@@ -163,6 +163,26 @@ def test_a_value_that_is_no_number_is_out_of_bounds() -> None:
     broken = lambda tick: snapshot(tick, F_user=np.full(6, np.nan if tick == 5 else 1.0))
     assert not follow(Value(of="user_force", max=10.0), 10, picture=broken).passed
     assert not follow(Value(of="user_force", min=0.0), 10, picture=broken).passed
+
+
+def picture_at(speed: float) -> Callable[[int], Snapshot]:
+    return lambda tick: snapshot(tick, v_tcp=speed * tick)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "passed", "seen"),
+    [
+        ({"min": 0.3}, True, "reached at 0.006 s"),
+        ({"max": 0.2}, True, "reached at 0.002 s"),
+        ({"min": 0.2, "max": 0.2}, True, "reached at 0.004 s"),
+        ({"min": 0.35, "max": 0.38}, False, "0.1 to 0.5 m/s"),
+        ({"min": 0.6}, False, "0.1 to 0.5 m/s"),
+    ],
+)
+def test_a_value_is_reached_once(bounds: dict[str, float], passed: bool, seen: str) -> None:
+    verdict = follow(Reaches(of="tcp_speed", **bounds), 5, picture=picture_at(0.1))
+    assert (verdict.passed, verdict.seen) == (passed, seen)
+    assert verdict.expected.startswith("tcp speed at some time at ")
 
 
 @pytest.mark.parametrize(

@@ -54,6 +54,12 @@ EXPECTED = {
     "axes.resistance": (True, None, None, "", "FD-4", True),
     "axes.near": (0.04, 0.011, 0.1, "m", "FD-4", True),
     "axes.too_near": (0.01, 0.001, 0.01, "m", "FD-4", True),
+    "haptics.on": (False, None, None, "", "HF-1", False),
+    "haptics.amplitude": (0.004, 0.001, 0.008, "rad", "HF-2", True),
+    **{
+        f"haptics.{name}": (True, None, None, "", "HF-1", False)
+        for name in ("left", "entered", "confirmation", "border", "ending", "contact")
+    },
     "joint_limits.on": (True, None, None, "", "FD-4", True),
     "joint_limits.damping_zone": (0.1, 0.01, 0.5, "rad", "FD-4", True),
     "joint_limits.stiff_zone": (0.05, 0.01, 0.3, "rad", "FD-4", True),

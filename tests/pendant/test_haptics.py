@@ -1,0 +1,184 @@
+"""Haptic patterns: each ends where it began, within its bounds, at its moment, and is taken for nobody's hand (HF-1, HF-2)."""
+
+import itertools
+
+import pytest
+
+from pendant.events import Event, Kind
+from pendant.haptics import ABOUT_TO_END, CONTACTS, RHYTHMS, SETTLING, Haptics, HapticUse, Moment, Pattern, length, offset
+from pendant.inputs import Command, Inputs
+from pendant.modes import TICK, Law, Mode, Phase
+from pendant.settings import ticks
+from tests.pendant.estimates import estimate
+from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+
+ON = HapticUse(on=True)
+REST = Moment(Mode.TEACH, Law.HOLD, Phase.OFF, [], False, -1, 250)
+FREE = Moment(Mode.FREE_DRIVE, Law.FREE, Phase.PERIOD, [], False, -1, 250)
+
+
+def event(kind: Kind) -> list[Event]:
+    return [Event(kind, 0)]
+
+
+def played(haptics: Haptics, moment: Moment, use: HapticUse = ON) -> Pattern | None:
+    haptics.step(moment, use)
+    return None if haptics.shake is None else haptics.shake.pattern
+
+
+@pytest.mark.parametrize("pattern", Pattern)
+def test_a_pattern_ends_where_it_began_and_stays_within_bounds(pattern: Pattern) -> None:
+    whole = length(pattern)
+    values = [offset(pattern, tick) for tick in range(-2, whole + 3)]
+    assert values[:3] == [0.0] * 3
+    assert abs(values[-3]) < 0.01
+    assert values[-2:] == [0.0] * 2
+    assert max(map(abs, values)) < 2.5
+    speeds = [(after - before) / TICK for before, after in itertools.pairwise(values)]
+    assert max(map(abs, speeds)) < 110.0  # of the amplitude: less than 1 rad/s at the largest
+    assert max(map(abs, speeds)) > 50.0
+    assert max(abs(speeds[0]), abs(speeds[-1])) < 10.0
+
+
+@pytest.mark.parametrize("pattern", [pattern for pattern in Pattern if max(RHYTHMS[pattern]) > 3])
+def test_a_long_one_does_not_turn_at_the_same_places(pattern: Pattern) -> None:
+    """HF-2: the centre wanders out and back."""
+    values = [offset(pattern, tick) for tick in range(length(pattern) + 1)]
+    turns = [b for a, b, c in zip(values, values[1:], values[2:], strict=False) if (b - a) * (c - b) < 0.0]
+    assert len(turns) >= 2 * sum(RHYTHMS[pattern]) - 1
+    for same_side in (turns[::2], turns[1::2]):
+        assert all(abs(a - b) > 0.04 for a, b in itertools.pairwise(same_side))
+
+
+def test_patterns_are_distinct() -> None:
+    assert len(set(RHYTHMS.values())) == len(Pattern)
+    assert set(RHYTHMS) == set(Pattern)
+
+
+@pytest.mark.parametrize(
+    ("pattern", "moment"),
+    [
+        (Pattern.ENTERED, FREE._replace(events=event(Kind.ENTERED))),
+        (Pattern.CONFIRMATION, REST._replace(events=event(Kind.CONFIRM_ASKED), phase=Phase.FEEDBACK)),
+        (Pattern.BORDER, FREE._replace(near=True)),
+        (Pattern.ENDING, FREE._replace(left=ABOUT_TO_END)),
+        *[(Pattern.CONTACT, REST._replace(events=event(kind))) for kind in sorted(CONTACTS)],
+    ],
+)
+def test_each_is_felt_at_its_moment_for_its_length_and_can_be_switched_off(pattern: Pattern, moment: Moment) -> None:
+    haptics = Haptics()
+    played(haptics, moment._replace(events=[], near=False, left=-1))
+    assert played(haptics, moment) is pattern
+    after = moment._replace(events=[], left=-1)
+    run = [played(haptics, after) for _ in range(length(pattern) + SETTLING)]
+    assert run == [pattern] * length(pattern) + [None] * SETTLING
+    assert not haptics.busy
+    off = HapticUse(on=True, **{pattern.value: False})
+    haptics = Haptics()
+    played(haptics, moment._replace(events=[], near=False, left=-1))
+    assert played(haptics, moment, off) is None
+
+
+def test_leaving_is_felt_after_it() -> None:
+    haptics = Haptics()
+    assert played(haptics, FREE) is None
+    left = REST._replace(law=Law.BRAKE, events=event(Kind.LEFT_PERIOD))
+    assert played(haptics, left, HapticUse(on=True, left=False)) is None
+    assert played(haptics, FREE) is None
+    assert played(haptics, left) is Pattern.LEFT
+    assert played(haptics, REST) is Pattern.LEFT
+    assert haptics.busy
+
+
+def test_what_plays_is_not_interrupted_by_another() -> None:
+    haptics = Haptics()
+    played(haptics, FREE)
+    assert played(haptics, FREE._replace(near=True)) is Pattern.BORDER
+    assert played(haptics, FREE._replace(near=True, left=ABOUT_TO_END)) is Pattern.BORDER
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [
+        REST._replace(law=Law.HOLD, mode=Mode.FREE_DRIVE, phase=Phase.GUIDED),  # a wall holds the arm
+        FREE._replace(phase=Phase.SEQUENCE, mode=Mode.TEACH),
+        REST._replace(law=Law.FOLLOW, mode=Mode.RUN),
+        REST._replace(law=Law.OFF, mode=Mode.STOP),
+        REST._replace(law=Law.BRAKE, mode=Mode.STOP),
+    ],
+)
+def test_another_law_ends_it(ends: Moment) -> None:
+    haptics = Haptics()
+    played(haptics, FREE)
+    assert played(haptics, FREE._replace(near=True)) is Pattern.BORDER
+    assert played(haptics, ends, HapticUse(on=True, left=False)) is None
+
+
+def test_switched_off_it_ends() -> None:
+    haptics = Haptics()
+    played(haptics, FREE)
+    played(haptics, FREE._replace(near=True))
+    assert played(haptics, FREE, HapticUse()) is None
+    assert haptics.busy
+
+
+@pytest.mark.parametrize(("feedback", "asked"), [(0.0, None), (0.46, None), (0.5, Pattern.CONFIRMATION)])
+def test_who_is_asked_is_not_shaken_while_the_answer_counts(feedback: float, asked: Pattern | None) -> None:
+    haptics = Haptics()
+    moment = REST._replace(events=event(Kind.CONFIRM_ASKED), feedback=ticks(feedback))
+    assert played(haptics, moment) is asked
+
+
+def test_speed_and_acceleration_belong_to_the_angle() -> None:
+    haptics = Haptics()
+    shakes = []
+    for tick in range(40):
+        haptics.step(REST._replace(events=event(Kind.CONTACT_GAINED) if tick == 0 else []), ON)
+        assert haptics.shake is not None
+        shakes.append(haptics.shake)
+    for before, now, after in zip(shakes, shakes[1:], shakes[2:], strict=False):
+        assert now.speed == pytest.approx((after.angle - before.angle) / (2.0 * TICK))
+        assert now.acceleration == pytest.approx((after.angle - 2.0 * now.angle + before.angle) / TICK**2)
+
+
+def test_a_shaken_arm_is_moved_by_nobody() -> None:
+    """FD-13, FD-19: what the patterns move is not counted; afterwards it is."""
+    bench = Bench(haptics__on=True).in_period()
+    assert bench.last.shake is not None
+    fast = estimate(qd=0.2, speed=0.2)
+    bench.run(length(Pattern.ENTERED), value=fast)
+    assert bench.last.phase is Phase.PERIOD
+    bench.run(SETTLING)
+    assert bench.last.shake is None
+    assert bench.events == []
+    bench.step(value=fast)
+    assert [each.kind for each in bench.events] == [Kind.MANIPULATION]
+
+
+def test_no_contact_is_seen_and_no_signal_while_the_arm_shakes() -> None:
+    bench = Bench(haptics__on=True, contact__on=True, signals__push__on=True, activation__period=0.02, let_go__on=False)
+    bench.in_period()
+    bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)))
+    assert bench.last.shake is not None
+    assert bench.last.shake.pattern is Pattern.LEFT
+    bench.run(1000)
+    assert bench.last.shake is None
+    assert bench.last.law is Law.HOLD
+
+
+def test_walls_and_endings_are_felt() -> None:
+    bench = Bench(haptics__on=True, free_drive__period=2.0, free_drive__remainders=False).in_period()
+    felt = set()
+    for _ in range(1000):
+        bench.step()
+        if bench.last.shake is not None:
+            felt.add((bench.last.shake.pattern, bench.last.mode))
+    assert (Pattern.ENDING, Mode.FREE_DRIVE) in felt
+    assert (Pattern.LEFT, Mode.TEACH) in felt
+
+
+def test_off_nothing_is_felt() -> None:
+    bench = Bench()
+    bench.run(60)
+    for inputs in [HOLD] * 600 + [LET_GO] * 10:
+        assert bench.step(inputs).shake is None
