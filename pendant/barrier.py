@@ -182,10 +182,7 @@ class Barrier:
             return None
         (ax, ay, az), factor, reference = self._lies
         ox, oy, oz = self._offset
-        x, y, z = turned(reference.R, (ax + factor * ox, ay + factor * oy, az + factor * oz))
-        px, py, pz = reference.p
-        turn = reference.R if self._turn is None else product(reference.R, self._turn)
-        return Place(Pose((x + px, y + py, z + pz), turn), factor)
+        return placed(self._border, (ax + factor * ox, ay + factor * oy, az + factor * oz), factor, reference)
 
     def _measure(self, local: Vector, anchor: Vector, factor: float, reference: Pose) -> tuple[float, Vector]:
         """Distance [m] and its gradient in axes of B."""
@@ -245,6 +242,13 @@ class Barrier:
         else:
             consequence = _LEAVING[border.reaction]
         return Reading(border, math.inf, ORIGIN, 1.0, True, consequence, ORIGIN, False)
+
+
+def placed(border: AnyBorder, centre: Vector, factor: float, reference: Pose) -> Place:
+    """Where a border's shape lies when its centre is at `centre` of the reference [m]."""
+    x, y, z = turned(reference.R, centre)
+    px, py, pz = reference.p
+    return Place(Pose((x + px, y + py, z + pz), product(reference.R, rotation(border.orientation))), factor)
 
 
 _NONE, _HOLD = Consequence.NONE, Consequence.HOLD  # looked up in every tick

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from msgspec.structs import replace
 
-from pendant.barrier import Around, Consequence, Part, Place, Reading
+from pendant.barrier import Around, Consequence, Part, Place, Reading, placed
 from pendant.decision import WallState
 from pendant.enclosure import Enclosure, worst
 from pendant.estimate import GRAVITY, Estimate
@@ -13,7 +13,7 @@ from pendant.events import Values
 from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
 from pendant.settings import Walls
 from pendant.shapes import Sphere
-from pendant.walls import AnyBorder, Measure, Policy, Reaction, Start, Wall
+from pendant.walls import AnyBorder, Area, Measure, Policy, Reaction, Start, Wall
 
 PARTS = ("flange", "tcp", "elbow")
 """The points of the arm that a wall can watch."""
@@ -121,6 +121,16 @@ class Containment:
             return ()
         pairs = zip([reading.border for reading in self._reading], self._enclosure.places(), strict=False)
         return tuple([(border, place) for border, place in pairs if place is not None])
+
+    def resting(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
+        """The areas that will hold in free-drive, with where their shapes lie while it does not last.
+
+        Those that lie in a part of the arm are left out; one whose size follows the posture has its smallest size.
+        """
+        if not walls.on:
+            return ()
+        areas = [border for border in self._borders if isinstance(border, Area) and border.reference in self._frames]
+        return tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in areas])
 
     def _build(self, walls: Walls) -> Enclosure | None:
         borders = self._borders if not walls.tether else (tether(walls), *self._borders)

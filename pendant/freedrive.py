@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from pendant.attempt import ABSENT, Attempt, Outcome
 from pendant.axis_locks import axis_locks
-from pendant.barrier import Consequence, Reading
+from pendant.barrier import Consequence, Place, Reading
 from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.decision import Remaining, WallState
 from pendant.enabling import Grip
@@ -22,11 +22,11 @@ from pendant.nearness import Nearness, SingularityWatch
 from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
-from pendant.settings import Settings, ticks
+from pendant.settings import Settings, Walls, ticks
 from pendant.soft_limits import Damping
 from pendant.sources import BUTTON, NONE, Presence
 from pendant.table import TABLE, Effect
-from pendant.walls import Start
+from pendant.walls import AnyBorder, Start
 from pendant.watch import Stillness, WrenchMean, joints_ok
 
 NAMES = {
@@ -174,6 +174,12 @@ class FreeDrive:
     def walls(self) -> tuple[WallState, ...]:
         """Walls and areas that hold."""
         return self._containment.states()
+
+    def places(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
+        """Every wall and area that holds, and every area that will in free-drive, with where its shape lies."""
+        hold = self._containment.places()
+        names = [border.name for border, _ in hold]
+        return hold + tuple([pair for pair in self._containment.resting(walls) if pair[0].name not in names])
 
     @property
     def damping(self) -> Damping | None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from pendant.axis_locks import axis_locks
+from pendant.barrier import Place
 from pendant.calls import Calls
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import ContactMonitor
@@ -151,6 +152,11 @@ class Supervisor:
     def fitting(self) -> Fitting:
         """Tool and payload, as configured."""
         return self._tooling.fitting
+
+    @property
+    def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
+        """Every wall and area that holds, and every area that will in free-drive, with where its shape lies in B."""
+        return self._free.places(self.settings.walls)
 
     @property
     def state(self) -> tuple[object, ...]:

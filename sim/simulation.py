@@ -211,6 +211,7 @@ class Simulation:
             plant.temperature.copy(),
             self.scenario,
             self._reference(),
+            self.supervisor.places,
         )
 
     def _reference(self) -> Array | None:

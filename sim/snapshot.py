@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.barrier import Place
 from pendant.decision import Decision
 from pendant.estimate import Estimate
+from pendant.walls import AnyBorder
 from sim.scenario import Scenario
 
 
@@ -37,3 +39,4 @@ class Snapshot:
     truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
     scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks
     reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]
+    places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B

@@ -8,6 +8,7 @@ from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.svg import Bar, Colour
 from app.web.words import LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from pendant.containment import TETHER
 from pendant.decision import Decision
 from pendant.events import Event, Kind
 from pendant.inputs import Button, Command
@@ -126,6 +127,7 @@ class Panel:
             self._settings, self._digest = settings, limits_checksum(settings)
         return [
             ("Tool, elbow", f"{1000 * seen.v_tcp:.0f}, {1000 * seen.v_elbow:.0f} mm/s"),
+            *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),
         ]
@@ -167,6 +169,15 @@ def _state(decision: Decision) -> tuple[str, Colour]:
     if decision.phase is Phase.SEQUENCE:
         return "Hands off", Colour.BLUE
     return WORDS[decision.mode]
+
+
+def _wall(decision: Decision) -> list[tuple[str, str]]:
+    """The wall that the arm is nearest to, or furthest beyond; the tether only when it resists, since it goes along."""
+    walls = [wall for wall in decision.walls if wall.name != TETHER or wall.near > 0.0]
+    if not walls:
+        return []
+    wall = max(walls, key=lambda wall: wall.distance)
+    return [(f"{wall.name}, {wall.part}", f"{1000 * abs(wall.distance):.0f} mm {'beyond' if wall.exceeded else 'left'}")]
 
 
 def _nearest(monitored: tuple[Monitored, ...]) -> list[Bar]:

@@ -11,6 +11,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from app.web.stage import DARK, LIGHT, lay
+from app.web.walls import Walls
 from sim.arm import Arm
 from sim.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.snapshot import Snapshot
@@ -68,6 +69,7 @@ class Scene:
         self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
         self._arrows = [self._arrow(i) for i in range(TOUCHES)]
         self._shown: list[tuple[float, ...]] = [()] * TOUCHES
+        self.walls = Walls(server)
 
     def show(self, snapshot: Snapshot) -> bool:
         """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
@@ -81,6 +83,7 @@ class Scene:
                 changed |= self._place(key, node, poses[int(row)])
             changed |= self._show_payload(snapshot)
             changed |= self._show_touches(snapshot)
+            changed |= self.walls.show(snapshot)
         if changed:
             self._server.flush()
         return changed

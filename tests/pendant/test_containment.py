@@ -12,7 +12,7 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import Law, Mode, Phase
-from pendant.pose import HERE, Pose, from_rpy
+from pendant.pose import HERE, Pose, from_rpy, turned
 from pendant.settings import Settings, Walls, apply
 from pendant.shapes import Box, HalfSpace, Sphere
 from pendant.supervisor import Supervisor
@@ -331,3 +331,32 @@ def test_the_way_back_is_told_in_axes_of_the_base(outward: tuple[float, float, f
     assert reading is not None
     assert facts(reading)["way"] == way
     assert facts(reading)["distance"] == pytest.approx(1000.0 * (0.3 * math.sqrt(x * x + y * y + z * z) - 0.2))
+
+
+def test_pictures_know_where_areas_will_hold_and_where_walls_do() -> None:
+    frames = {"world": HERE, "cart": Pose((0.4, 0.1, 0.2), from_rpy(0.0, 0.0, math.pi / 2))}
+    size = Dependence(measure=Measure.REACH, low=-1.0, high=1.0, at_low=0.5, at_high=2.0)
+    cart = Area(
+        name="cart", reference="cart", shape=Box(size=(0.2, 0.2, 0.2)), position=(0.1, 0.0, 0.0), keep_out=True, size=size
+    )
+    held = Area(name="held", reference="tcp", shape=Sphere(radius=0.5))
+    wall = Wall(name="round it", shape=Sphere(radius=0.2), policy=Policy.FIXED)
+    bench = Bench(cart, held, wall, frames=frames, walls__tether=False)
+    bench.step()
+    ((border, place),) = bench.supervisor.places  # what lies in a part of the arm, or round it, has no place of its own
+    assert border is cart
+    assert place.pose.p == pytest.approx((0.4, 0.2, 0.2))  # 0.1 along the cart's x, which is the base's y
+    assert turned(place.pose.R, (1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
+    assert place.factor == 0.5
+    bench.run(60)
+    bench.run(30, HOLD)  # in the activation period it does not hold yet
+    assert [border.name for border, _ in bench.supervisor.places] == ["cart"]
+    bench.entered()
+    assert [border.name for border, _ in bench.supervisor.places] == ["cart", "held", "round it"]
+    assert bench.supervisor.places[0][1].factor == pytest.approx(1.25)  # the flange is at the origin
+
+
+def test_areas_that_are_switched_off_have_no_place() -> None:
+    bench = Bench(FLOOR, walls__on=False)
+    bench.step()
+    assert bench.supervisor.places == ()

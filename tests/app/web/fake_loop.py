@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from app.library import load_arm
 from pendant.axis_locks import AxisLocks
-from pendant.decision import Decision, Remaining
+from pendant.barrier import Place
+from pendant.decision import Decision, Remaining, WallState
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.limits import Monitored
@@ -16,6 +17,7 @@ from pendant.nearness import Nearness
 from pendant.payload_wizard import IDLE
 from pendant.settings import Settings
 from pendant.tooling import Fitting
+from pendant.walls import AnyBorder
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
 from sim.scenario import Scenario
@@ -86,6 +88,8 @@ class FakeLoop:
         self.singularity: Nearness | None = None
         self.payload = 0.0
         self.q = HOME.copy()
+        self.walls: tuple[WallState, ...] = ()
+        self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
         self.log: list[Event] = []
         self.wishes: list[Any] = []
@@ -128,6 +132,7 @@ class FakeLoop:
             wizard=self.wizard,
             locks=self.locks,
             singularity=self.singularity,
+            walls=self.walls,
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))
@@ -142,6 +147,7 @@ class FakeLoop:
             self.configured,
             self.touches,
             scenario=self.scenario,
+            places=self.places,
         )
 
     def events(self, since: int) -> list[Event]:

@@ -6,7 +6,7 @@ import pytest
 
 from app.web.server import Served
 from app.web.svg import Colour
-from pendant.decision import Remaining
+from pendant.decision import Remaining, WallState
 from pendant.events import Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
@@ -116,6 +116,22 @@ def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: Fak
     assert "1.8 / 2 N" in shown
     assert "and 2 more" in shown
     assert not still.panel.leave.disabled
+
+
+def test_the_wall_that_the_arm_is_nearest_to_is_told(loop: FakeLoop, still: Served) -> None:
+    def wall(name: str, distance: float, near: float = 0.0) -> WallState:
+        return WallState(name, "elbow", (0.0, 0.0, 0.0), distance, (1.0, 0.0, 0.0), near, distance > 0.0, (0.0, 0.0, 0.0))
+
+    loop.walls = (wall("<b>", -0.123), wall("far", -0.5), wall("tether", -0.03))
+    still.panel.show(loop.latest(), [])
+    assert "<dt>&lt;b&gt;, elbow</dt><dd>123 mm left</dd>" in still.panel.numbers.shown
+    assert "tether" not in still.panel.numbers.shown
+    loop.walls = (wall("tether", -0.003, 0.5), wall("far", 0.012, 1.0))
+    still.panel.show(loop.latest(), [])
+    assert "<dt>far, elbow</dt><dd>12 mm beyond</dd>" in still.panel.numbers.shown
+    loop.walls = loop.walls[:1]
+    still.panel.show(loop.latest(), [])
+    assert "<dt>tether, elbow</dt><dd>3 mm left</dd>" in still.panel.numbers.shown
 
 
 def test_the_checksum_of_the_limits_is_shown(loop: FakeLoop, still: Served) -> None:
