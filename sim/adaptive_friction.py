@@ -97,9 +97,12 @@ class AdaptiveFriction:
         return self.terms[:, 0] * self.warmth
 
     def at(self, speed: Array, tau_J: Array) -> Array:
-        """Friction (n,) [N·m] of both sides at another speed and load, at the last temperature."""
-        total, deviation = np.empty_like(speed), np.empty_like(speed)
-        _evaluate(speed, tau_J, self.warmth, self.terms, self.covariance, total, deviation)
+        """Friction (n,) [N·m] of both sides, sliding at another speed and load, at the last temperature.
+
+        A speed of 0 counts as the slowest forwards.
+        """
+        total = np.empty_like(speed)
+        _slide(speed, tau_J, self.warmth, self.terms, total)
         return total
 
 
@@ -164,3 +167,11 @@ def _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation) -> None
                 variance += row[k] * covariance[i, k, m] * row[m]
         total[i] = value
         deviation[i] = np.sqrt(max(variance, 0.0)) + MISFIT * abs(value)
+
+
+@numba.njit(cache=True)
+def _slide(speed, tau_J, warmth, terms, total) -> None:
+    for i in range(speed.size):
+        size, w = abs(speed[i]), terms[i]
+        value = warmth[i] * (w[0] + w[1] * size / (size + KNEE) + w[2] * size) + w[3] * abs(tau_J[i])
+        total[i] = value if speed[i] >= 0.0 else -value

@@ -51,7 +51,13 @@ class Controller:
         self._fed_back = False  # the torque feedback was on in the last tick
 
     def update(
-        self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction, use: JointControl
+        self,
+        estimate: Estimate,
+        decision: Decision,
+        jacobian: Array,
+        friction: AdaptiveFriction,
+        stiffer: Array,
+        use: JointControl,
     ) -> Array:
         """Motor currents (n,) [A] for this tick.
 
@@ -60,6 +66,7 @@ class Controller:
             decision: this tick's decision.
             jacobian: of the flange (6, n), linear first, axes of B.
             friction: its estimate.
+            stiffer: error of the springs' believed stiffness (n,), as learned, relative to it.
             use: which terms are on.
         """
         blind = not (estimate.joints_valid or estimate.degraded)
@@ -76,7 +83,7 @@ class Controller:
                 self.free_drive.start(estimate)
             torque = self.free_drive.torque(estimate, decision, jacobian, friction, use.friction)
         else:
-            torque = self._track(estimate, decision, friction, use)
+            torque = self._track(estimate, decision, friction, stiffer, use)
         if blind:
             self._let_blind_joints_rest(estimate, torque)
         self._law = decision.law
@@ -94,11 +101,14 @@ class Controller:
         which = slice(None) if everywhere else blind
         torque[which] = static[which]
 
-    def _track(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, use: JointControl) -> Array:
+    def _track(
+        self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, stiffer: Array, use: JointControl
+    ) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
         helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
-        torque = self.feed_forward.torque(reference, friction if helped else None, use.feed_forward, references.push)
+        rubbing = friction if helped else None
+        torque = self.feed_forward.torque(reference, rubbing, use.feed_forward, stiffer, references.push, references.fresh)
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None
@@ -111,5 +121,5 @@ class Controller:
             self.torque_feedback.add(measured, desired, torque)
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
-        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start, sticking)
+        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start, sticking, stiffer)
         return torque

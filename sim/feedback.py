@@ -75,6 +75,7 @@ class Feedback:
         torque: Array,
         start: Array | None,
         sticking: Array,
+        stiffer: Array,
     ) -> None:
         """Add all corrections to `torque` (n,) [N·m].
 
@@ -88,6 +89,7 @@ class Feedback:
             start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
                 would do at once, so that taking over moves nothing by itself.
             sticking: (n,) [N·m] the friction that is fed forward as soon as a joint moves, and that it may have at rest.
+            stiffer: (n,) error of the springs' believed stiffness, as learned, relative to it.
         """
         if use is not self._use:
             self._use = use
@@ -104,8 +106,8 @@ class Feedback:
         theta, theta_d, q = estimate.theta, estimate.theta_d, estimate.q
         begin = torque if start is None else start
         _correct(
-            then.q, then.qd, load, reference.qd, sticking, theta, theta_d, q, self._gains, self._on, self._dead, limited,
-            start is not None, begin, self._memory, torque,
+            then.q, then.qd, load, reference.qd, sticking, stiffer, theta, theta_d, q, self._gains, self._on, self._dead,
+            limited, start is not None, begin, self._memory, torque,
         )  # fmt: skip
 
     def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
@@ -134,15 +136,16 @@ class Feedback:
 
 @numba.njit(cache=True)
 def _correct(
-    q_ref, qd_ref, load, qd_now, sticking, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, memory, torque
-) -> None:
+    q_ref, qd_ref, load, qd_now, sticking, stiffer, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, memory, torque
+) -> None:  # fmt: skip
     with_theta, with_speed, with_integral = on
     for i in range(torque.size):
         total = torque[i]
+        compliance = gains[2, i] / (1.0 + stiffer[i])
         if with_theta:
-            total += gains[0, i] * (q_ref[i] + gains[2, i] * load[i] - theta[i])
+            total += gains[0, i] * (q_ref[i] + compliance * load[i] - theta[i])
         if with_speed:
-            bending = gains[2, i] * (load[i] - memory[2, i]) / TICK
+            bending = compliance * (load[i] - memory[2, i]) / TICK
             total += gains[1, i] * (qd_ref[i] + bending - theta_d[i])
         memory[2, i] = load[i]
         if with_integral:

@@ -131,7 +131,8 @@ class Simulation:
         if self._decision is not None and self._decision.law is Law.FREE:
             estimate.singularity = self.controller.free_drive.singularity.value
         decision = self.supervisor.step(estimate, wishes.inputs)
-        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, self.estimator.friction, use)
+        friction, stiffer = self.estimator.friction, self.estimator.transmission.stiffer
+        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, friction, stiffer, use)
         self._braked = decision.law is Law.OFF
         self.plant.advance(self._current * self._motor, wishes.touches, self._braked)
         self._estimate, self._decision = estimate, decision

@@ -43,6 +43,8 @@ class TransmissionTorque:
         ways, deviations: each way (3, n), and its standard deviation.
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
+        stiffer: learned error of the springs' believed stiffness (n,), relative to it.
+        offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
         contact: some joint feels a contact.
     """
 
@@ -54,7 +56,8 @@ class TransmissionTorque:
         ripple = ENCODER_RIPPLE * stiffness
         self._constants = np.stack([MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia])
         self._swing = np.zeros(1)  # the largest acceleration lately [rad/s²]
-        self.correction = np.zeros((n, 2))  # stiffness error, offset [N·m]
+        self.correction = np.zeros((2, n))
+        self.stiffer, self.offset = self.correction
         self._covariance = np.zeros((n, 2, 2))
         self.forget()
         self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
@@ -111,7 +114,7 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
     for i in range(n):
         floor, ripple, least, inertia = constants[0, i], constants[1, i], constants[2, i], constants[3, i]
         P, x, dynamics = covariance[i], ways[1, i], ways[0, i]
-        ways[1, i] += x * correction[i, 0] + correction[i, 1]
+        ways[1, i] += x * correction[0, i] + correction[1, i]
         model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
         deviations[1, i] = np.sqrt(known + (RIPPLE_LEFT * ripple) ** 2 + (0.3 * floor) ** 2)
@@ -131,15 +134,15 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
         if not (use[0, i] and use[1, i]):
             continue
         P, ripple = covariance[i], constants[1, i]
-        x = (ways[1, i] - correction[i, 1]) / (1.0 + correction[i, 0])
+        x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
         P[0, 0] += walk[i, 0]
         P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
-        correction[i, 0] += g0 * external[i] / spread
-        correction[i, 1] += g1 * external[i] / spread
-        correction[i, 0] = min(max(correction[i, 0], -STIFFNESS), STIFFNESS)
-        correction[i, 1] = min(max(correction[i, 1], -ripple), ripple)
+        correction[0, i] += g0 * external[i] / spread
+        correction[1, i] += g1 * external[i] / spread
+        correction[0, i] = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
+        correction[1, i] = min(max(correction[1, i], -ripple), ripple)
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
