@@ -162,7 +162,9 @@ def facts(reading: Reading) -> Values:
     known = reading.distance < math.inf
     way = f"{_word(-x, 'x')}{_word(-y, 'y')}{_word(-z, 'z')}".strip() if known else "unknown"
     out = 1000.0 * reading.distance if known else 0.0
-    return {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way}
+    back = -max(reading.distance, 0.0) if known else 0.0
+    of = {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way}
+    return of | {"x": back * x, "y": back * y, "z": back * z}
 
 
 def caught(reading: Reading | None) -> bool:

@@ -1,5 +1,6 @@
 """What can happen: an event is a fact of one tick, with its numbers. pendant.table says what it does and how it reads."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 import msgspec
@@ -102,3 +103,13 @@ class Event(msgspec.Struct, frozen=True):
     kind: Kind
     tick: int
     values: Values = msgspec.field(default_factory=dict)
+
+
+def posture_text(q: Iterable[float]) -> str:
+    """Joint angles [rad] as a value of an event: to 1e-4, separated by spaces."""
+    return " ".join(f"{angle:.4f}" for angle in q)
+
+
+def posture_of(values: Values) -> tuple[float, ...]:
+    """The joint angles [rad] that an event carries as `posture`; none where it says nothing."""
+    return tuple(float(angle) for angle in str(values.get("posture", "")).split())

@@ -12,7 +12,7 @@ from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.decision import Remaining, WallState
 from pendant.enabling import Grip
 from pendant.estimate import Estimate
-from pendant.events import Event, Kind, Values
+from pendant.events import Event, Kind, Values, posture_text
 from pendant.hand import Hand
 from pendant.joint_zones import JointZones
 from pendant.limits import Monitored
@@ -229,7 +229,9 @@ class FreeDrive:
             if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
                 joints = way_back(self._posture, tuple(around.estimate.q.tolist()), self._joints)
                 if joints and settings.free_drive.way_back:
-                    events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints}))
+                    events.append(
+                        Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(self._posture)})
+                    )
             self._posture = None
         return events
 

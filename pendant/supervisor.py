@@ -13,7 +13,7 @@ from pendant.containment import Containment
 from pendant.decision import Decision
 from pendant.enabling import EnablingDevice, Grip
 from pendant.estimate import Estimate
-from pendant.events import Event, Kind, Values
+from pendant.events import Event, Kind, Values, posture_text
 from pendant.freedrive import ASKED_FOR, FreeDrive, Surroundings, moving
 from pendant.haptics import Haptics, Moment
 from pendant.inputs import Button, Command, Inputs
@@ -80,6 +80,7 @@ def told(contact: Contact, action: str) -> Values:
         "x": x,
         "y": y,
         "z": z,
+        "posture": posture_text(contact.pose.q),
         "action": action,
     }
 

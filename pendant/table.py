@@ -55,8 +55,8 @@ class Row(NamedTuple):
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
 
 
-WALL = ("wall", "part", "distance", "way")
-"""Values of an event of a wall: its name, the part, how far out [mm], the way back."""
+WALL = ("wall", "part", "distance", "way", "x", "y", "z")
+"""Values of an event of a wall: its name, the part, how far out [mm], the way back in words and as a vector in B [m]."""
 
 
 def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
@@ -81,7 +81,23 @@ def _denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
 
 def _touched(headline: str) -> Row:
     """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
-    keys = ("part", "source", "rule", "force", "fx", "fy", "fz", "acceleration", "ratio", "steps", "x", "y", "z", "action")
+    keys = (
+        "part",
+        "source",
+        "rule",
+        "force",
+        "fx",
+        "fy",
+        "fz",
+        "acceleration",
+        "ratio",
+        "steps",
+        "x",
+        "y",
+        "z",
+        "posture",
+        "action",
+    )
     return Row(
         Effect.INFO,
         Severity.NOTICE,
@@ -259,7 +275,7 @@ TABLE: dict[Kind, Row] = {
         "{mass:+.1f} kg, {force:.0f} N at once. Correct the payload, then reset.",
         ("mass", "force"),
     ),
-    Kind.WAY_BACK: _info("Back to the posture at activation", "{joints}.", ("joints",)),
+    Kind.WAY_BACK: _info("Back to the posture at activation", "{joints}.", ("joints", "posture")),
     Kind.LEFT_WALL: _left(
         "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
     ),

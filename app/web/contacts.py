@@ -8,10 +8,12 @@ import numpy as np
 import viser
 
 from app.web import svg
+from app.web.ghost import Ghost
 from app.web.html import Html
 from app.web.plots import MARKED
-from pendant.events import Event
+from pendant.events import Event, posture_of
 from pendant.modes import TICK, TICK_RATE
+from sim.arm import Arm
 from sim.frames import matrix_from_quaternion
 from sim.snapshot import Snapshot
 
@@ -22,7 +24,25 @@ SHOWN = 30
 """Contacts in the table."""
 
 NEWEST = "newest"
-COLUMNS = ("number", "t", "kind", "part", "source", "rule", "force", "fx", "fy", "fz", "delay_ms", "x", "y", "z", "action")
+RED = (201, 42, 42)
+COLUMNS = (
+    "number",
+    "t",
+    "kind",
+    "part",
+    "source",
+    "rule",
+    "force",
+    "fx",
+    "fy",
+    "fz",
+    "delay_ms",
+    "x",
+    "y",
+    "z",
+    "posture",
+    "action",
+)
 METRES_PER_NEWTON = 0.006
 LONGEST = 0.25
 """Length of the arrow [m]."""
@@ -31,7 +51,7 @@ LONGEST = 0.25
 class Contacts:
     """The tab with the contact log, and the mark of one contact in the picture."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: viser.ViserServer, arm: Arm) -> None:
         self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
         self._count = 0
         gui = server.gui
@@ -40,9 +60,10 @@ class Contacts:
         self.export = gui.add_button("Export CSV", color="gray", disabled=True)
         nothing = np.zeros((1, 2, 3), dtype=np.float32)
         self.arrow = server.scene.add_arrows(
-            "/contact/arrow", nothing, (201, 42, 42), shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
+            "/contact/arrow", nothing, RED, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
         )
         self.label = server.scene.add_label("/contact/label", "", visible=False, anchor="bottom-center")
+        self.ghost = Ghost(server, arm, "/ghost/contact", RED)
         self._marked: tuple[int, str] | None = None
 
         @self.export.on_click
@@ -63,7 +84,7 @@ class Contacts:
         return self._mark(snapshot) or bool(found)
 
     def file(self) -> bytes:
-        """The log as CSV: SI units, force and pose in B, the delay in milliseconds."""
+        """The log as CSV: SI units, force and pose in B, the delay in milliseconds, the joint angles at its beginning."""
         text = io.StringIO()
         writer = csv.writer(text)
         writer.writerow(COLUMNS)
@@ -92,6 +113,7 @@ class Contacts:
         self.arrow.points = np.array([[tail, point]], dtype=np.float32)
         self.label.position = tail
         self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
+        self.ghost.show(posture_of(values) if wanted != NEWEST else None, snapshot)  # of one that somebody has asked for
         return True
 
 

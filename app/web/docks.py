@@ -35,7 +35,7 @@ class Docks:
         self._read = 0
         gui = server.gui
         sheet = gui.add_html("")
-        self.panel = Panel(server, guard, loop, f"pendant · {arm.title}")
+        self.panel = Panel(server, guard, loop, arm)
         self._upper = gui.add_panel()
         with self._upper.add_tab("Teach"):
             self.teach = Teach(server, loop, arm)
@@ -51,7 +51,7 @@ class Docks:
         with self._lower.add_tab("Events"):
             self.journal = Journal(gui)
         with self._lower.add_tab("Contacts"):
-            self.contacts = Contacts(server)
+            self.contacts = Contacts(server, arm)
         with self._lower.add_tab("Plots"):
             self.plots = Plots(gui, loop, arm)
         with self._lower.add_tab("Record"):

@@ -1,4 +1,4 @@
-"""A ghost of the arm in a posture: where a waypoint is, and where a program goes next."""
+"""A ghost of the arm in a posture: a waypoint, the way back, where a contact was."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -12,14 +12,15 @@ from sim.frames import joint_frames, matrix_from_quaternion
 from sim.snapshot import Snapshot
 
 RADIUS = 0.035  # of its limbs [m]
-COLOUR = (25, 113, 194)
+Colour = tuple[int, int, int]
 
 
 class Ghost:
-    """Limbs from joint to joint, half transparent."""
+    """Limbs from joint to joint, half transparent. `name` is that of its node in the picture."""
 
-    def __init__(self, server: viser.ViserServer, arm: Arm) -> None:
+    def __init__(self, server: viser.ViserServer, arm: Arm, name: str, colour: Colour) -> None:
         self._server, self._arm = server, arm
+        self._name, self._colour = name, colour
         self._q: tuple[float, ...] | None = None
         self._node: viser.MeshHandle | None = None
 
@@ -43,7 +44,7 @@ class Ghost:
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
-                "/ghost", points, faces, color=COLOUR, opacity=0.3, cast_shadow=False, receive_shadow=False
+                self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False
             )
         return True
 

@@ -7,6 +7,7 @@ from app.web.guard import Guard
 from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.svg import Bar, Colour
+from app.web.way_back import WayBack
 from app.web.words import LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
 from pendant.containment import TETHER
 from pendant.decision import Decision
@@ -16,6 +17,7 @@ from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Mode, Phase
 from pendant.settings import Settings, limits_checksum
 from pendant.table import TABLE, Clears, Effect, Severity, render
+from sim.arm import Arm
 from sim.snapshot import Snapshot
 
 HOLD_RATE = 30.0
@@ -36,7 +38,7 @@ HINT = svg.note("Drag the arm", "It holds its place. Hold the button for free-dr
 class Panel:
     """The pendant docked on the right, with the emergency stop in a panel of its own below it."""
 
-    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, title: str) -> None:
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, arm: Arm) -> None:
         self._loop = loop
         self._holders: set[int] = set()
         self._note: Event | None = None
@@ -44,11 +46,12 @@ class Panel:
         self._settings: Settings | None = None
         self._digest = ""
         gui = server.gui
-        gui.set_panel_label(title)
+        gui.set_panel_label(f"pendant · {arm.title}")
         self.light = Html(gui)
         self.free_drive = gui.add_button("Hold for free-drive", color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
         self.rings = Html(gui)
         self.note = Html(gui, HINT)
+        self.back = WayBack(server, arm)
         self.numbers = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
@@ -77,6 +80,7 @@ class Panel:
             self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
             self.rings.show(svg.rings(self._ring(p.name, p.ticks, p.total, colour) for p in decision.periods)),
             self.note.show(self._message()),
+            self.back.show(snapshot, fresh),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.reset, decision.mode is Mode.STOP),

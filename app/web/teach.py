@@ -22,6 +22,7 @@ from sim.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.snapshot import Snapshot
 
 NONE = "none"
+BLUE = (25, 113, 194)
 APART = 0.08
 """A recorded path gets a waypoint whenever a joint has turned by this much since the last one [rad]."""
 
@@ -36,7 +37,7 @@ class Teach:
         gui = server.gui
         self._loop, self._arm = loop, arm
         self.lesson = Lesson()
-        self.ghost = Ghost(server, arm)
+        self.ghost = Ghost(server, arm, "/ghost/waypoint", BLUE)
         self._running: list[Step] = []  # the steps of the program handed over last
         self._next = 0  # the step that `Step` does
         self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pendant.events import Event, Kind
+from pendant.events import Event, Kind, posture_of
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
 from tests.pendant.estimates import estimate
@@ -90,3 +90,5 @@ def test_the_way_back_is_told_where_it_is_switched_on(told: bool) -> None:
     bench = Bench(free_drive__way_back=told).in_period()
     bench.run(1500, NOTHING, estimate(q=[0.1, 0.0, 0.0, 0.0, 0.0, 0.0]))
     assert [event.kind for event in bench.events] == [Kind.LEFT_PERIOD, Kind.WAY_BACK][: 1 + told]
+    if told:
+        assert posture_of(bench.events[-1].values) == (0.0,) * 6  # as it was at activation

@@ -50,6 +50,7 @@ EXAMPLE: Values = {
     "to": "TEACH",
     "unit": "rad/s",
     "value": 12.345,
+    "posture": "0.0000 -1.2000 1.5000 -1.8700 -1.5700 0.0000",
     "wall": "step down",
     "feedback": 0.5,
     "window": 10.0,
@@ -138,7 +139,7 @@ def test_severities_are_ordered() -> None:
     assert sorted(Severity) == list(Severity)
 
 
-LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "x", "y", "z"}
+LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "x", "y", "z", "posture"}
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 

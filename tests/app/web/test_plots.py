@@ -28,6 +28,7 @@ TOUCH = {
     "x": 0.5,
     "y": 0.1,
     "z": 0.2,
+    "posture": "0.0000 -1.2000 1.5000 -1.8700 -1.5700 0.1000",
     "action": "stop",
 }
 
@@ -81,6 +82,10 @@ def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) 
     contacts.choice.value = "1"
     still.docks.show(loop.latest())
     assert contacts.label.text == "1: gained, 12 N"
+    assert contacts.ghost.posture == (0.0, -1.2, 1.5, -1.87, -1.57, 0.1)
+    contacts.choice.value = "newest"
+    still.docks.show(loop.latest())
+    assert contacts.ghost.posture is None
     rows = list(csv.DictReader(io.StringIO(contacts.file().decode())))
     assert [(row["t"], row["kind"], row["delay_ms"]) for row in rows] == [
         ("2.0", "contact_gained", "8"),
