@@ -1,16 +1,18 @@
 """All contact detectors side by side, one for each part and source, and the poses that they look back into (CD-2, CD-14)."""
 
+from collections import deque
 from typing import NamedTuple
 
 import msgspec
+import numpy as np
 
 from pendant.contact import ArmPose, Contact
 from pendant.contact_limits import ContactLimits, limits
 from pendant.detector import Detector, Finding
-from pendant.estimate import Estimate
-from pendant.history import MASK, SIZE
+from pendant.estimate import Array, Estimate
+from pendant.history import MASK, SIZE, SUMMED
 from pendant.modes import Mode
-from pendant.pose import UNTURNED, flat, turned
+from pendant.pose import flat, turned
 from pendant.settings import ContactUse
 from pendant.signal import Signal
 
@@ -42,8 +44,38 @@ def for_links(use: ContactUse) -> ContactUse:
     return msgspec.structs.replace(use, **off)
 
 
+class Poses:
+    """Where the arm was in the last `SIZE` ticks."""
+
+    __slots__ = ("_R", "_at", "_p", "_q")
+
+    def __init__(self) -> None:
+        self._at = 0  # where the newest stands
+        self._q: Array | None = None  # (SIZE, n), once a tick has said how many joints there are
+        self._p, self._R = np.zeros((SIZE, 6)), np.zeros((SIZE, 9))
+
+    def push(self, estimate: Estimate) -> None:
+        """Take one tick."""
+        if self._q is None:
+            self._q = np.zeros((SIZE, estimate.q.size))
+        self._at = at = (self._at + 1) & MASK
+        self._q[at] = estimate.q
+        self._p[at] = estimate.tcp
+        self._R[at] = estimate.R_BF.reshape(9)
+
+    def at(self, age: int) -> ArmPose:
+        """The pose of `age` ticks ago, 0 <= age < SIZE; something was pushed that long ago."""
+        assert self._q is not None
+        at = (self._at - age) & MASK
+        x, y, z = self._p[at, :3].tolist()
+        return ArmPose(tuple(self._q[at].tolist()), (x, y, z), flat(self._R[at]))
+
+
 class ContactMonitor:
-    """Feeds the detectors in every tick and turns what they find into contacts in B."""
+    """Feeds the detectors in every tick and turns what they find into contacts in B.
+
+    While nothing is to be detected, signals are merely kept; the detectors get them when they are asked again.
+    """
 
     def __init__(self) -> None:
         self.detectors = tuple(Detector() for _ in SOURCES)
@@ -52,14 +84,21 @@ class ContactMonitor:
         self._use: ContactUse | None = None
         self._on_links = ContactUse()
         self._used = (False,) * len(SOURCES)
-        self.now = ArmPose((), (0.0, 0.0, 0.0), UNTURNED)  # where the arm is
-        self._poses: list[ArmPose | None] = [None] * SIZE
+        self._poses = Poses()
+        self._kept: deque[tuple[Signal | None, ...]] = deque(maxlen=SUMMED)  # that the detectors have not got yet
+
+    def now(self) -> ArmPose:
+        """Where the arm is."""
+        return self._poses.at(0)
 
     def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
         """One tick: buffers always, rules while `on` (CD-1, CD-4)."""
-        tick = estimate.tick
-        x, y, z = estimate.tcp.tolist()[:3]
-        self.now = now = self._poses[tick & MASK] = ArmPose(tuple(estimate.q.tolist()), (x, y, z), flat(estimate.R_BF))
+        self._poses.push(estimate)
+        if not on:
+            self._kept.append(estimate.signals)
+            return ()
+        if self._kept:
+            self._catch_up()
         if use is not self._use:
             self._use, self._on_links = use, for_links(use)
             self._used = (use.tool, use.flange, use.links, use.links)
@@ -69,14 +108,25 @@ class ContactMonitor:
             if signal is None and detector.history.count == 0:
                 continue
             detector.sense(signal)
-            if not (on and self._used[index]):
+            if not self._used[index]:
                 detector.forget()
             elif signal is not None:
                 rules = self._on_links if SOURCES[index].in_base else use
                 finding = detector.step(rules, self._limit(index, signal, estimate.v_tcp, use, mode))
                 if finding is not None:
-                    contacts += (self._contact(finding, SOURCES[index], tick, now, use.look_back),)
+                    contacts += (self._contact(finding, SOURCES[index], estimate.tick, use.look_back),)
         return contacts
+
+    def _catch_up(self) -> None:
+        """Give the detectors what they missed; if that is more than is kept, what was before it counts no more."""
+        for index, detector in enumerate(self.detectors):
+            detector.forget()
+            if len(self._kept) == SUMMED:
+                detector.sense(None)
+        for signals in self._kept:
+            for detector, signal in zip(self.detectors, signals, strict=False):
+                detector.sense(signal)
+        self._kept.clear()
 
     def _limit(self, index: int, signal: Signal, speed: float, use: ContactUse, mode: Mode) -> ContactLimits:
         key = (use, mode, signal.mass, signal.effective_mass, speed if use.speed_share else 0.0)
@@ -87,9 +137,9 @@ class ContactMonitor:
             self._keys[index], self._limits[index] = key, limit
         return limit
 
-    def _contact(self, finding: Finding, source: Source, tick: int, now: ArmPose, look_back: bool) -> Contact:
+    def _contact(self, finding: Finding, source: Source, tick: int, look_back: bool) -> Contact:
         steps = finding.steps if look_back else 0
-        pose = self._poses[(tick - steps) & MASK] or now
+        now, pose = self.now(), self._poses.at(steps)
         force, acceleration = finding.force, finding.acceleration
         if not source.in_base:
             force, acceleration = turned(now.R_BF, force), turned(now.R_BF, acceleration)

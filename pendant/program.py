@@ -237,19 +237,21 @@ class Sequencer:
             self.move = LinearMove(id=self._begun, position=there.position, quaternion=there.quaternion, speed=REACTION_SPEED)
         return False
 
-    def step(self, move_done: int, now: ArmPose | None = None, felt: Callable[[], Vector] = lambda: UNFELT) -> bool:
+    def step(
+        self, move_done: int, where: Callable[[], ArmPose | None] = lambda: None, felt: Callable[[], Vector] = lambda: UNFELT
+    ) -> bool:
         """One tick of a RUNNING program.
 
         Args:
             move_done: id of the last move that the FOLLOW law finished.
-            now: where the arm is.
+            where: tells where the arm is.
             felt: tells the mean force of F_user [N].
 
         Returns:
             True when this tick ended the program.
         """
         if self._from is None:
-            self._from = now
+            self._from = where()
             if isinstance(self.move, JointMove | LinearMove):
                 self._untouched = felt()
         if isinstance(self.move, WaitForContact | HandGuide):

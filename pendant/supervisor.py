@@ -331,7 +331,7 @@ class Supervisor:
         if not motion_ok(estimate):
             self._happen(Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED}), events)
         elif braked:
-            if self._static and sequencer.rest(self._monitor.now):
+            if self._static and sequencer.rest(self._monitor.now()):
                 self._finish(estimate.tick, events)
         elif self._grip not in (None, Grip.MIDDLE):
             events.append(Event(Kind.RUN_ENABLING, estimate.tick, {"grip": self._grip or ""}))

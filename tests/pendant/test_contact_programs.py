@@ -32,11 +32,14 @@ class Told(ContactMonitor):
         super().__init__()
         self.coming: Iterator[Contact] = iter(())
         self.was_on = False
-        self.now = BEGUN
+        self.at = BEGUN
 
     def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
         self.was_on = on
         return tuple(self.coming)
+
+    def now(self) -> ArmPose:
+        return self.at
 
 
 def running(*steps: AnyStep) -> tuple[Bench, Told]:
@@ -125,7 +128,7 @@ def test_the_reaction_is_a_move_of_its_own(then: str) -> None:
     bench, told = running(until(then), NEXT)
     told.coming = iter((GAINED,))
     bench.step(value=estimate(qd=0.3))
-    told.now = POSE
+    told.at = POSE
     bench.run(50)
     move = bench.last.move
     assert bench.last.step == 1
