@@ -2,11 +2,13 @@
 
 import math
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.dynamics import Dynamics
-from sim.frames import matrix_from_quaternion, quaternion_from_matrix
+from sim.frames import quaternion_from_matrix
+from sim.newton_euler import cross
 
 Array = NDArray[np.float64]
 
@@ -49,13 +51,7 @@ class Line:
 
     def solve(self, q: Array, s: float, rate: float) -> Array:
         """Joint speeds (n,) at q, for the share `s` of the line and its rate [1/s]."""
-        point, R, jacobian = self._jacobian(q)
-        twist = np.empty(6)
-        twist[:3] = rate * self.way + LINE_GAIN * (self.start + s * self.way - point)
-        error = rotation_vector(R.T @ self.R @ _rotation(s * self.turn))
-        twist[3:] = self.R @ (rate * self.turn) + LINE_GAIN * (R @ error)
-        # Damping only bites near a singularity, where the plan has been refused already.
-        return np.asarray(np.linalg.solve(jacobian.T @ jacobian + 1e-8 * np.eye(q.size), jacobian.T @ twist), dtype=np.float64)
+        return _solve(*self._dynamics.update(q), self._tcp, self.start, self.R, self.way, self.turn, s, rate)
 
 
 def rotation_vector(R: Array) -> Array:
@@ -65,8 +61,39 @@ def rotation_vector(R: Array) -> Array:
     return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
 
 
-def _rotation(vector: Array) -> Array:
-    """Rotation matrix (3, 3) of axis times angle (3,) [rad]."""
-    angle = float(np.linalg.norm(vector))
-    half = 0.5 * angle
-    return matrix_from_quaternion([math.cos(half), *(vector * (math.sin(half) / angle if angle > 1e-12 else 0.5))])
+@numba.njit(cache=True)
+def _solve(p, R, jacobian, tcp, start, R_start, way, turn, s, rate):
+    lever = R @ tcp
+    at_tcp = np.ascontiguousarray(jacobian).copy()
+    for i in range(jacobian.shape[1]):
+        dx, dy, dz = cross(jacobian[3:, i], lever)
+        at_tcp[0, i] += dx
+        at_tcp[1, i] += dy
+        at_tcp[2, i] += dz
+    twist = np.empty(6)
+    twist[:3] = rate * way + LINE_GAIN * (start + s * way - p - lever)
+    left = R.T @ R_start @ _rotation(s * turn)
+    twist[3:] = R_start @ (rate * turn) + LINE_GAIN * (R @ _turn_of(left))
+    # Damping only bites near a singularity, where the plan has been refused already.
+    return np.linalg.solve(at_tcp.T @ at_tcp + 1e-8 * np.eye(at_tcp.shape[1]), at_tcp.T @ twist)
+
+
+@numba.njit(cache=True)
+def _rotation(vector):
+    """Rotation matrix (3, 3) of axis times angle (3,) [rad], by Rodrigues' formula."""
+    angle = np.sqrt(vector @ vector)
+    axis = vector / angle if angle > 1e-12 else vector
+    x, y, z = axis
+    K = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+    if angle <= 1e-12:
+        return np.eye(3) + K
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
+
+
+@numba.njit(cache=True)
+def _turn_of(R):
+    """Axis times angle (3,) [rad] of a rotation by less than half a turn."""
+    v = 0.5 * np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
+    sine = np.sqrt(v @ v)
+    cosine = 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
+    return v * (np.arctan2(sine, cosine) / sine if sine > 1e-12 else 1.0)
