@@ -81,6 +81,8 @@ class Estimator:
         self._started = False
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
+        self._F_user, self._F_joints = np.zeros(6), np.zeros(3)
+        self._known: Estimate | None = None
         self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
         self.tick = 0
@@ -126,54 +128,67 @@ class Estimator:
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         p, R, v_F, self.jacobian = rigid.p, rigid.R, rigid.v_F, rigid.jacobian
         self._estimate_torques(sample, use, rigid.torque)
-        F_user, F_joints = np.zeros(6), np.empty(3)
-        _felt_by_joints(self.jacobian, self.transmission.external, F_joints)
+        _felt_by_joints(self.jacobian, self.transmission.external, self._F_joints)
         if sample.acceleration_valid:
             _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
-        if sample.wrench_valid:
+        if not sample.wrench_valid:
+            self._F_user[:] = 0.0
+        else:
             if sample.acceleration_valid:
                 force = sample.acceleration_tool
             else:
                 # The model stands in; its values stay for the differentiation to go on from.
                 force, self._turn[:] = dynamics.specific_force(self.q, qd, q[2])
                 self._gyro[:] = R.T @ v_F[3:]
-            _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, R, F_user)
+            _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, R, self._F_user)
+        known = self._known
+        if known is None:
+            self._known = known = self._all(sample)
+        known.tick = self.tick
+        known.joints_valid, known.wrench_valid = sample.joints_valid, sample.wrench_valid
+        known.acceleration_valid = sample.acceleration_valid
+        known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
+        known.v_tcp, known.v_elbow = v_tcp, v_elbow
+        known.move_done, known.move_refused = move_done, move_refused
+        known.degraded = not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all())
+        known.lost, known.touched = self._lost, self.transmission.contact
+        known.load_mass, known.singularity = self._load[0], math.inf
+        return known
+
+    def _all(self, sample: Sample) -> Estimate:
+        """The estimate that every tick renews: most of it are arrays that are written in place."""
+        rigid, transmission, friction, theta, q = self._dynamics.recursion, self.transmission, self.friction, self._theta, self._q
         return Estimate(
-            self.tick,
-            sample.joints_valid,
-            sample.wrench_valid,
-            sample.acceleration_valid,
-            self.q,
-            qd,
-            q[2],
-            theta[0],
-            theta[1],
-            self.tau_m,
-            self.transmission.fused,
-            self.transmission.external,
-            sample.wrench,
-            F_user,
-            sample.acceleration_flange,
-            p,
-            R,
-            v_F,
-            v_tcp,
-            v_elbow,
-            move_done,
-            move_refused,
-            dynamics.gravity_B,
-            theta[2],
-            self.friction.total,
-            self.friction.deviation,
-            self.transmission.ways,
-            self.transmission.deviations[DEFLECTION],
-            not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all()),
-            self._lost,
-            self.transmission.contact,
+            tick=self.tick,
+            joints_valid=False,
+            wrench_valid=False,
+            acceleration_valid=False,
+            q=self.q,
+            qd=q[1],
+            qdd=q[2],
+            theta=theta[0],
+            theta_d=theta[1],
+            tau_m=self.tau_m,
+            tau_J=transmission.fused,
+            tau_ext=transmission.external,
+            w_sensor=sample.wrench,
+            F_user=self._F_user,
+            a_F=sample.acceleration_flange,
+            p_BF=rigid.p,
+            R_BF=rigid.R,
+            v_F=rigid.v_F,
+            v_tcp=0.0,
+            v_elbow=0.0,
+            move_done=0,
+            g_B=self._dynamics.gravity_B,
+            theta_dd=theta[2],
+            friction=friction.total,
+            friction_deviation=friction.deviation,
+            tau_ways=transmission.ways,
+            tau_ext_deviation=transmission.deviations[DEFLECTION],
             tcp=rigid.tcp,
             elbow=rigid.elbow,
-            F_joints=F_joints,
-            load_mass=self._load[0],
+            F_joints=self._F_joints,
         )
 
     def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array) -> None:
