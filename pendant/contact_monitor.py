@@ -119,7 +119,7 @@ class ContactMonitor:
 
     def _catch_up(self) -> None:
         """Give the detectors what they missed; if that is more than is kept, what was before it counts no more."""
-        for index, detector in enumerate(self.detectors):
+        for detector in self.detectors:
             detector.forget()
             if len(self._kept) == SUMMED:
                 detector.sense(None)

@@ -535,25 +535,18 @@ class Supervisor:
         self._holding = law is Law.HOLD and not (free.caught or tooling.changing or haptics.busy)
         grip, speeds = self._grip, self._reduced.limits(self.settings.reduced)
         locks = self._locks if self._mode is Mode.FREE_DRIVE else None
-        robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
-        guided = (free.damping, free.zones, locks, free.singularity, haptics.shake)
-        key = (
-            *robot,
-            *guided,
-            sequencer.move,
-            sequencer.state,
-            sequencer.index,
-            sequencer.tool_on,
-            tooling.fitting,
-            tooling.wizard.progress,
-        )
         periods = free.periods() if not free.idle and self.settings.free_drive.remainders else ()
         trying = free.phase is Phase.SEQUENCE
         gain = self.settings.free_drive.gain if free.helping and not (trying and not self.settings.sequence.amplified) else 0.0
         walls = () if free.phase is Phase.OFF else free.walls()
-        changing = events or periods or walls
-        if self._decision is not None and not changing and key == self._key:
-            return self._decision
+        key: tuple[object, ...] = ()
+        if not (events or periods or walls):
+            robot = (self._mode, self._safety, free.phase, law, free.helping, grip, speeds)
+            guided = (free.damping, free.zones, locks, free.singularity, haptics.shake)
+            program = (sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
+            key = (*robot, *guided, *program, tooling.fitting, tooling.wizard.progress)
+            if self._decision is not None and key == self._key:
+                return self._decision
         active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
         decision = Decision(
             mode=self._mode,
@@ -584,5 +577,5 @@ class Supervisor:
             limits=self._checksum,
         )
         self._key = key
-        self._decision = None if changing else decision
+        self._decision = decision if key else None
         return decision

@@ -61,7 +61,7 @@ class Estimator:
         torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
         stiffening = np.array(spring.stiffening) * calibration.stiffness
         slip = (slip_stiffness, np.array(spring.hysteresis_yield))
-        self._constants = (torque_constant, stiffness, stiffening, np.array(spring.damping), *slip)
+        self._constants = np.stack([torque_constant, stiffness, stiffening, np.array(spring.damping), *slip])
         self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
         self.friction = AdaptiveFriction(arm)
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
@@ -69,7 +69,7 @@ class Estimator:
         self._ways = np.ones((len(WAYS), n), dtype=bool)
         self._surplus, self._stiction, self._deflection = np.zeros((3, n))
         self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
-        self._gains = (tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH))
+        self._gains = np.array([tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)])
         self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
         self.tau_m = np.zeros(n)
         self._compliance = 1.0 / (stiffness + slip_stiffness)
@@ -120,13 +120,13 @@ class Estimator:
             if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
                 _plan(*self._wanted, *answered, theta, q)
             self._wanted = answered
-            _follow(angles, self._gains, self._constants, (theta, q, self._rest), self.tau_m, self._deflection)
+            _follow(*angles, self._gains, self._constants, theta, q, self._rest, self.tau_m, self._deflection)
             self.q = angles[1].copy()  # a law may hold on to it
         self._started = angles is not None
         qd = q[1]
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        p, R, v_F, self.jacobian = rigid.p, rigid.R, rigid.v_F, rigid.jacobian
+        R, v_F, self.jacobian = rigid.R, rigid.v_F, rigid.jacobian
         self._estimate_torques(sample, use, rigid.torque)
         _felt_by_joints(self.jacobian, self.transmission.external, self._F_joints)
         if sample.acceleration_valid:
@@ -282,7 +282,7 @@ def _plan(q_ref, qd_ref, qdd_ref, q_next, qd_next, qdd_next, theta, q) -> None:
 
 @numba.njit(cache=True)
 def _track(measured, gains, state, i) -> None:
-    alpha, beta, gamma = gains
+    alpha, beta, gamma = gains[0], gains[1], gains[2]
     coasting = state[1, i] + TICK * state[2, i]
     predicted = state[0, i] + TICK * state[1, i] + 0.5 * TICK * TICK * state[2, i]
     error = measured - predicted
@@ -292,22 +292,20 @@ def _track(measured, gains, state, i) -> None:
 
 
 @numba.njit(cache=True)
-def _follow(measured, gains, constants, state, tau_m, tau_J) -> None:
+def _follow(theta_measured, q_measured, current, gains, constants, theta, q, rest, tau_m, tau_J) -> None:
     """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3).
 
     The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
     """
-    theta_measured, q_measured, current = measured
-    torque_constant, stiffness, stiffening, damping, slip_stiffness, slip_yield = constants
-    theta, q, rest = state
     for i in range(tau_m.size):
+        torque_constant, stiffness, stiffening, damping, slip_stiffness, slip_yield = constants[:, i]
         _track(theta_measured[i], gains[0], theta, i)
         _track(q_measured[i], gains[1], q, i)
-        tau_m[i] = torque_constant[i] * current[i]
+        tau_m[i] = torque_constant * current[i]
         x = theta_measured[i] - q_measured[i]
-        rest[i] = min(max(rest[i], x - slip_yield[i]), x + slip_yield[i])
-        slip = slip_stiffness[i] * (x - rest[i])
-        tau_J[i] = x * (stiffness[i] + stiffening[i] * x * x) + damping[i] * (theta[1, i] - q[1, i]) + slip
+        rest[i] = min(max(rest[i], x - slip_yield), x + slip_yield)
+        slip = slip_stiffness * (x - rest[i])
+        tau_J[i] = x * (stiffness + stiffening * x * x) + damping * (theta[1, i] - q[1, i]) + slip
 
 
 @numba.njit(cache=True)

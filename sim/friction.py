@@ -47,15 +47,12 @@ class Friction:
             temperature: of the joints (n,) [°C].
             out: (n,).
         """
-        roots = (self._root_low, self._root_high)
-        warmth = (self._reference, self.per_kelvin)
-        _input_side(speed, tau_J, temperature, self._coefficients, roots, self.breakaway, warmth, self.load, self.factor, out)
+        numbers = (self._root_low, self._root_high, self._reference, self.per_kelvin)
+        _input_side(speed, tau_J, temperature, self._coefficients, self.breakaway, self.load, self.factor, out, *numbers)
 
 
 @numba.njit(cache=True)
-def _input_side(speed, tau_J, temperature, coefficients, roots, breakaway, warmth, load, factor, out) -> None:
-    low, high = roots
-    reference, per_kelvin = warmth
+def _input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, out, low, high, reference, per_kelvin) -> None:
     for i in range(out.size):
         root = np.sqrt(abs(speed[i]))
         inside = min(max(root, low), high)

@@ -52,12 +52,12 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                hold = (_floats(touch.point), _floats(touch.target), float(touch.cap))
-                point, force = _pull(self._poses, self._motion, self._roots[body], body, *hold, self._applied)
+                spring = (*touch.point, *touch.target, touch.cap)
+                point, force = _pull(*self._poses, *self._motion, self._roots[body], body, self._applied, *map(float, spring))
                 torque = ZERO
             else:
                 force, torque = _floats(touch.force), _floats(touch.torque)
-                point = _push(self._poses, body, _floats(touch.point), force, torque, self._applied)
+                point = _push(*self._poses, body, self._applied, *map(float, (*touch.point, *force, *torque)))
             self._pushed.add(body)
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
@@ -84,35 +84,32 @@ def _velocity(cvel, tree_com, root, body, point):
 
 
 @numba.njit(cache=True)
-def _push(poses, body, local, force, torque, applied):
-    """Add a wrench at a point of a body; returns the point in W."""
-    positions, orientations, centres = poses
+def _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, tx, ty, tz):
+    """Add a wrench at a point (x, y, z) of a body; returns the point in W."""
     p, R, c, w = positions[body], orientations[body], centres[body], applied[body]
-    x, y, z = local
     px = p[0] + R[0] * x + R[1] * y + R[2] * z
     py = p[1] + R[3] * x + R[4] * y + R[5] * z
     pz = p[2] + R[6] * x + R[7] * y + R[8] * z
     x, y, z = px - c[0], py - c[1], pz - c[2]
-    w[0] += force[0]
-    w[1] += force[1]
-    w[2] += force[2]
-    w[3] += torque[0] + y * force[2] - z * force[1]
-    w[4] += torque[1] + z * force[0] - x * force[2]
-    w[5] += torque[2] + x * force[1] - y * force[0]
+    w[0] += fx
+    w[1] += fy
+    w[2] += fz
+    w[3] += tx + y * fz - z * fy
+    w[4] += ty + z * fx - x * fz
+    w[5] += tz + x * fy - y * fx
     return px, py, pz
 
 
 @numba.njit(cache=True)
-def _pull(poses, motion, root, body, local, target, cap, applied):
+def _pull(positions, orientations, centres, cvel, tree_com, root, body, applied, x, y, z, to_x, to_y, to_z, cap):
     """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
-    nothing = (0.0, 0.0, 0.0)
-    point = _push(poses, body, local, nothing, nothing, applied)
-    vx, vy, vz = _velocity(motion[0], motion[1], root, body, point)
-    fx = STIFFNESS * (target[0] - point[0]) - DAMPING * vx
-    fy = STIFFNESS * (target[1] - point[1]) - DAMPING * vy
-    fz = STIFFNESS * (target[2] - point[2]) - DAMPING * vz
+    point = _push(positions, orientations, centres, body, applied, x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    vx, vy, vz = _velocity(cvel, tree_com, root, body, point)
+    fx = STIFFNESS * (to_x - point[0]) - DAMPING * vx
+    fy = STIFFNESS * (to_y - point[1]) - DAMPING * vy
+    fz = STIFFNESS * (to_z - point[2]) - DAMPING * vz
     size = np.sqrt(fx * fx + fy * fy + fz * fz)
     share = cap / size if size > cap else 1.0
-    force = (fx * share, fy * share, fz * share)
-    _push(poses, body, local, force, nothing, applied)
-    return point, force
+    fx, fy, fz = fx * share, fy * share, fz * share
+    _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, 0.0, 0.0, 0.0)
+    return point, (fx, fy, fz)

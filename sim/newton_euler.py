@@ -66,7 +66,7 @@ class NewtonEuler:
             tcp: tool centre point in F (3,) [m].
         """
         outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins, self.tcp, self.elbow)
-        return _run(q, motion, self._constants, self._gravity, self._elbow_at, tcp, outcome)
+        return _run(q, motion, self._constants, self._gravity, self._elbow_at, tcp, *outcome)
 
 
 @numba.njit(cache=True)
@@ -111,8 +111,7 @@ def _place(row, behind_p, behind_R, p, R) -> None:
 
 
 @numba.njit(cache=True)
-def _run(q, motion, constants, gravity, elbow, tcp, outcome):
-    torque, p_F, R_F, jacobian, v_F, origins, tip, bend = outcome
+def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, v_F, origins, tip, bend):
     n = q.size
     p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
     behind_p, behind_R = np.zeros(3), np.eye(3)

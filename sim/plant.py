@@ -53,8 +53,7 @@ class Plant:
         self._dof_q = np.array([model.joint(f"q/{name}").dofadr[0] for name in joints])
         self._dof_theta = np.array([model.joint(f"theta/{name}").dofadr[0] for name in joints])
         values = arm.transmissions
-        self._stiffness, self._cubic = np.array(values.stiffness), np.array(values.stiffening)
-        self._damping, self._slip_stiffness = np.array(values.damping), np.array(values.hysteresis_stiffness)
+        springs = np.array([values.stiffness, values.stiffening, values.damping, values.hysteresis_stiffness])
         self._brakes, self._braked = np.array(arm.limits.torque), False
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
@@ -69,16 +68,15 @@ class Plant:
         self.temperature = np.full(arm.n, arm.frictions.temperature)
         self.ambient = arm.thermals.ambient
         self._heat = np.zeros(arm.n)
-        self.q, self.theta, self.qd, self.theta_d = np.zeros((4, arm.n))
-        self.tau_J, self.friction_in = np.zeros((2, arm.n))
-        self._springs_of = (self._stiffness, self._cubic, self._damping, self._slip_stiffness)
+        own = np.zeros((5, arm.n))
+        self.q, self.theta, self.qd, self.theta_d, self.tau_J = own
+        self.friction_in = np.zeros(arm.n)
         at = (self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state)
         self._addresses = np.stack(at)
         self._bias = model.actuator_biasprm
         # MuJoCo's own arrays: asking for one costs as much as a kernel.
         state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
-        own = (self.q, self.theta, self.qd, self.theta_d, self.tau_J)
-        self._gathered = (*state, self._addresses, *self._springs_of, *own)
+        self._gathered = (*state, self._addresses, springs, own)
         self._applied, self._measured = data.qfrc_applied, data.history
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
@@ -159,7 +157,7 @@ class Plant:
             self.friction_in += self._brakes
         _drive(self._bias, self._rubs, self.friction_in, self._applied, self._dof_theta, motor_torque)
         mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
-        _finish(self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
+        _finish(*self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
         self.tick += 1
         if self.tick % WARMTH_TICKS == 0:
             self._warm()
@@ -277,21 +275,22 @@ class Plant:
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""
-        _gather(self._gathered)
+        _gather(*self._gathered)
 
 
 # Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
 
 
 @numba.njit(cache=True)
-def _gather(gathered) -> None:
-    qpos, qvel, length, rate, plastic, at, stiffness, cubic, damping, slip_stiffness, q, theta, qd, theta_d, tau_J = gathered
+def _gather(qpos, qvel, length, rate, plastic, at, springs, own) -> None:
+    q, theta, qd, theta_d, tau_J = own
     for i in range(q.size):
+        stiffness, cubic, damping, slip_stiffness = springs[:, i]
         q[i], theta[i] = qpos[at[0, i]], qpos[at[1, i]]
         qd[i], theta_d[i] = qvel[at[2, i]], qvel[at[3, i]]
         x = length[at[4, i]]
-        slip = slip_stiffness[i] * (length[at[5, i]] - plastic[at[6, i]])
-        tau_J[i] = x * (stiffness[i] + cubic[i] * x * x) + damping[i] * rate[at[4, i]] + slip
+        slip = slip_stiffness * (length[at[5, i]] - plastic[at[6, i]])
+        tau_J[i] = x * (stiffness + cubic * x * x) + damping * rate[at[4, i]] + slip
 
 
 @numba.njit(cache=True)
@@ -319,14 +318,13 @@ def _drive(bias, rows, friction, applied, at, torque) -> None:
 
 
 @numba.njit(cache=True)
-def _finish(gathered, history, at, flange, heat, friction) -> None:
+def _finish(qpos, qvel, length, rate, plastic, at, springs, own, history, kept, flange, heat, friction) -> None:
     """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
-    _gather(gathered)
+    _gather(qpos, qvel, length, rate, plastic, at, springs, own)
     for j in range(flange.size):
         total = 0.0
-        for k in range(at.shape[0]):
-            total += history[at[k, j]]
-        flange[j] = total / at.shape[0]
-    speed = gathered[13]
+        for k in range(kept.shape[0]):
+            total += history[kept[k, j]]
+        flange[j] = total / kept.shape[0]
     for i in range(heat.size):
-        heat[i] += abs(friction[i] * speed[i])
+        heat[i] += abs(friction[i] * own[3, i])

@@ -131,7 +131,7 @@ class Sensors:
         truth = (plant.theta, plant.q, current, plant.flange)
         distortion = (self._calibration.wrench_gain, self._ripple, self._ripple_phase)
         channel = (self._bias, self._drifts, self._noise[row], self._gain, self._quantum, self._range)
-        _measure(truth, distortion, channel, plant.step.tick, value)
+        _measure(*truth, *distortion, *channel, plant.step.tick, value)
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
@@ -182,10 +182,9 @@ def _sample(values: Array, n: int) -> Sample:
 
 
 @numba.njit(cache=True)
-def _measure(truth, distortion, channel, tick, out) -> None:
-    theta, q, current, flange = truth
-    wrench_gain, ripple, phase = distortion
-    bias, drift, noise, noise_gain, quantum, span = channel
+def _measure(
+    theta, q, current, flange, wrench_gain, ripple, phase, bias, drift, noise, noise_gain, quantum, span, tick, out
+) -> None:
     n = theta.size
     for i in range(n):
         out[i] = theta[i]
