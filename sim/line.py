@@ -51,7 +51,9 @@ class Line:
 
     def solve(self, q: Array, s: float, rate: float) -> Array:
         """Joint speeds (n,) at q, for the share `s` of the line and its rate [1/s]."""
-        return _solve(*self._dynamics.update(q), self._tcp, self.start, self.R, self.way, self.turn, s, rate)
+        return np.asarray(
+            _solve(*self._dynamics.update(q), self._tcp, self.start, self.R, self.way, self.turn, s, rate), dtype=np.float64
+        )
 
 
 def rotation_vector(R: Array) -> Array:

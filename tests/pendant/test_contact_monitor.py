@@ -7,6 +7,7 @@ import pytest
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import SOURCES, ContactMonitor
 from pendant.estimate import Estimate
+from pendant.history import SUMMED
 from pendant.modes import Mode
 from pendant.settings import ContactUse
 from pendant.signal import Signal
@@ -63,6 +64,15 @@ def test_switched_off_it_fills_its_buffers_and_finds_nothing() -> None:
     for now in estimates(0, stream):
         found += monitor.step(now, USE, Mode.RUN, now.tick > START - 2)
     assert len(found) == 1  # at once, since the buffers were full
+
+
+@pytest.mark.parametrize("quiet", [START - 2, SUMMED - 1, SUMMED, SUMMED + 60])
+def test_however_long_it_was_off_it_finds_a_contact_at_once(quiet: int) -> None:
+    monitor, found = ContactMonitor(), []
+    for now in estimates(0, [*signals(quiet + 100, push=ramp(quiet + 100, quiet, 8.0, top=40.0))]):
+        found += monitor.step(now, USE, Mode.RUN, now.tick > quiet)
+    assert len(found) == 1
+    assert 0 < found[0].tick - quiet <= 10
 
 
 def test_a_source_that_is_not_valid_gives_nothing() -> None:
