@@ -76,7 +76,7 @@ class Glance:
     @property
     def truth_payload_mass(self) -> float:
         """See `Scored.truth_payload_mass`."""
-        return self._simulation.plant.load.mass
+        return self._simulation.plant.payload.load.mass
 
     @property
     def configured_mass(self) -> float:

@@ -9,19 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm import Arm
-from sim.chain import load_body
-from sim.frames import quaternion_from_matrix
 from sim.friction import Friction
 from sim.hands import Hands
 from sim.model import SENSORS, Step, build
-from sim.objects import SNAP_REST, SNAP_SLIP, set_contact_stiffness
-from sim.scenario import Load, Moving, Scenario, SnapFit, TwoFrictions
+from sim.objects import set_contact_stiffness
+from sim.payload import Payload
+from sim.scenario import Scenario
 from sim.touch import Touch
+from sim.world import World
 
 Array = NDArray[np.float64]
 
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
-GRAVITY = 9.81
 BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
 LUGRE_STIFFNESS, LUGRE_DAMPING = 5, 6  # where an actuator's dynamics parameters have the bristles'
 SIGN_SPEED = 0.01  # [rad/s]
@@ -42,7 +41,6 @@ class Plant:
         self.arm, self.scenario, self.step = arm, scenario, step or Step()
         self.model = build(arm, scenario, self.step).compile()
         self.data = mujoco.MjData(self.model)
-        self._scratch = mujoco.MjData(self.model)
         self.friction = Friction(arm)
         model, data, joints = self.model, self.data, arm.chain.joints
         self._at_q = np.array([model.joint(f"q/{name}").qposadr[0] for name in joints])
@@ -59,10 +57,8 @@ class Plant:
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
         self._parts["tool"] = self._parts["flange"]
-        self._payload = model.body("payload").id
-        self._objects = np.array([model.body(f"object/{item.name}").id for item in scenario.world], dtype=int)
-        self._tip = model.geom("shape/tool").id if scenario.world else -1
-        self._pairs = [[model.pair(f"shape/tool {item.name}").id] for item in scenario.world]
+        self.world = World(model, data, scenario.world, self.step.tick)
+        self.payload = Payload(model, data, scenario.payload_true, scenario.world)
         self._history = self._history_indices()
         self.flange = np.zeros(3 * len(SENSORS))
         self.temperature = np.full(arm.n, arm.frictions.temperature)
@@ -81,9 +77,6 @@ class Plant:
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)
-        self.load = scenario.payload_true
-        self.fallen: Array | None = None
-        self._fall_speed = np.zeros(3)
         self.tick = 0
         self._place(np.array(scenario.posture if scenario.posture is not None else arm.chain.home))
 
@@ -148,8 +141,8 @@ class Plant:
             KeyError: a touch names a part that does not exist; `parts` has those that do.
         """
         self.hands.apply(touches)
-        if self._objects.size:
-            self._move_world()
+        if self.scenario.world:
+            self.world.advance()
         self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
         if braked is not self._braked:
             self._brake(braked)
@@ -161,8 +154,8 @@ class Plant:
         self.tick += 1
         if self.tick % WARMTH_TICKS == 0:
             self._warm()
-        if self.fallen is not None:
-            self._fall()
+        if self.payload.falling:
+            self.payload.fall(self.step.tick)
 
     def _brake(self, braked: bool) -> None:
         """Close or open the brakes: closed, the rotors sit on far stiffer bristles, which take over the torque of the soft ones.
@@ -179,28 +172,6 @@ class Plant:
         self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
         self._braked = braked
 
-    def _move_world(self) -> None:
-        """Drive moving objects, let snap-fits go, choose the friction under the tool: what objects need once a tick."""
-        model, data, time = self.model, self.data, self.data.time
-        for k, item in enumerate(self.scenario.world):
-            if isinstance(item, Moving):
-                rate = 2.0 * math.pi / item.period
-                middle = time + 0.5 * self.step.tick
-                amplitude = data.xmat[self._objects[k]].reshape(3, 3).T @ item.amplitude
-                dofs = slice(model.body_dofadr[self._objects[k]], model.body_dofadr[self._objects[k]] + 3)
-                at = slice(model.jnt_qposadr[model.body_jntadr[self._objects[k]]], None)
-                data.qpos[at][:3] = amplitude * math.sin(rate * time)
-                data.qvel[dofs] = amplitude * rate * math.cos(rate * middle)
-            elif isinstance(item, SnapFit):
-                dof = int(model.body_dofadr[self._objects[k]])
-                given = data.qpos[model.jnt_qposadr[model.body_jntadr[self._objects[k]]]] > SNAP_SLIP
-                model.dof_frictionloss[dof] = item.force * (SNAP_REST if given else 1.0)
-            elif isinstance(item, TwoFrictions):
-                R = data.xmat[self._objects[k]].reshape(3, 3)
-                tip = data.geom_xpos[self._tip] - data.xpos[self._objects[k]]
-                friction = item.friction_beyond if float(R[:, 0] @ tip) > 0.0 else item.friction
-                model.pair_friction[self._pairs[k], :2] = friction
-
     def _warm(self) -> None:
         """First-order warming of each joint by its own friction loss."""
         thermals = self.arm.thermals
@@ -210,44 +181,9 @@ class Plant:
         self.temperature = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
         self._heat[:] = 0.0
 
-    def attach(self, load: Load) -> None:
-        """Make `load` the true payload from now on; what was attached before is gone."""
-        self.load = load
-        self.fallen = None
-        body = load_body(load)
-        values, axes = np.linalg.eigh(body.inertia)
-        if np.linalg.det(axes) < 0:
-            axes[:, 0] *= -1.0
-        model = self.model
-        model.body_mass[self._payload] = body.mass
-        model.body_ipos[self._payload] = body.com
-        model.body_inertia[self._payload] = values
-        model.body_iquat[self._payload] = quaternion_from_matrix(axes)
-        mujoco.mj_setConst(model, self._scratch)
-        set_contact_stiffness(model, self.scenario.world)
-
     def drop(self) -> None:
-        """Let the payload fall: it leaves with the flange's velocity and is a picture from then on."""
-        if self.load.mass == 0.0:
-            return
-        position = self.data.xipos[self._payload].copy()
-        self._fall_speed = self.hands.velocity(self._parts["flange"], position)
-        orientation = self.data.xquat[self._payload].copy()
-        self.attach(Load(mass=0.0))
-        self.fallen = np.concatenate([position, orientation])
-
-    def _fall(self) -> None:
-        assert self.fallen is not None
-        radius = 0.05
-        if self.fallen[2] > radius:
-            self._fall_speed[2] -= GRAVITY * self.step.tick
-            self.fallen[:3] += self._fall_speed * self.step.tick
-            self.fallen[2] = max(self.fallen[2], radius)
-
-    def move_object(self, name: str, position: Sequence[float]) -> None:
-        """Put the world object `name` at `position` (3,) in W [m]."""
-        body = self.model.body(f"object/{name}").id
-        self.model.body_pos[body] = position
+        """Let the payload fall: it leaves with the flange's velocity."""
+        self.payload.drop(lambda point: self.hands.velocity(self.flange_body, point))
 
     def sliding_friction(self) -> Array:
         """True friction (n,) of both sides at the present speeds, with their signs [N·m].
@@ -263,15 +199,7 @@ class Plant:
 
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
-        return _poses(*self.frames, self._objects)
-
-    def payload_pose(self) -> Array | None:
-        """Pose (7,) in W of the payload's centre, attached or fallen; None without one."""
-        if self.fallen is not None:
-            return self.fallen.copy()
-        if self.load.mass == 0.0:
-            return None
-        return np.concatenate([self.data.xipos[self._payload], self.data.xquat[self._payload]])
+        return _poses(*self.frames, self.world.bodies)
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""

@@ -24,7 +24,7 @@ def fill_rows(e: Estimate, plant: Plant, gain: float, configured: float, known: 
     _known(*joints, e.w_sensor, e.F_user, e.a_F, e.p_BF, e.v_F, e.v_tcp, e.v_elbow, gain, configured, known, k)
     state = (plant.q, plant.qd, plant.theta, plant.theta_d, plant.tau_J, plant.friction_in)
     rest = (rubs.output_coulomb, rubs.output_viscous, plant.temperature, *plant.frames)
-    _truth(*state, *rest, plant.flange_body, plant.load.mass, truth, k)
+    _truth(*state, *rest, plant.flange_body, plant.payload.load.mass, truth, k)
     for _, _, (x, y, z), _ in plant.hands.touched:
         row = truth[k]
         row[-4] += x

@@ -163,7 +163,7 @@ class Simulation:
         """
         plant = self.plant
         if isinstance(change, AttachPayload):
-            plant.attach(change.load)
+            plant.payload.attach(change.load)
         elif isinstance(change, DropPayload):
             plant.drop()
         elif isinstance(change, SensorFault):
@@ -173,7 +173,7 @@ class Simulation:
         elif isinstance(change, Temperature):
             plant.temperature[self._joints(change.joint)] = change.celsius
         elif isinstance(change, MoveObject):
-            plant.move_object(change.name, change.position)
+            plant.world.place(change.name, change.position)
 
     def _joints(self, name: str | None) -> slice | int:
         if name is None:
@@ -201,8 +201,8 @@ class Simulation:
             self._estimate.copy(),
             plant.poses(),
             plant.object_poses(),
-            plant.payload_pose(),
-            plant.load.mass,
+            plant.payload.pose(),
+            plant.payload.load.mass,
             self.fitting.mass,
             plant.hands.touched,
             self.controller.references.wanted(),

@@ -91,8 +91,8 @@ class Recorder:
         self._take(simulation, decision, k)
         if simulation.tick_count % SNAPSHOT_TICKS == 1:
             plant = simulation.plant
-            poses = (plant.poses(), plant.object_poses(), plant.payload_pose())
-            self._pictures.append(Picture(tick, decision, *poses, plant.load.mass, plant.hands.touched))
+            poses = (plant.poses(), plant.object_poses(), plant.payload.pose())
+            self._pictures.append(Picture(tick, decision, *poses, plant.payload.load.mass, plant.hands.touched))
         for event in decision.events:
             self._events.append((tick, event))
             if event.kind is Kind.SETTING_CHANGED:

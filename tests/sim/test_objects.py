@@ -201,7 +201,7 @@ def test_a_surface_with_two_frictions_holds_more_beyond_its_seam() -> None:
     pair = plant.model.pair("shape/tool thing").id
     plant.advance(np.zeros(6))
     here = plant.model.pair_friction[pair, 0]
-    plant.move_object("thing", [item.position[0] - 0.1, *item.position[1:]])
+    plant.world.place("thing", [item.position[0] - 0.1, *item.position[1:]])
     plant.advance(np.zeros(6))
     plant.advance(np.zeros(6))
     assert {here, plant.model.pair_friction[pair, 0]} <= {0.2, 0.8}

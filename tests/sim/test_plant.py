@@ -264,26 +264,26 @@ def test_a_dropped_payload_leaves_the_sensor_and_falls() -> None:
     plant = Plant(UR5E, Scenario(payload_true=TWO_KG))
     torque = gravity_torque(plant)
     plant.advance(torque)
-    before = plant.payload_pose()
+    before = plant.payload.pose()
     plant.drop()
     for _ in range(20):
         plant.advance(torque)
-    after = plant.payload_pose()
+    after = plant.payload.pose()
     assert before is not None
     assert after is not None
-    assert plant.load.mass == 0.0
+    assert plant.payload.load.mass == 0.0
     # 40 ms of free fall: 9.81 · 0.04² / 2 = 7.8 mm; what it had of the flange's speed is small.
     assert before[2] - after[2] == pytest.approx(0.5 * G * 0.04**2, rel=0.1)
     for _ in range(500):
         plant.advance(torque)
-    rest = plant.payload_pose()
+    rest = plant.payload.pose()
     assert rest is not None
     assert rest[2] == pytest.approx(0.05)
 
 
 def test_attaching_a_payload_adds_its_weight() -> None:
     plant = Plant(UR5E, Scenario())
-    plant.attach(Load(mass=1.5))
+    plant.payload.attach(Load(mass=1.5))
     body = plant.model.body("payload").id
     assert plant.model.body_subtreemass[plant.model.body("flange").id] == pytest.approx(1.5 + 0.13)
     assert plant.model.body_mass[body] == 1.5

@@ -304,7 +304,7 @@ def test_changes_act_on_the_true_arm_and_on_nothing_the_controller_believes() ->
         MoveObject(name="table", position=[1.0, 1.0, 0.0]),
     )  # fmt: skip
     plant = bench.plant
-    assert plant.load.mass == 4.0
+    assert plant.payload.load.mass == 4.0
     assert plant.friction.factor.tolist() == [2.0] * 6
     assert plant.temperature[4] == pytest.approx(60.0, abs=0.1)
     assert plant.temperature[3] < 50.0
