@@ -16,7 +16,6 @@ from sim.touch import ZERO, Push, Triple
 
 PLANNED_CONTROLS: dict[str, str] = {
     "confirm": "FD-8",
-    "register_waypoint": "FD-13",
 }
 """Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
 

@@ -34,6 +34,7 @@ class Kind(StrEnum):
     REFUSED_MOVING = "refused_moving"
     NOT_YET = "not_yet"
     MANIPULATION = "manipulation"
+    WAYPOINT = "waypoint"
     RESTARTED = "restarted"
     PERIOD_ANEW = "period_anew"
     WALL_REACHED = "wall_reached"

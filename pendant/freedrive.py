@@ -21,6 +21,7 @@ from pendant.modes import TICK, Mode, Phase
 from pendant.nearness import Nearness, SingularityWatch
 from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
+from pendant.pose import norm
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, Walls, ticks
 from pendant.soft_limits import Damping
@@ -90,10 +91,13 @@ class FreeDrive:
         "_posture",
         "_pressed",
         "_rated",
+        "_registered",
         "_sequence",
         "_signal",
         "_singularity",
+        "_stirred",
         "_total",
+        "_unpushed",
         "_verdict",
         "_zones",
         "baseline",
@@ -126,6 +130,9 @@ class FreeDrive:
         self._signal = NONE  # of activation, in this tick
         self._appeared = False  # it did in this tick
         self._anew = False  # the running period is to begin anew in this tick
+        self._registered = False  # a waypoint was registered in this tick
+        self._stirred = False  # there was manipulation in the tick before
+        self._unpushed = 0  # ticks for which no hand has pushed
         self._attempt: Attempt | None = None
         self._held = False  # the button, as sensed in this tick
         self._began = False
@@ -203,7 +210,7 @@ class FreeDrive:
 
     def sense(self, held: bool, signal: Presence) -> None:
         """Begin a tick: the button, the signal of activation, the cool-down, the absence of the signal."""
-        self._anew = False
+        self._anew = self._registered = False
         self._appeared = bool(signal.source) and not self._signal.source
         self._signal = signal
         self._began = held and not self._held
@@ -221,6 +228,10 @@ class FreeDrive:
         """The free-drive or restart period is to begin anew in this tick (FD-16). Returns whether one runs."""
         self._anew = self.phase in (Phase.PERIOD, Phase.RESTART)
         return self._anew
+
+    def register(self) -> None:
+        """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
+        self._registered = True
 
     def step(self, around: Surroundings, settings: Settings) -> list[Event]:
         """Decide the tick that `sense` began. Returns what happened, in order."""
@@ -400,8 +411,10 @@ class FreeDrive:
             self.phase = Phase.HELD
             self._pressed = 0
         elif self.phase is Phase.GUIDED:
+            assert self._hand is not None
+            self._unpushed = 0 if norm(self._hand.user) >= settings.let_go.force else self._unpushed + 1
             self._left = max(self._left - 1, 0)
-            if self._left == 0 and around.still.count >= self._total and settings.free_drive.maintained:
+            if settings.free_drive.maintained and self._left == 0 and self._rests(around, settings):
                 self._begin(Phase.RESTART, around, settings)
                 events.append(Event(Kind.RESTARTED, tick, {"period": self._total * TICK}))
         else:
@@ -467,20 +480,39 @@ class FreeDrive:
         self._left -= 1
         assert self._maintained is not None
         excess = None if around.shaken else self._maintained.step(around.estimate, self.use_wrench)
-        if excess is not None:
-            self.phase = Phase.GUIDED
-            # static again: for its whole time after the manipulation began
-            self._total = self._left = ticks(settings.static.time)
+        began = excess is not None and not self._stirred
+        self._stirred = excess is not None
+        if began and excess is not None:
             events.append(Event(Kind.MANIPULATION, tick, dict(excess._asdict())))
+        if excess is not None or self._registered:
+            self._guide(around, settings)
         elif self._left == 0:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
             events.append(self._over(kind, tick, settings, {"limit": self._total * TICK}))
+
+    def _guide(self, around: Surroundings, settings: Settings) -> None:
+        """The arm is guided: until it rests, or the restart period begins with every tick of it anew (FD-15)."""
+        if settings.free_drive.restart_at_manipulation and self._maintained is not None:
+            self.phase = Phase.RESTART
+            self._total = self._left = ticks(min(settings.free_drive.restart_period, settings.free_drive.longest))
+            self._maintained.anew(around.estimate, self.use_wrench)
+            return
+        self.phase, self._stirred, self._unpushed = Phase.GUIDED, False, 0
+        # static again: for its whole time after the manipulation began
+        self._total = self._left = ticks(settings.static.time)
+
+    def _rests(self, around: Surroundings, settings: Settings) -> bool:
+        """The guided arm is static again, or nobody pushes it (FD-15)."""
+        if not settings.free_drive.restart_after_force:
+            return around.still.count >= self._total
+        return self._unpushed >= self._total
 
     def _begin(self, phase: Phase, around: Surroundings, settings: Settings) -> None:
         """The free-drive or the restart period begins; where none ends free-drive, the arm counts as guided (FD-24)."""
         use = settings.free_drive
         self.phase = phase if use.maintained else Phase.GUIDED
         self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
+        self._stirred = False
         self._maintained = Maintained(around.estimate, settings, self.use_wrench, self._joints)
 
     def _disabled(self, around: Surroundings, settings: Settings) -> Event:

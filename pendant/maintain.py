@@ -2,7 +2,7 @@
 
 import math
 
-from pendant.estimate import Estimate
+from pendant.estimate import GRAVITY, Estimate
 from pendant.limits import Excess
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
@@ -18,7 +18,7 @@ RATE = 1.0 - math.exp(-TICK / SETTLING)
 class Maintained:
     """Watches one free-drive or restart period for manipulation. Forces and torques are changes since it began."""
 
-    __slots__ = ("_joints", "_monitor", "_ones", "_since", "_slow", "_up")
+    __slots__ = ("_joints", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
 
     def __init__(self, estimate: Estimate, settings: Settings, use_wrench: bool, joints: tuple[str, ...]) -> None:
         """
@@ -29,6 +29,7 @@ class Maintained:
             joints: names, base to flange.
         """
         self._monitor = Monitor(settings.limits.maintain)
+        self._share = settings.limits.maintain.load_share
         self._since: Reference = reference(estimate, use_wrench)
         self._joints = joints
         self._ones = (1.0,) * len(joints)
@@ -40,10 +41,17 @@ class Maintained:
         """All of its state, to compare."""
         return (self._since, self._up, tuple(self._slow), self._monitor.memory)
 
+    def anew(self, estimate: Estimate, use_wrench: bool) -> None:
+        """The period begins anew in this tick."""
+        self._since = reference(estimate, use_wrench)
+        self._slow = [0.0] * 6
+
     def step(self, estimate: Estimate, use_wrench: bool) -> Excess | None:
         """One tick; its joint values are finite. Returns the first parameter that exceeds its maintain limit, or None."""
         parts = self._split(estimate) if use_wrench else None
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, 0.0))
+        share = self._share
+        heavier = share * GRAVITY * estimate.load_mass
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
         return beyond[0].excess if beyond else None
 
     def _split(self, estimate: Estimate) -> Split:

@@ -27,11 +27,28 @@ CERTAIN = 4
 LEAST = 4.0
 """Smallest step that is looked at [N]."""
 
+NOTHING_FOLLOWS = (0, math.inf, -math.inf, math.inf, 0.0)
+"""Ticks, least and most share, least and most of the square of what the load needs."""
+
 STAYS = 0.6  # of the step is what the new level must be, and the reverse: a hand that lets go ends at none
 RISES = 1.35  # of the level after the step is the most that may follow: a hand's force still rises
 ACROSS = 0.35  # of a step may be across it: the share that is not explained
 SLACK = 2.0  # [N] for the sensor's noise
 LOST_AT_MOST = 1.15  # of the configured load
+
+FOLLOWS = 8
+"""Ticks for which what is missing must follow the load's own inertia, where a hand that lets go at once hides the step."""
+
+SWINGS = 1.4  # from the least to the most that the load needs meanwhile
+SAME = 0.1  # of the share is as far as it may stray meanwhile
+CALM = 0.3
+"""Share by which the square of what the load needs may be off its weight's: beyond, the arm swings, and residuals with it."""
+
+SWUNG = 10  # calm ticks that a swinging one undoes: the step of a payload itself swings for two
+
+MUCH = 0.5  # of the load is missing at least, where the arm swings
+
+OLD = 50  # ticks after which such a run begins anew: slow changes are hands
 
 
 class Ending(NamedTuple):
@@ -47,6 +64,8 @@ class Operation:
     __slots__ = (
         "_allowed",
         "_alone",
+        "_calm",
+        "_followed",
         "_joints",
         "_level",
         "_monitor",
@@ -87,8 +106,10 @@ class Operation:
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
         self._motion = 0.0  # speed then [m/s]
         self._shares = [0.0] * (STEP + 1)  # of the load that the sensor misses, in the last ticks
+        self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
         self._stepped = 0  # ticks since a step, 0: none
+        self._followed = NOTHING_FOLLOWS
         self.suspect = False  # a payload may have dropped: the additional torque goes (FD-19)
 
     @property
@@ -98,8 +119,10 @@ class Operation:
             self._alone,
             self._motion,
             tuple(self._shares),
+            self._calm,
             self._level,
             self._stepped,
+            self._followed,
             self.suspect,
             self._offset,
             self._since,
@@ -125,7 +148,7 @@ class Operation:
             if lost is not None:
                 return lost
         else:
-            self._stepped, self.suspect = 0, False
+            self._stepped, self._followed, self.suspect = 0, NOTHING_FOLLOWS, False
         soft = self._soft
         soft.step(estimate)
         parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
@@ -168,11 +191,14 @@ class Operation:
         before = shares[0]
         shares[:-1] = shares[1:]
         shares[-1] = share
+        calm = self._calm >= SWUNG
+        swings = abs(square - weight * weight) > CALM * weight * weight
+        self._calm = max(self._calm - SWUNG, 0) if swings else min(self._calm + 1, 3 * SWUNG)
         across = norm((mx - share * nx, my - share * ny, mz - share * nz))
         if not self._stepped:
             jump = share - before
             began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
-            began = began and abs(share) >= STAYS * abs(jump)
+            began = began and abs(share) >= STAYS * abs(jump) and (calm or abs(share) >= MUCH)
             self._stepped = int(began and self._like(share, across, square))
         elif self._stepped == 1:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._level = share
@@ -182,9 +208,22 @@ class Operation:
         else:
             self._stepped = 0
         self.suspect = self._stepped > 0
-        if self._stepped <= CERTAIN:
+        if self._stepped <= CERTAIN and not self._follows(share, across, square, weight):
             return None
         return Ending(Kind.STOPPED_PAYLOAD, {"mass": -share * mass, "force": abs(share) * weight})
+
+    def _follows(self, share: float, across: float, square: float, weight: float) -> bool:
+        """What is missing swings with what the load needs in the arm's own motion, as no hand's force does."""
+        if abs(share) < MUCH or abs(share) * weight < LEAST or not self._like(share, across, square):
+            self._followed = NOTHING_FOLLOWS
+            return False
+        count, low, high, least, most = self._followed
+        low, high = min(low, share), max(high, share)
+        if high - low > SAME * abs(share) or count == OLD:
+            count, low, high, least, most = 0, share, share, square, square
+        count, least, most = count + 1, min(least, square), max(most, square)
+        self._followed = (count, low, high, least, most)
+        return count >= FOLLOWS and most >= SWINGS * SWINGS * least
 
     @staticmethod
     def _like(share: float, across: float, square: float) -> bool:

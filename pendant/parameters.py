@@ -31,6 +31,7 @@ class View(NamedTuple):
     scale: tuple[float, ...]  # of the joint torque limits, for each joint
     share: float  # of a joint's load torque by which its limit rises
     speed_share: float = 1.0  # of the limits on speed that is left (FD-12b)
+    heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
 
 
 Reader = Callable[[View, Gauge], tuple[float, str]]
@@ -121,7 +122,8 @@ def _payload_torque(view: View, _: Gauge) -> tuple[float, str]:
     return _of(view).payload_torque, "flange"
 
 
-def _user_force(view: View, _: Gauge) -> tuple[float, str]:
+def _user_force(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base + view.heavier
     return _of(view).user_force, "flange"
 
 

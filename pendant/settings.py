@@ -67,6 +67,8 @@ class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     restart_period: Annotated[
         float, _number(0.5, 30.0, "s", "FD-15", "leave when a guided arm stands still for this long", locked=False)
     ] = 3.0
+    restart_at_manipulation: Annotated[bool, _switch("FD-15", "the restart period begins with each manipulation")] = False
+    restart_after_force: Annotated[bool, _switch("FD-15", "it begins when the hand's force ends, moving or not")] = False
     anew: Annotated[bool, _switch("FD-16", "a signal begins the running period anew")] = True
     longest: Annotated[float, _number(0.5, 30.0, "s", "FD-16", "longest that the two periods may be")] = 30.0
     maintained: Annotated[bool, _switch("FD-24", "free-drive ends when nobody moves the arm for its periods")] = True
@@ -136,6 +138,9 @@ class MaintainLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=T
     flange_speed: Annotated[Limit, _limit(0.002, 1.0, "m/s", "FD-13", "speed of the flange")] = Limit(max=0.02)
     flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-13", "acceleration of the flange")] = Limit(max=1.5)
     flange_displacement: Annotated[Limit, _limit(0.001, 0.5, "m", "FD-13", "way of the flange in the period")] = Limit(max=0.01)
+    load_share: Annotated[
+        float, _number(0.0, 1.0, "", "FD-13", "force and joint torque limits rise by this share of the load")
+    ] = 0.0
 
 
 class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -304,6 +304,9 @@ class Supervisor:
                     self._refuse(command, estimate, "periods are not begun anew here", events)
                 elif not self._free.ask_anew():
                     self._refuse(command, estimate, "no period of free-drive runs", events)
+            elif command is Command.REGISTER_WAYPOINT:
+                self._free.register()
+                events.append(Event(Kind.WAYPOINT, estimate.tick))
             elif command in SWITCHABLE:
                 to = SWITCHABLE[command]
                 if self._mode not in RESTING:

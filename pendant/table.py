@@ -214,6 +214,7 @@ TABLE: dict[Kind, Row] = {
         "{parameter}, {part}: {value:.2f} {unit}, limit {limit:.2f} {unit}.",
         ("parameter", "part", "value", "limit", "unit"),
     ),
+    Kind.WAYPOINT: _info("Waypoint registered", "In free-drive this counts as guiding the arm."),
     Kind.RESTARTED: _info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.PERIOD_ANEW: _info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
     Kind.WALL_REACHED: Row(

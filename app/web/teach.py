@@ -82,7 +82,8 @@ class Teach:
         )
 
     def mark(self) -> None:
-        """Register where the arm is."""
+        """Register where the arm is; in free-drive that counts as guiding it (FD-13)."""
+        self._loop.desk.command(Command.REGISTER_WAYPOINT)
         self._register(self._loop.latest())
 
     def _now(self, at: int) -> Step | None:

@@ -127,6 +127,7 @@ class World:
     unmeasured: bool = False  # a stop whose end has not been seen yet
     off_from: float = inf  # drive power is removed from this tick on
     anew: bool = False  # the period that runs was asked to begin anew
+    registered: bool = False  # a waypoint was registered
     tried: bool = False  # the sensor was valid when the sequence began
 
 
@@ -266,14 +267,17 @@ def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[
 
 
 def _modes(w: World, t: int, i: Step, present: bool, kinds: list[Kind]) -> None:
-    w.anew = False
+    w.anew = w.registered = False
     for command in i.commands:
         if command is Command.LEAVE_FREE_DRIVE and w.phase is not Phase.OFF:
             kinds.append(Kind.DEACTIVATED)
             _end(w, t, present, cool=False)
             if w.mode is Mode.FREE_DRIVE:
                 w.mode, w.brake = w.back, True
-        if command is Command.RESTART_PERIOD:
+        if command is Command.REGISTER_WAYPOINT:
+            w.registered = True
+            kinds.append(Kind.WAYPOINT)
+        elif command is Command.RESTART_PERIOD:
             w.anew = w.phase in (Phase.PERIOD, Phase.RESTART)
             if not w.anew:
                 kinds.append(Kind.COMMAND_REFUSED)
@@ -466,8 +470,8 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
     elif w.anew:
         kinds.append(Kind.PERIOD_ANEW)
         begin(w.phase)
-    elif guided:
-        kinds.append(Kind.MANIPULATION)
+    elif guided or w.registered:
+        kinds += [Kind.MANIPULATION] if guided else []
         w.phase, w.since = Phase.GUIDED, t
     else:
         first = w.phase is Phase.PERIOD

@@ -143,3 +143,16 @@ def test_its_memory_tells_all_of_it() -> None:
     assert one.memory != other.memory
     other.step(estimate(force=[1.0, 0.0, 0.5]), use_wrench=True)
     assert one.memory == other.memory
+
+
+@pytest.mark.parametrize(("share", "force", "torque"), [(0.0, 8.0, 8.0), (0.5, 8.0 + 0.5 * 3.0 * 9.81, 8.0 + 0.5 * 40.0)])
+def test_force_limits_may_rise_with_the_load(share: float, force: float, torque: float) -> None:
+    """FD-13: the payload's weight for the user's force, the joint's own load for its torque."""
+    start = estimate(load_mass=3.0, tau_J=40.0)
+    for value, within in ((0.999, True), (1.001, False)):
+        module = maintained(start, load_share=share)
+        push = estimate(load_mass=3.0, tau_J=40.0, force=value * force)
+        assert (module.step(push, use_wrench=True) is None) is within
+        module = maintained(start, load_share=share)
+        push = estimate(load_mass=3.0, tau_J=40.0, tau_ext=value * torque)
+        assert (module.step(push, use_wrench=True) is None) is within

@@ -92,3 +92,66 @@ def test_the_way_back_is_told_where_it_is_switched_on(told: bool) -> None:
     assert [event.kind for event in bench.events] == [Kind.LEFT_PERIOD, Kind.WAY_BACK][: 1 + told]
     if told:
         assert posture_of(bench.events[-1].values) == (0.0,) * 6  # as it was at activation
+
+
+WAYPOINT = Inputs(commands=(Command.REGISTER_WAYPOINT,))
+
+
+def test_registering_a_waypoint_counts_as_manipulation() -> None:
+    """FD-13."""
+    bench = Bench().in_period()
+    bench.run(1498)
+    bench.step(WAYPOINT)
+    assert bench.last.events == (Event(Kind.WAYPOINT, bench.tick),)
+    assert bench.last.phase is Phase.GUIDED
+    assert bench.run(50).phase is Phase.RESTART
+    assert remaining(bench.last) == {"restart": (1500, 1500)}
+    assert bench.run(100).phase is Phase.RESTART  # it counts once
+
+
+def test_registering_a_waypoint_elsewhere_changes_nothing() -> None:
+    bench = Bench()
+    bench.step(WAYPOINT)
+    assert [event.kind for event in bench.events] == [Kind.WAYPOINT]
+    assert (bench.last.mode, bench.last.phase) == (Mode.TEACH, Phase.OFF)
+
+
+def test_the_restart_period_may_begin_with_the_manipulation() -> None:
+    """FD-15: and every tick of it begins it anew."""
+    bench = Bench(free_drive__restart_at_manipulation=True, free_drive__restart_period=1.0).in_period()
+    bench.run(300)
+    for _ in range(40):
+        bench.step(NOTHING, MOVING)
+        assert (bench.last.phase, remaining(bench.last)) == (Phase.RESTART, {"restart": (500, 500)})
+    assert bench.run(499).phase is Phase.RESTART
+    bench.step(WAYPOINT)
+    assert remaining(bench.last) == {"restart": (500, 500)}
+    bench.run(499)
+    assert bench.step().mode is Mode.TEACH
+    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.WAYPOINT, Kind.LEFT_RESTART]
+
+
+def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
+    bench = Bench(free_drive__restart_at_manipulation=True, free_drive__restart_period=1.0).in_period()
+    pushed = estimate(force=20.0)
+    bench.step(NOTHING, pushed)
+    assert bench.last.phase is Phase.RESTART
+    bench.run(499, NOTHING, pushed)
+    assert bench.step(NOTHING, pushed).mode is Mode.TEACH
+
+
+@pytest.mark.parametrize(("after_force", "rests"), [(True, True), (False, False)])
+def test_the_restart_period_may_begin_when_the_hand_is_off_while_the_arm_still_moves(after_force: bool, rests: bool) -> None:
+    names = {f"limits__maintain__{name}__on": False for name in ("joint_speed", "flange_speed")}
+    bench = Bench(free_drive__restart_after_force=after_force, unexplained__motion=False, **names).in_period()
+    bench.run(200, NOTHING, estimate(force=20.0, qd=0.3))
+    assert bench.last.phase is Phase.GUIDED
+    bench.run(150, NOTHING, estimate(qd=0.3))
+    assert (bench.last.phase is Phase.RESTART) is rests
+
+
+def test_the_hand_must_be_off_for_as_long_as_the_arm_must_be_static() -> None:
+    bench = Bench(free_drive__restart_after_force=True, static__time=0.2).in_period()
+    bench.step(NOTHING, estimate(force=20.0))
+    assert bench.run(99).phase is Phase.GUIDED
+    assert bench.step().phase is Phase.RESTART
