@@ -3,12 +3,13 @@
 import viser
 
 from app.web import svg
+from app.web.activation import Activation
 from app.web.guard import Guard
 from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.svg import Bar, Colour
 from app.web.way_back import WayBack
-from app.web.words import LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from app.web.words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
 from pendant.containment import TETHER
 from pendant.decision import Decision
 from pendant.events import Event, Kind
@@ -19,6 +20,10 @@ from pendant.settings import Settings, limits_checksum
 from pendant.table import TABLE, Clears, Effect, Severity, render
 from sim.arm import Arm
 from sim.snapshot import Snapshot
+
+HOLD = "Hold for free-drive"
+CONFIRM = "Press to confirm"
+"""What is written on the free-drive button."""
 
 HOLD_RATE = 30.0
 """How often a held button is asked to say so [Hz]; viser sends at most 20 a second of all controls of a panel."""
@@ -32,6 +37,9 @@ BARS = 5
 REASONS = 4
 """Parameters named in a refusal; the log has all of them."""
 
+ASKING = frozenset({Kind.ACTIVATION_STARTED, Kind.SIGNAL_SEEN, Kind.CONFIRM_ASKED, Kind.LET_GO_ASKED, Kind.SEQUENCE_STARTED})
+"""Events that say what the user is to do before free-drive begins; shown while that lasts."""
+
 HINT = svg.note("Drag the arm", "It holds its place. Hold the button for free-drive, then drag it again.", Colour.GREY)
 
 
@@ -42,19 +50,21 @@ class Panel:
         self._loop = loop
         self._holders: set[int] = set()
         self._note: Event | None = None
+        self._asking: Event | None = None
         self._prevented: list[Event] = []
         self._settings: Settings | None = None
         self._digest = ""
         gui = server.gui
         gui.set_panel_label(f"pendant · {arm.title}")
         self.light = Html(gui)
-        self.free_drive = gui.add_button("Hold for free-drive", color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
+        self.free_drive = gui.add_button(HOLD, color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
         self.rings = Html(gui)
         self.note = Html(gui, HINT)
         self.back = WayBack(server, arm)
         self.numbers = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
+        self.activation = Activation(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
         # so that a held button beside it could swallow the stop of a second finger.
         self.safety = gui.add_panel()
@@ -79,11 +89,13 @@ class Panel:
         changed = [
             self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
             self.rings.show(svg.rings(self._ring(p.name, p.ticks, p.total, colour) for p in decision.periods)),
-            self.note.show(self._message()),
+            self.note.show(self._message(decision)),
             self.back.show(snapshot, fresh),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.reset, decision.mode is Mode.STOP),
+            self.activation.show(snapshot),
+            self._name_button(decision),
         ]
         return any(changed)
 
@@ -93,10 +105,22 @@ class Panel:
         self.note.show(svg.note("The simulation ended", f"{reason}. Start the program again.", Colour.RED))
 
     def let_go(self, client: int) -> None:
-        """Release the button that `client` holds, if it does."""
+        """Release what `client` holds: the button, the enabling device."""
+        self.activation.let_go(client)
+        self._release(client)
+
+    def _release(self, client: int) -> None:
         if client in self._holders:
             self._holders.discard(client)
             self._loop.desk.release(Button.FREE_DRIVE)
+
+    def _name_button(self, decision: Decision) -> bool:
+        """While a confirmation is asked for, the button gives it (FD-8)."""
+        label = CONFIRM if decision.phase is Phase.CONFIRM else HOLD
+        changed = self.free_drive.label != label
+        if changed:
+            self.free_drive.label = label
+        return changed
 
     def _read(self, event: Event) -> None:
         """Take in an event: what prevented an entry, and the last one that ended or refused something or wants to be read."""
@@ -104,20 +128,26 @@ class Panel:
         if event.kind is Kind.ENTRY_PREVENTED:
             self._prevented.append(event)
             return
+        if event.kind in ASKING:
+            self._asking = event
         if event.kind in (Kind.ACTIVATION_STARTED, Kind.SEQUENCE_STARTED):
             self._prevented = []
-        if event.kind is not Kind.OVERRUN and (row.effect is not Effect.INFO or row.severity >= Severity.NOTICE):
+        worth = row.effect is not Effect.INFO or row.severity >= Severity.NOTICE or event.kind is Kind.ACTIVATION_CANCELLED
+        if event.kind is not Kind.OVERRUN and worth:
             self._note = event  # a busy machine is told in the log alone: it must not hide why the robot stopped
 
     def _over(self, event: Event, decision: Decision) -> bool:
         """Whether a message has nothing to say any more: a stop that was reset."""
         return TABLE[event.kind].clears is Clears.RESET and decision.mode is not Mode.STOP
 
-    def _message(self) -> str:
-        if self._note is None:
+    def _message(self, decision: Decision) -> str:
+        event = self._note
+        if self._asking is not None and decision.phase in ASKED:
+            event = self._asking
+        if event is None:
             return HINT
-        row = TABLE[self._note.kind]
-        headline, guidance = render(self._note)
+        row = TABLE[event.kind]
+        headline, guidance = render(event)
         reasons = [_reason(event) for event in self._prevented[:REASONS]] if row.effect is Effect.NO_ENTRY else []
         return svg.note(headline, guidance, SEVERITY_COLOURS[row.severity], reasons)
 
@@ -148,7 +178,7 @@ class Panel:
         @self.free_drive.on_click
         async def _(event: viser.GuiEvent) -> None:
             if event.client_id is not None:
-                self.let_go(event.client_id)
+                self._release(event.client_id)
 
         def sends(button: viser.GuiButtonHandle, command: Command) -> None:
             @button.on_click
@@ -168,11 +198,7 @@ def _state(decision: Decision) -> tuple[str, Colour]:
     """The mode light's word and colour."""
     if any(p.name in LEAVING_PERIODS and p.ticks < ABOUT_TO_END * TICK_RATE for p in decision.periods):
         return "About to end", Colour.AMBER
-    if decision.phase is Phase.ACTIVATION:
-        return "Keep holding", Colour.BLUE
-    if decision.phase is Phase.SEQUENCE:
-        return "Hands off", Colour.BLUE
-    return WORDS[decision.mode]
+    return ASKED.get(decision.phase, WORDS[decision.mode])
 
 
 def _wall(decision: Decision) -> list[tuple[str, str]]:

@@ -1,7 +1,7 @@
 """The words and colours of the pendant's states."""
 
 from app.web.svg import Colour
-from pendant.modes import Mode, Safety
+from pendant.modes import Mode, Phase, Safety
 from pendant.table import Severity
 
 WORDS = {
@@ -12,6 +12,15 @@ WORDS = {
     Mode.FREE_DRIVE: ("Guide it by hand", Colour.BLUE),
     Mode.STOP: ("Stopped", Colour.RED),
 }
+ASKED = {
+    Phase.ACTIVATION: ("Keep holding", Colour.BLUE),
+    Phase.FEEDBACK: ("Let go and wait", Colour.BLUE),
+    Phase.CONFIRM: ("Confirm now", Colour.AMBER),
+    Phase.LET_GO: ("Let go of the arm", Colour.AMBER),
+    Phase.SEQUENCE: ("Hands off", Colour.BLUE),
+}
+"""What the user is to do before free-drive begins."""
+
 SAFETY_WORDS = {
     Safety.NORMAL: "Normal",
     Safety.REDUCED: "Reduced",
@@ -29,6 +38,7 @@ PERIOD_COLOURS = {
     "activation": Colour.BLUE,
     "sequence": Colour.BLUE,
     "confirmation": Colour.AMBER,
+    "let go": Colour.AMBER,
     "feedback": Colour.GREY,
     "cool-down": Colour.GREY,
     "safety": Colour.GREY,

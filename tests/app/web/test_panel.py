@@ -24,6 +24,17 @@ Join = Callable[[], RawClient]
         (Mode.TEACH, Safety.NORMAL, Phase.OFF, (), ("TEACH", "Ready", "Normal"), Colour.GREEN),
         (Mode.NORMAL, Safety.REDUCED, Phase.OFF, (), ("NORMAL", "Holding still", "Reduced"), Colour.GREEN),
         (Mode.TEACH, Safety.NORMAL, Phase.ACTIVATION, (Remaining("activation", 200, 500),), ("Keep holding", "0.4"), Colour.BLUE),
+        (Mode.TEACH, Safety.NORMAL, Phase.FEEDBACK, (Remaining("feedback", 100, 250),), ("Let go and wait", "0.2"), Colour.BLUE),
+        (Mode.TEACH, Safety.NORMAL, Phase.CONFIRM, (Remaining("confirmation", 500, 1500),), ("Confirm now", "1.0"), Colour.AMBER),
+        (
+            Mode.TEACH,
+            Safety.NORMAL,
+            Phase.LET_GO,
+            (Remaining("let go", 500, 1000),),
+            ("Let go of the arm", "Let go"),
+            Colour.AMBER,
+        ),
+        (Mode.TEACH, Safety.NORMAL, Phase.SEQUENCE, (Remaining("sequence", 500, 500),), ("Hands off", "Sequence"), Colour.BLUE),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, (), ("FREE-DRIVE",), Colour.BLUE),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 500, 1500),), ("1.0", "Free-drive"), Colour.BLUE),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 499, 1500),), ("About to end",), Colour.AMBER),
@@ -91,6 +102,20 @@ def test_a_refusal_names_every_parameter_that_prevented_entry(loop: FakeLoop, st
     loop.note(Kind.REFUSED_MODE, mode="RUN", allowed="TEACH")
     still.docks.show(loop.latest())
     assert "<li>" not in still.panel.note.shown
+
+
+def test_what_is_asked_for_is_told_while_it_is_asked_for(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.CONFIRM_ASKED, source="button", feedback=0.5, window=3.0)
+    loop.phase = Phase.CONFIRM
+    still.docks.show(loop.latest())
+    assert "Free-drive: confirm" in still.panel.note.shown
+    assert "push it or press the button within 3 s" in still.panel.note.shown
+    loop.phase = Phase.OFF
+    still.docks.show(loop.latest())
+    assert "Drag the arm" in still.panel.note.shown
+    loop.note(Kind.ACTIVATION_CANCELLED, value=0.4, limit=1.0)
+    still.docks.show(loop.latest())
+    assert "Held for 0.40 s. Hold the button for 1.00 s." in still.panel.note.shown
 
 
 def test_a_stop_that_was_reset_has_nothing_more_to_say(loop: FakeLoop, still: Served) -> None:
