@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.library import load_arm, load_tool
 from benchmarks.contacts.recording import TICK, Recording, touching
+from pendant.events import Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program import JointMove, LinearMove, Program
 from pendant.reaction import Until
@@ -25,6 +26,8 @@ START = Wishes(Inputs(commands=(Command.START_PROGRAM,)), (), ())
 AFTER = {2e5: 0.08, 1e4: 0.3, 1e3: 0.4}
 """How long a run goes on after the onset, by stiffness [s]."""
 WORST_SINGULAR = 0.12
+REST = 2.0
+"""How long a program's end is looked at [s]."""
 SETTLE = 150  # ticks at rest before the start
 
 
@@ -118,7 +121,10 @@ def _attempt(case: Approach, q: Array, rng: np.random.Generator) -> Recording | 
 
 
 def _run(simulation: Simulation, move: LinearMove | JointMove, case: Approach, shape: str) -> Recording | None:
-    """The move from rest to `AFTER` the onset; None where something else is touched or the way is not possible."""
+    """The move from rest to `AFTER` the onset, or to `REST` after the program's end.
+
+    None where something else is touched or the way is not possible.
+    """
     plant = simulation.plant
     simulation.tick(Wishes(Inputs(program=Program(steps=(move,))), (), ()))
     for _ in range(SETTLE):
@@ -128,12 +134,17 @@ def _run(simulation: Simulation, move: LinearMove | JointMove, case: Approach, s
     recording, wish = Recording(), START
     gap = before = np.inf
     tool, block = (plant.model.geom(name).id for name in ("shape/tool", "object/block"))
-    while plant.tick * TICK < recording.onset + (1.5 if case.react else AFTER[case.stiffness]):
+    over = np.inf  # when the program is
+    while plant.tick * TICK < (
+        max(recording.onset + 0.5, over + REST) if case.react else recording.onset + AFTER[case.stiffness]
+    ):
         decision = simulation.tick(wish)
         wish = IDLE
         recording.add(simulation, decision.contacts)
-        if any(event.kind.value == "program_failed" for event in decision.events) or plant.tick > 6000:
+        if any(event.kind is Kind.PROGRAM_FAILED for event in decision.events) or plant.tick > 6000:
             return None
+        if any(event.kind is Kind.PROGRAM_FINISHED for event in decision.events):
+            over = plant.tick * TICK
         name = touching(simulation)
         if name and recording.onset == np.inf:
             if shape not in (name, "any") or before == np.inf:
