@@ -15,7 +15,7 @@ from benchmarks.contacts import baselines
 from benchmarks.contacts.approaches import REST, Approach
 from benchmarks.contacts.motion import Free
 from benchmarks.contacts.recording import TICK
-from benchmarks.contacts.scores import RULES, Outcome, cost, quiet, react, score, sweep
+from benchmarks.contacts.scores import RULES, Outcome, cost, delay_of, quiet, react, score, sweep
 
 BARS = {  # p95 of the combination [ms] by stiffness [N/m] and speed [m/s]; None: information
     2e5: {0.25: 7.0, 0.1: 8.0, 0.02: 12.0, 0.005: 25.0},
@@ -26,7 +26,6 @@ FORCE_BARS = {(1e4, 0.1): 15.0, (1e4, 0.25): 25.0, (1e3, 0.25): 15.0}  # median 
 HARD = 2e5
 POSE_TICKS = 2.0
 HAND_TRANSIENT = 280.0  # ISO/TS 15066, hand and fingers, transient contact [N]
-HAND_QUASI_STATIC = 140.0  # [N]
 
 
 def percentile(values: list[float], share: float) -> float:
