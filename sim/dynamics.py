@@ -40,7 +40,7 @@ class Dynamics:
         self._flange = model.addFrame(frame)
         model.gravity = pin.Motion(rotation_from_rpy(mounting).T @ [0.0, 0.0, -GRAVITY], np.zeros(3))
         self.model, self.data = model, model.createData()
-        self._last = parent
+        self._last, self._elbow = parent, elbow + 1
         self._bare = model.inertias[parent].copy()
         self.gravity_B = np.array(model.gravity.linear)
         self.recursion = NewtonEuler(model, self._flange_placement, elbow)
@@ -59,6 +59,12 @@ class Dynamics:
         placement = pin.updateFramePlacement(model, data, self._flange)
         jacobian = pin.getFrameJacobian(model, data, self._flange, pin.LOCAL_WORLD_ALIGNED)
         return placement.translation, placement.rotation, jacobian
+
+    def places(self, q: Array) -> tuple[Array, Array, Array]:
+        """Flange position (3,) and orientation (3, 3), elbow position (3,), in B."""
+        pin.forwardKinematics(self.model, self.data, q)
+        placement = pin.updateFramePlacement(self.model, self.data, self._flange)
+        return placement.translation.copy(), placement.rotation.copy(), self.data.oMi[self._elbow].translation.copy()
 
     def gravity(self, q: Array) -> Array:
         """Gravity torque (n,) [N·m]."""

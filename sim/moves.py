@@ -107,15 +107,25 @@ class JointTrajectory:
         entry.max_acceleration = (move.acceleration * acceleration).tolist()
         entry.max_jerk = (move.acceleration * acceleration / JERK_TIME).tolist()
         self._trajectory = _planned(entry, n)
-        self._time = 0.0
+        self._time, self._rate = 0.0, 1.0
         self.done = False
 
-    def step(self) -> Reference:
-        """The reference of the next tick; at the end it stays at the target."""
-        self._time += TICK
+    @property
+    def remaining(self) -> float:
+        """How long it takes from here at full rate [s]."""
+        return self._trajectory.duration - self._time
+
+    def step(self, rate: float = 1.0) -> Reference:
+        """The reference of the next tick; at the end it stays at the target. `rate`: how fast the motion's own time passes."""
+        self._time += rate * TICK
         self.done = self._time >= self._trajectory.duration
         position, velocity, acceleration = self._trajectory.at_time(min(self._time, self._trajectory.duration))
-        return Reference(np.array(position), np.array(velocity), np.array(acceleration))
+        if rate == 1.0 == self._rate:
+            return Reference(np.array(position), np.array(velocity), np.array(acceleration))
+        speed = np.array(velocity)
+        changing = (rate - self._rate) / TICK
+        self._rate = rate
+        return Reference(np.array(position), rate * speed, rate * rate * np.array(acceleration) + changing * speed)
 
 
 def _planned(entry: ruckig.InputParameter, n: int) -> ruckig.Trajectory:
@@ -189,13 +199,18 @@ class LinearTrajectory:
             q = q + rate / count
         return 1.0 / worst
 
-    def step(self) -> Reference:
-        """The reference of the next tick; at the end it stays at the target."""
+    @property
+    def remaining(self) -> float:
+        """How long it takes from here at full rate [s]."""
+        return 0.0 if self.done else self._trajectory.duration - self._time
+
+    def step(self, rate: float = 1.0) -> Reference:
+        """The reference of the next tick; at the end it stays at the target. `rate`: how fast the motion's own time passes."""
         if not self.done:
-            self._time += TICK
+            self._time += rate * TICK
             self.done = self._time >= self._trajectory.duration
             position, velocity, _ = self._trajectory.at_time(min(self._time, self._trajectory.duration))
-            qd = self._line.solve(self._q, position[0], velocity[0])
+            qd = self._line.solve(self._q, position[0], rate * velocity[0])
             qdd = (qd - self._qd) / TICK
             self._q, self._qd = self._q + TICK * qd, qd
             return Reference(self._q, qd, qdd)

@@ -15,6 +15,7 @@ from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.force_move import ForceTrajectory
 from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, stop_time
+from sim.pace import Pace
 from sim.sensors import LATENCY
 
 Array = NDArray[np.float64]
@@ -44,6 +45,7 @@ class References:
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tcp, self._R_FT = dynamics, tcp, R_FT
+        self._pace = Pace(dynamics, tcp)
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._law: Law | None = None
@@ -88,14 +90,21 @@ class References:
         elif self._settling and self._motion is not None and self._motion.done:
             self._motion = self._settle(estimate, self.now)
         self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
-        if law is Law.FOLLOW and decision.move is not self._move:
+        begins = law is Law.FOLLOW and decision.move is not self._move
+        if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
             self.refusal = self._motion.problem
-        self.now = self._motion.step()
+        motion = self._motion
+        if isinstance(motion, JointTrajectory | LinearTrajectory):
+            if begins:
+                self._pace.begin(motion, decision.speed_limits)
+            self.now = motion.step(self._pace.step(motion, decision.speed_limits))
+        else:
+            self.now = motion.step()
         if isinstance(self._motion, ForceTrajectory):
             self.push = self._motion.push
         elif self.fresh:
