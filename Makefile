@@ -4,6 +4,7 @@
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
+#   make mutate      45 minutes: every small change of the pendant's logic that no test notices
 #   make clean       remove what the above made
 
 PYTHON ?= python3
@@ -15,7 +16,7 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick clean lint types contracts unit e2e wheel browser
+.PHONY: run test bench bench-full soak soak-quick mutate clean lint types contracts unit e2e wheel browser
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -86,5 +87,10 @@ bench bench-full: $(VENV)/dev.stamp
 soak soak-quick: $(VENV)/dev.stamp
 	$(BIN)/python -m benchmarks.soak --seed $(SEED) $(if $(filter soak,$@),--full)
 
+mutate: $(VENV)/dev.stamp
+	$(PIP) --editable '.[dev,mutate]'
+	$(BIN)/mutmut run --max-children $(WORKERS)
+	$(BIN)/python -m tests.mutants
+
 clean:
-	rm -rf $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage
+	rm -rf mutants $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage
