@@ -12,24 +12,19 @@ from pendant.settings import JointControl
 from sim.adaptive_friction import GATE, AdaptiveFriction
 from sim.arm import Arm
 from sim.calibration import Calibration
-from sim.chain import Body
 from sim.dynamics import Dynamics
-from sim.frames import skew
+from sim.flange_forces import FlangeForces
 from sim.moves import Reference
-from sim.newton_euler import cross
 from sim.sensors import Sample
 from sim.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
 
 Array = NDArray[np.float64]
 
-BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
-
 SHIPPED = JointControl()
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
-
+BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
-DAMPING = 0.1  # lever arm below which the joints feel no force [m]
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
 
 
@@ -80,19 +75,10 @@ class Estimator:
         self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
         self._started = False
         self._wanted: Reference | None = None  # in the last tick
-        self.q, self.jacobian = np.zeros(n), np.zeros((6, n))
-        self._F_user, self._F_joints = np.zeros(6), np.zeros(3)
+        self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
+        self.forces = FlangeForces(dynamics)
         self._known: Estimate | None = None
-        self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
-        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
         self.tick = 0
-        self.set_load(dynamics.load)
-
-    def set_load(self, load: Body) -> None:
-        """Take `load` (in F) as everything beyond the flange."""
-        cross = skew(load.com)
-        about_flange = load.inertia - load.mass * cross @ cross
-        self._load = (load.mass, np.array(load.com), about_flange)
 
     def update(
         self, sample: Sample, move_done: int, move_refused: str, use: JointControl = SHIPPED, answered: Reference | None = None
@@ -123,24 +109,10 @@ class Estimator:
             _follow(*angles, self._gains, self._constants, theta, q, self._rest, self.tau_m, self._deflection)
             self.q = angles[1].copy()  # a law may hold on to it
         self._started = angles is not None
-        qd = q[1]
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        R, v_F, self.jacobian = rigid.R, rigid.v_F, rigid.jacobian
         self._estimate_torques(sample, use, rigid.torque)
-        _felt_by_joints(self.jacobian, self.transmission.external, self._F_joints)
-        if sample.acceleration_valid:
-            _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
-        if not sample.wrench_valid:
-            self._F_user[:] = 0.0
-        else:
-            if sample.acceleration_valid:
-                force = sample.acceleration_tool
-            else:
-                # The model stands in; its values stay for the differentiation to go on from.
-                force, self._turn[:] = dynamics.specific_force(self.q, qd, q[2])
-                self._gyro[:] = R.T @ v_F[3:]
-            _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, R, self._F_user)
+        self.forces.update(sample, self.q, q, self.transmission.external)
         known = self._known
         if known is None:
             self._known = known = self._all(sample)
@@ -152,7 +124,7 @@ class Estimator:
         known.move_done, known.move_refused = move_done, move_refused
         known.degraded = not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
-        known.load_mass, known.singularity = self._load[0], math.inf
+        known.load_mass, known.singularity = dynamics.load.mass, math.inf
         return known
 
     def _all(self, sample: Sample) -> Estimate:
@@ -172,7 +144,7 @@ class Estimator:
             tau_J=transmission.fused,
             tau_ext=transmission.external,
             w_sensor=sample.wrench,
-            F_user=self._F_user,
+            F_user=self.forces.F_user,
             a_F=sample.acceleration_flange,
             p_BF=rigid.p,
             R_BF=rigid.R,
@@ -188,7 +160,7 @@ class Estimator:
             tau_ext_deviation=transmission.deviations[DEFLECTION],
             tcp=rigid.tcp,
             elbow=rigid.elbow,
-            F_joints=self._F_joints,
+            F_joints=self.forces.F_joints,
         )
 
     def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array) -> None:
@@ -306,60 +278,3 @@ def _follow(theta_measured, q_measured, current, gains, constants, theta, q, res
         rest[i] = min(max(rest[i], x - slip_yield), x + slip_yield)
         slip = slip_stiffness * (x - rest[i])
         tau_J[i] = x * (stiffness + stiffening * x * x) + damping * (theta[1, i] - q[1, i]) + slip
-
-
-@numba.njit(cache=True)
-def _felt_by_joints(jacobian, tau_ext, out) -> None:
-    """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
-    a = np.zeros((3, 3))
-    b = np.zeros(3)
-    for j in range(3):
-        for i in range(tau_ext.size):
-            b[j] += jacobian[j, i] * tau_ext[i]
-            for k in range(3):
-                a[j, k] += jacobian[j, i] * jacobian[k, i]
-        a[j, j] += DAMPING * DAMPING
-    c0 = a[1, 1] * a[2, 2] - a[1, 2] * a[2, 1]
-    c1 = a[1, 2] * a[2, 0] - a[1, 0] * a[2, 2]
-    c2 = a[1, 0] * a[2, 1] - a[1, 1] * a[2, 0]
-    determinant = a[0, 0] * c0 + a[0, 1] * c1 + a[0, 2] * c2
-    d1 = a[0, 2] * a[2, 1] - a[0, 1] * a[2, 2]
-    d2 = a[0, 1] * a[2, 0] - a[0, 0] * a[2, 1]
-    e1 = a[0, 0] * a[2, 2] - a[0, 2] * a[2, 0]
-    e2 = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
-    f12 = a[0, 2] * a[1, 0] - a[0, 0] * a[1, 2]
-    g = a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
-    out[0] = (c0 * b[0] + d1 * b[1] + g * b[2]) / determinant
-    out[1] = (c1 * b[0] + e1 * b[1] + f12 * b[2]) / determinant
-    out[2] = (c2 * b[0] + d2 * b[1] + e2 * b[2]) / determinant
-
-
-@numba.njit(cache=True)
-def _differentiate(gyro, last, turn, smoothing) -> None:
-    for k in range(3):
-        turn[k] += smoothing * ((gyro[k] - last[k]) / TICK - turn[k])
-        last[k] = gyro[k]
-
-
-@numba.njit(cache=True)
-def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
-    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
-
-    The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
-    c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
-    """
-    tangential = cross(turn, com)
-    normal = cross(gyro, cross(gyro, com))
-    lever = cross(com, force)
-    spin, torque = np.empty(3), np.empty(3)
-    for k in range(3):
-        spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
-        torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
-    whirl = cross(gyro, spin)
-    rest = np.empty(6)
-    for k in range(3):
-        rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]
-        rest[3 + k] = mass * lever[k] + torque[k] + whirl[k] - measured[3 + k]
-    for k in range(3):
-        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
-        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]

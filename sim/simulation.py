@@ -152,7 +152,7 @@ class Simulation:
         self.fitting = fitting
         body = self._after if fitting.share == 1.0 else self._before.blend(self._after, fitting.share)
         self.dynamics.set_load(body)
-        self.estimator.set_load(body)
+        self.estimator.forces.set_load(body)
         self.contact_sources.set_load(body)
 
     def apply(self, change: AnyChange) -> None:

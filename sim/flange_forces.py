@@ -1,0 +1,125 @@
+"""The user's wrench on the flange from its force/torque sensor, and the force there that the joints feel."""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.modes import TICK
+from sim.chain import Body
+from sim.dynamics import Dynamics
+from sim.frames import skew
+from sim.newton_euler import cross
+from sim.sensors import Sample
+
+Array = NDArray[np.float64]
+
+TURN_BANDWIDTH = 20.0  # of the angular acceleration, which is the gyro's difference [Hz]
+DAMPING = 0.1  # lever arm below which the joints feel no force [m]
+
+
+class FlangeForces:
+    """Both forces, each in its own way; written in place.
+
+    Attributes:
+        F_user: the user's wrench (6,) in axes of B at the flange origin: force [N], torque [N·m]; zeros while the sensor is out.
+        F_joints: the force (3,) in B that explains the joints' external torques best [N].
+
+    Args:
+        dynamics: the controller's rigid model, whose recursion has been run in this tick.
+    """
+
+    def __init__(self, dynamics: Dynamics) -> None:
+        self._dynamics = dynamics
+        self.F_user, self.F_joints = np.zeros(6), np.zeros(3)
+        self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
+        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        self.set_load(dynamics.load)
+
+    def set_load(self, load: Body) -> None:
+        """Take `load` (in F) as everything beyond the flange."""
+        turned = skew(load.com)
+        about_flange = load.inertia - load.mass * turned @ turned
+        self._load = (load.mass, np.array(load.com), about_flange)
+
+    def update(self, sample: Sample, q: Array, motion: Array, tau_ext: Array) -> None:
+        """One tick.
+
+        Args:
+            sample: its measurements.
+            q: joint angles (n,) [rad].
+            motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
+            tau_ext: external torques of the joints (n,) [N·m].
+        """
+        rigid = self._dynamics.recursion
+        _felt_by_joints(rigid.jacobian, tau_ext, self.F_joints)
+        if sample.acceleration_valid:
+            _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
+        if not sample.wrench_valid:
+            self.F_user[:] = 0.0
+            return
+        if sample.acceleration_valid:
+            force = sample.acceleration_tool
+        else:
+            # The model stands in; its values stay for the differentiation to go on from.
+            force, self._turn[:] = self._dynamics.specific_force(q, motion[1], motion[2])
+            self._gyro[:] = rigid.R.T @ rigid.v_F[3:]
+        _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, rigid.R, self.F_user)
+
+
+@numba.njit(cache=True)
+def _felt_by_joints(jacobian, tau_ext, out) -> None:
+    """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
+    a = np.zeros((3, 3))
+    b = np.zeros(3)
+    for j in range(3):
+        for i in range(tau_ext.size):
+            b[j] += jacobian[j, i] * tau_ext[i]
+            for k in range(3):
+                a[j, k] += jacobian[j, i] * jacobian[k, i]
+        a[j, j] += DAMPING * DAMPING
+    c0 = a[1, 1] * a[2, 2] - a[1, 2] * a[2, 1]
+    c1 = a[1, 2] * a[2, 0] - a[1, 0] * a[2, 2]
+    c2 = a[1, 0] * a[2, 1] - a[1, 1] * a[2, 0]
+    determinant = a[0, 0] * c0 + a[0, 1] * c1 + a[0, 2] * c2
+    d1 = a[0, 2] * a[2, 1] - a[0, 1] * a[2, 2]
+    d2 = a[0, 1] * a[2, 0] - a[0, 0] * a[2, 1]
+    e1 = a[0, 0] * a[2, 2] - a[0, 2] * a[2, 0]
+    e2 = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    f12 = a[0, 2] * a[1, 0] - a[0, 0] * a[1, 2]
+    g = a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
+    out[0] = (c0 * b[0] + d1 * b[1] + g * b[2]) / determinant
+    out[1] = (c1 * b[0] + e1 * b[1] + f12 * b[2]) / determinant
+    out[2] = (c2 * b[0] + d2 * b[1] + e2 * b[2]) / determinant
+
+
+@numba.njit(cache=True)
+def _differentiate(gyro, last, turn, smoothing) -> None:
+    for k in range(3):
+        turn[k] += smoothing * ((gyro[k] - last[k]) / TICK - turn[k])
+        last[k] = gyro[k]
+
+
+@numba.njit(cache=True)
+def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
+    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
+
+    The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
+    c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
+    """
+    tangential = cross(turn, com)
+    normal = cross(gyro, cross(gyro, com))
+    lever = cross(com, force)
+    spin, torque = np.empty(3), np.empty(3)
+    for k in range(3):
+        spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
+        torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
+    whirl = cross(gyro, spin)
+    rest = np.empty(6)
+    for k in range(3):
+        rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]
+        rest[3 + k] = mass * lever[k] + torque[k] + whirl[k] - measured[3 + k]
+    for k in range(3):
+        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
+        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]
