@@ -39,6 +39,7 @@ class Teach:
         self.lesson = Lesson()
         self.ghost = Ghost(server, arm, "/ghost/waypoint", BLUE)
         self._running: list[Step] = []  # the steps of the program handed over last
+        self._first: int | None = None  # place of the first of them in the plan; None: they are none of it
         self._next = 0  # the step that `Step` does
         self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", names_of(Lesson()))
@@ -72,7 +73,8 @@ class Teach:
             target = next((w.q for w in self.lesson.waypoints if w.name == to), None)
         elif self.choice.value != NONE and decision.mode is not Mode.RUN:
             target = next((w.q for w in self.lesson.waypoints if w.name == self.choice.value), None)
-        rows = [(step.text, step is self._now(at)) for step in self.lesson.plan]
+        now = self._now(at)
+        rows = [(step.text, number == now) for number, step in enumerate(self.lesson.plan)]
         return any(
             [
                 self.list.show(svg.steps(rows, decision.program.value.lower() if active else "")),
@@ -86,8 +88,12 @@ class Teach:
         self._loop.desk.command(Command.REGISTER_WAYPOINT)
         self._register(self._loop.latest())
 
-    def _now(self, at: int) -> Step | None:
-        return self._running[at - 1] if 0 < at <= len(self._running) else None
+    def _now(self, at: int) -> int | None:
+        """The place in the plan of step `at` of the program that runs, unless the plan has changed since."""
+        if self._first is None or not 0 < at <= len(self._running):
+            return None
+        now, plan = self._first + at - 1, self.lesson.plan
+        return now if now < len(plan) and plan[now] == self._running[at - 1] else None
 
     def _register(self, snapshot: Snapshot) -> None:
         if len(self.lesson.waypoints) >= MOST:
@@ -114,12 +120,12 @@ class Teach:
             self.choice.value = wanted
         self.name.value = "" if wanted == NONE else wanted
 
-    def _hand_over(self, steps: list[Step]) -> None:
-        """Load and start a program of these steps."""
+    def _hand_over(self, steps: list[Step], first: int | None) -> None:
+        """Load and start a program of these steps; `first` is the place of the first one in the plan."""
         if not steps:
             self.message.show(svg.note("Nothing to run", "Register a waypoint first.", Colour.AMBER))
             return
-        self._running = steps
+        self._running, self._first = steps, first
         self._loop.desk.load(program(self.lesson, steps, float(self.speed.value) / 100.0))
         self._loop.desk.command(Command.START_PROGRAM)
         self.message.show("")
@@ -177,7 +183,7 @@ class Teach:
         if name == NONE:
             return
         if self.edit.value == "Go to":
-            self._hand_over([Step(do="joint", to=name)])
+            self._hand_over([Step(do="joint", to=name)], None)
         elif self.edit.value == "✕":
             self.lesson = self.lesson.without(name)
         else:
@@ -216,10 +222,10 @@ class Teach:
         elif state is ProgramState.PAUSED and self.run.value == "Run":
             desk.command(Command.RESUME_PROGRAM)
         elif self.run.value == "Run":
-            self._hand_over(self.lesson.plan)
+            self._hand_over(self.lesson.plan, 0)
         else:
             plan = self.lesson.plan
-            self._hand_over(plan[self._next : self._next + 1])
+            self._hand_over(plan[self._next : self._next + 1], self._next)
             self._next = (self._next + 1) % max(len(plan), 1)
 
 

@@ -15,6 +15,7 @@ from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
 from pendant.nearness import Nearness
 from pendant.payload_wizard import IDLE
+from pendant.program import ProgramState
 from pendant.settings import Settings
 from pendant.tooling import Fitting
 from pendant.walls import AnyBorder
@@ -88,6 +89,8 @@ class FakeLoop:
         self.singularity: Nearness | None = None
         self.payload = 0.0
         self.q = HOME.copy()
+        self.program = ProgramState.NONE
+        self.step = 0  # of the program
         self.walls: tuple[WallState, ...] = ()
         self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
@@ -133,6 +136,8 @@ class FakeLoop:
             locks=self.locks,
             singularity=self.singularity,
             walls=self.walls,
+            program=self.program,
+            step=self.step,
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))

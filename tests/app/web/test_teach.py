@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from app.teaching import Lesson
+from app.teaching import Lesson, Step
 from app.web.ghost import limbs
 from app.web.server import Served
 from app.web.takes import MAX_FILE
 from pendant.inputs import Command
 from pendant.modes import Mode
-from pendant.program import JointMove
+from pendant.program import JointMove, ProgramState
 from tests.app.web.fake_loop import ARM, HOME, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -41,6 +41,45 @@ def test_waypoints_are_registered_and_run_as_a_program(served: Served, join: Joi
     inputs = loop.wishes[-1].inputs
     assert [step.q for step in inputs.program.steps if isinstance(step, JointMove)] == [pytest.approx(HOME)] * 2
     until(lambda: any(Command.START_PROGRAM in w.inputs.commands for w in loop.wishes) or loop.advance() is not None, "started")
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) -> None:
+    teach = still.docks.teach
+    for _ in range(3):
+        teach.mark()
+    if own:
+        teach.lesson = teach.lesson.with_steps([Step(do="joint", to="P2"), Step(do="joint", to="P2"), Step(do="joint", to="P1")])
+    texts = [step.text for step in teach.lesson.plan]
+    teach.run.value = "Run"
+    teach._run()
+    loop.program = ProgramState.RUNNING
+    for number in (1, 2, 3):
+        loop.step = number
+        teach.show(loop.latest())
+        items = teach.list.shown.split("<li")[1:]
+        assert [number for number, item in enumerate(items, 1) if "pd-now" in item] == [number]
+        assert f"{texts[number - 1]} <em>running</em>" in items[number - 1]
+    teach.lesson = teach.lesson.with_steps([Step(do="joint", to="P3")])
+    teach.show(loop.latest())
+    assert "pd-now" not in teach.list.shown  # the plan is another one by now
+    teach.edit.value = "Go to"
+    teach._edit()
+    loop.step = 1
+    teach.show(loop.latest())
+    assert "pd-now" not in teach.list.shown  # it goes to a waypoint, and does no step of the plan
+
+
+def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, teach = join(), served.docks.teach
+    register(served, client, 2)
+    for text in ("P1", "P2", "P1"):
+        loop.program, loop.step = ProgramState.STOPPED, 0
+        until(lambda: "pd-now" not in teach.list.shown, "nothing runs")
+        client.set(teach.run._impl.uuid, value="Step")
+        until(lambda text=text: [step.to for step in teach._running] == [text], "handed over")
+        loop.program, loop.step = ProgramState.RUNNING, 1
+        until(lambda text=text: f'class="pd-now">Move to {text} ' in teach.list.shown, text)
 
 
 def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loop: FakeLoop) -> None:

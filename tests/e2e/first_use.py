@@ -1,0 +1,156 @@
+"""The first use of the page by a stranger, step by step: a browser test walks it, the pictures of the docs are taken on it."""
+
+import csv
+import io
+from collections.abc import Callable
+
+import numpy as np
+from playwright.sync_api import Locator, Page
+
+from pendant.events import Event, Kind
+from pendant.modes import Mode, Phase
+from tests.e2e.cell import Cell
+from tests.e2e.hold import enter_free_drive, hold_until
+
+WEIGHT = 2.0
+"""Mass that is put on without telling the controller [kg]."""
+
+
+class FirstUse:
+    """One page and its cell. `see` is told the name of each state once it is on the page."""
+
+    def __init__(self, page: Page, cell: Cell, see: Callable[[str], None] = lambda state: None) -> None:
+        self.page, self.cell, self.see = page, cell, see
+
+    def walk(self) -> str:
+        """Do everything, and check what each step has to show. Returns the contact log as CSV."""
+        self.open()
+        self.push_it_held()
+        self.guide_and_register()
+        self.run_program()
+        self.be_refused()
+        self.correct_and_enter()
+        return self.touch_the_table()
+
+    def open(self) -> None:
+        """The page says what to do."""
+        self.page.get_by_text("Drag the arm").wait_for()
+        self.see("open")
+
+    def push_it_held(self) -> None:
+        """Dragged without free-drive, the arm holds its place."""
+        cell, page = self.cell, self.page
+        cell.pass_time(0.3)
+        before = cell.position("wrist_3")
+        cell.drag(page, 0, before, (0.0, -200.0))
+        cell.wait(lambda: any(np.linalg.norm(touch[2]) > 45.0 for touch in cell.loop.latest().touches), "the hand is at its cap")
+        cell.pass_time(0.3)
+        assert cell.loop.latest().decision.mode is Mode.TEACH
+        assert np.linalg.norm(cell.position("wrist_3") - before) < 0.003
+        self.see("held")
+        self.let_go()
+
+    def guide_and_register(self) -> None:
+        """Free-drive on, two moves, and a waypoint before, between and after them."""
+        cell, page = self.cell, self.page
+        self.register(1)
+        enter_free_drive(page, cell)
+        for number, way in ((2, (-50.0, -80.0)), (3, (80.0, -30.0))):
+            before = cell.position("wrist_3")
+            cell.drag(page, 0, before, way)
+            cell.wait(lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
+            if number == 2:
+                self.see("guided")
+            self.let_go()
+            cell.pass_time(0.3)
+            self.register(number)
+        page.get_by_role("button", name="Leave free-drive").click()
+        cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left")
+        self.see("registered")
+
+    def run_program(self) -> None:
+        """The waypoints, one after the other."""
+        cell, page = self.cell, self.page
+        end = cell.position("wrist_3")
+        page.get_by_role("button", name="Run", exact=True).first.click()
+        cell.wait(lambda: cell.loop.latest().decision.step == 2, "the second step", 30.0)
+        page.get_by_text("running", exact=True).wait_for()
+        self.see("running")
+        cell.wait(lambda: cell.happened(Kind.PROGRAM_FINISHED), "the program ends", 30.0)
+        assert np.linalg.norm(cell.position("wrist_3") - end) < 0.005  # the last waypoint is where it was left
+
+    def be_refused(self) -> None:
+        """Two kilograms that the controller does not know of: refused, with a reason in numbers."""
+        cell, page = self.cell, self.page
+        page.get_by_role("tab", name="Lab").click()
+        self.fill(self.number(cell.served.lab.true), f"{WEIGHT:g}")
+        page.get_by_text(f"+{WEIGHT:.1f} kg wrong").wait_for()
+        hold_until(page, cell, lambda: cell.happened(Kind.REFUSED_PAYLOAD), "refused")
+        page.get_by_text("Consistent with").or_(page.get_by_text("kg more than configured")).first.wait_for()
+        page.mouse.up()
+        assert 1.0 < float(self.first(Kind.REFUSED_PAYLOAD).values["mass"]) < 3.0
+        self.see("refused")
+
+    def correct_and_enter(self) -> None:
+        """The payload is entered; free-drive begins, counts down and ends."""
+        cell, page = self.cell, self.page
+        cell.loop.desk.set({"free_drive.period": 2.0})
+        self.fill(self.number(cell.served.lab.configured), f"{WEIGHT:g}")
+        page.get_by_text("as configured").wait_for()
+        cell.pass_time(2.2)  # the cool-down
+        enter_free_drive(page, cell)
+        cell.wait(lambda: cell.loop.latest().decision.phase is Phase.PERIOD, "it counts down")
+        self.see("corrected")
+        cell.wait(lambda: cell.happened(Kind.LEFT_PERIOD), "left alone, it ends")
+        page.get_by_text("Free-drive ended: nobody moved the arm").first.wait_for()
+        assert cell.loop.latest().decision.mode is Mode.TEACH
+
+    def touch_the_table(self) -> str:
+        """A ready-made program touches the table: the contact is in the log, and in the file."""
+        cell, page = self.cell, self.page
+        cell.served.lab.scenarios.choice.value = "Down onto the table until it touches"
+        page.get_by_role("button", name="Play").click()
+        page.get_by_role("tab", name="Contacts").click()
+        cell.wait(lambda: cell.happened(Kind.CONTACT_GAINED), "the table", 60.0)
+        low = cell.position("wrist_3")[2]
+        event = self.first(Kind.CONTACT_GAINED)
+        page.get_by_role("cell", name="gained").first.wait_for()
+        page.get_by_role("cell", name=f"{2 * int(event.values['steps'])} ms").first.wait_for()
+        cell.wait(lambda: self.finished_after(event), "the program ends", 60.0)
+        assert 0.04 < cell.position("wrist_3")[2] - low < 0.06
+        self.see("contact")
+        with page.expect_download() as download:
+            page.get_by_role("button", name="Export CSV").click()
+        text = download.value.path().read_text()
+        row = next(csv.DictReader(io.StringIO(text)))
+        assert row["kind"] == "contact_gained"
+        assert float(row["force"]) == float(event.values["force"])
+        return text
+
+    def register(self, number: int) -> None:
+        """Register waypoint `number`."""
+        self.page.get_by_role("button", name="Register waypoint").click()
+        self.cell.wait(lambda: len(self.cell.served.docks.teach.lesson.waypoints) == number, f"waypoint {number}")
+
+    def let_go(self) -> None:
+        """Release the arm."""
+        self.page.mouse.up()
+        self.cell.wait(lambda: not self.cell.loop.desk._touches, "let go")
+
+    def number(self, slider: object) -> Locator:
+        """The number beside a slider."""
+        return self.page.locator(f'[id="{slider._impl.uuid}"] ~ div input')  # type: ignore[attr-defined]
+
+    def fill(self, field: Locator, value: str) -> None:
+        """Type a value."""
+        field.fill(value)
+        field.press("Enter")
+
+    def first(self, kind: Kind) -> Event:
+        """The first event of a kind."""
+        return next(event for event in self.cell.loop.events(0) if event.kind is kind)
+
+    def finished_after(self, event: Event) -> bool:
+        """Whether a program has finished after an event."""
+        kinds = [other.kind for other in self.cell.loop.events(0)]
+        return Kind.PROGRAM_FINISHED in kinds[kinds.index(event.kind) :]
