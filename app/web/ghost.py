@@ -22,6 +22,7 @@ class Ghost:
         self._server, self._arm = server, arm
         self._name, self._colour = name, colour
         self._q: tuple[float, ...] | None = None
+        self._label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center")
         self._node: viser.MeshHandle | None = None
 
     @property
@@ -29,12 +30,20 @@ class Ghost:
         """The posture shown [rad]."""
         return self._q
 
-    def show(self, q: Sequence[float] | None, snapshot: Snapshot) -> bool:
-        """Show the arm in posture `q` [rad], or nothing; True if anything changed."""
+    @property
+    def text(self) -> str:
+        """What is written at its flange."""
+        return self._label.text if self._label.visible else ""
+
+    def show(self, q: Sequence[float] | None, snapshot: Snapshot, text: str = "") -> bool:
+        """Show the arm in posture `q` [rad] with a text at its flange, or nothing; True if anything changed."""
         wanted = None if q is None else tuple(q)
+        if wanted is not None and text != self._label.text:
+            self._label.text = text
         if wanted == self._q:
             return False
         self._q = wanted
+        self._label.visible = wanted is not None and bool(text)
         if self._node is not None:
             self._node.remove()
             self._node = None
@@ -42,6 +51,8 @@ class Ghost:
             shape = limbs(self._arm, wanted)
             base = snapshot.truth_links[0]
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
+            tip = joint_frames(self._arm, np.array(wanted))[-1][:3, 3]
+            self._label.position = matrix_from_quaternion(base[3:]) @ tip + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
                 self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False

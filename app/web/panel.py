@@ -16,6 +16,7 @@ from pendant.events import Event, Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Mode, Phase
+from pendant.program import ProgramState
 from pendant.settings import Settings, limits_checksum
 from pendant.table import TABLE, Clears, Effect, Severity, render
 from sim.arm import Arm
@@ -137,8 +138,11 @@ class Panel:
             self._note = event  # a busy machine is told in the log alone: it must not hide why the robot stopped
 
     def _over(self, event: Event, decision: Decision) -> bool:
-        """Whether a message has nothing to say any more: a stop that was reset."""
-        return TABLE[event.kind].clears is Clears.RESET and decision.mode is not Mode.STOP
+        """Whether a message has nothing to say any more: of a stop that was reset, of free-drive when a program runs."""
+        row = TABLE[event.kind]
+        if row.effect is Effect.LEAVE:
+            return decision.program is ProgramState.RUNNING
+        return row.clears is Clears.RESET and decision.mode is not Mode.STOP
 
     def _message(self, decision: Decision) -> str:
         event = self._note

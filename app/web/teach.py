@@ -23,6 +23,9 @@ from sim.snapshot import Snapshot
 
 NONE = "none"
 BLUE = (25, 113, 194)
+HERE = 0.02
+"""The arm is at a waypoint when no joint is further from it [rad]."""
+
 APART = 0.08
 """A recorded path gets a waypoint whenever a joint has turned by this much since the last one [rad]."""
 
@@ -67,18 +70,20 @@ class Teach:
                 self._register(snapshot)
         active = decision.program in (ProgramState.RUNNING, ProgramState.PAUSED)
         at = decision.step if active else 0
-        target = None
+        name: str | None = None
         if active and 0 < at <= len(self._running):
-            to = self._running[at - 1].to
-            target = next((w.q for w in self.lesson.waypoints if w.name == to), None)
+            name = self._running[at - 1].to
         elif self.choice.value != NONE and decision.mode is not Mode.RUN:
-            target = next((w.q for w in self.lesson.waypoints if w.name == self.choice.value), None)
+            name = self.choice.value
+        target = next((w.q for w in self.lesson.waypoints if w.name == name), None)
+        if target is not None and float(np.max(np.abs(snapshot.estimate.q - np.array(target)))) < HERE:
+            target = None  # the arm is there
         now = self._now(at)
         rows = [(step.text, number == now) for number, step in enumerate(self.lesson.plan)]
         return any(
             [
                 self.list.show(svg.steps(rows, decision.program.value.lower() if active else "")),
-                self.ghost.show(target, snapshot),
+                self.ghost.show(target, snapshot, name or ""),
                 enable(self.register, decision.mode is not Mode.RUN),
             ]
         )

@@ -127,7 +127,11 @@ class DrawnWall:
             self.surface.opacity = CALM if colour in (GREY, GREEN) else OPACITY
             self.outline.colors = np.array(colour, dtype=np.uint8)
             self.way.colors = np.array(colour, dtype=np.uint8)
-        return any([changed, self._tell(state), self._push(state)])
+        # The tether goes along with the hand and is near all the time: it is in the picture once it resists.
+        seen = self._border.name != TETHER or (state is not None and state.near > 0.0)
+        if seen != self.surface.visible:
+            changed = self.surface.visible = self.outline.visible = seen
+        return any([changed, self._tell(state if seen else None, seen), self._push(state)])
 
     def _move(self, pose: Pose, scale: float) -> bool:
         """Bring the surface to a pose and a size; True if that is elsewhere than it was."""
@@ -156,13 +160,12 @@ class DrawnWall:
         away = dot(normal, (px - sx, py - sy, pz - sz)) + place.factor * shape.distance
         return Pose((sx + away * normal[0], sy + away * normal[1], sz + away * normal[2]), turn), 1.0
 
-    def _tell(self, state: WallState | None) -> bool:
+    def _tell(self, state: WallState | None, seen: bool) -> bool:
         """Show the label, and the way that is left to the wall."""
-        if state is None:
-            told: tuple[object, ...] = (self._border.name, *self._centre)
-        elif self._border.name == TETHER and state.near <= 0.0:
-            told = ()  # it goes along with the hand and is near all the time: told once it resists
-        else:
+        told: tuple[object, ...] = ()
+        if state is None and seen:
+            told = (self._border.name, *self._centre)
+        elif state is not None:
             told = (text_of(state), *(round(value, 3) for value in (*state.p, *_nearest(state))))
         if told == self._told:
             return False

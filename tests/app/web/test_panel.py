@@ -11,6 +11,7 @@ from pendant.events import Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import Mode, Phase, Safety
+from pendant.program import ProgramState
 from pendant.settings import Settings, apply, limits_checksum
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -126,6 +127,18 @@ def test_a_stop_that_was_reset_has_nothing_more_to_say(loop: FakeLoop, still: Se
     loop.mode = Mode.TEACH
     still.docks.show(loop.latest())
     assert "danger" not in still.panel.note.shown
+
+
+def test_how_free_drive_ended_is_told_until_a_program_runs(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.DEACTIVATED)
+    still.docks.show(loop.latest())
+    assert "Free-drive switched off" in still.panel.note.shown
+    loop.mode, loop.program = Mode.RUN, ProgramState.PAUSED  # free-drive began in a program, which waits
+    still.docks.show(loop.latest())
+    assert "Free-drive switched off" in still.panel.note.shown
+    loop.program = ProgramState.RUNNING
+    still.docks.show(loop.latest())
+    assert "Drag the arm" in still.panel.note.shown
 
 
 def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: FakeLoop, still: Served) -> None:

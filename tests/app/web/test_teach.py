@@ -85,8 +85,11 @@ def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop:
 def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loop: FakeLoop) -> None:
     client = join()
     register(served, client, 1)
+    assert served.docks.teach.ghost.posture is None  # the arm is there
+    loop.q = HOME + 0.1
     until(lambda: served.docks.teach.ghost.posture is not None, "shown")
     assert served.docks.teach.ghost.posture == pytest.approx(tuple(HOME))
+    assert served.docks.teach.ghost.text == "P1"
     client.set(served.docks.teach.edit._impl.uuid, value="✕")
     until(lambda: served.docks.teach.ghost.posture is None, "gone")
 

@@ -79,14 +79,15 @@ def test_the_plane_of_a_wall_lies_before_its_anchor_and_that_of_an_area_under_th
     assert area.surface.position == pytest.approx((0.2, 0.0, 0.0))
 
 
-def test_the_tether_is_told_only_when_it_resists(loop: FakeLoop, still: Served) -> None:
+def test_the_tether_is_shown_only_when_it_resists(loop: FakeLoop, still: Served) -> None:
     tether = Wall(name=TETHER, shape=Sphere(radius=0.03), policy=Policy.AVERAGE)
     drawn = shown(loop, still, tether, AT, state(TETHER, -0.03))
-    assert not drawn.label.visible
-    assert not drawn.way.visible
+    assert not any(node.visible for node in (drawn.surface, drawn.outline, drawn.label, drawn.way))
+    assert not still.scene.walls.show(loop.latest())
     shown(loop, still, tether, AT, state(TETHER, -0.003, 0.4))
-    assert drawn.label.visible
-    assert drawn.way.visible
+    assert all(node.visible for node in (drawn.surface, drawn.outline, drawn.label, drawn.way))
+    shown(loop, still, tether)
+    assert not any(node.visible for node in (drawn.surface, drawn.outline, drawn.label, drawn.way))
 
 
 def test_nothing_is_sent_while_nothing_changes_and_walls_that_are_gone_are_taken_away(loop: FakeLoop, still: Served) -> None:
