@@ -62,6 +62,7 @@ class Reading(NamedTuple):
     consequence: Consequence
     force: Vector  # on the part, against motion outwards, axes of B [N]
     anchored: bool  # anew in this tick
+    p: Vector = ORIGIN  # the part's place, where it is known [m]
 
 
 class Place(NamedTuple):
@@ -174,7 +175,7 @@ class Barrier:
             safety, redefine = self._constant or self._periods(around)
             user, payload = around.user_force, around.payload_force
             anchored = self._anchor.step(Stay(local, outward, near > 0.0, exceeded, moved, user, payload, safety, redefine))
-        return Reading(border, distance, outward, near, exceeded, consequence, force, anchored)
+        return Reading(border, distance, outward, near, exceeded, consequence, force, anchored, place)
 
     def place(self) -> Place | None:
         """Where the shape lies; None before the first tick."""

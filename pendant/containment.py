@@ -109,9 +109,8 @@ class Containment:
     def states(self) -> tuple[WallState, ...]:
         """What the last step found, for the law and for pictures; without a wall that could not be told."""
         states: list[WallState] = []
-        for border, distance, outward, near, exceeded, _, force, _ in self._reading:
+        for border, distance, outward, near, exceeded, _, force, _, p in self._reading:
             if distance < math.inf:
-                p = self._points[border.part].p
                 states.append(WallState(border.name, border.part, p, distance, outward, near, exceeded, force))
         return tuple(states)
 
@@ -157,14 +156,14 @@ def _switched(border: AnyBorder, walls: Walls) -> AnyBorder:
 
 
 def facts(reading: Reading) -> Values:
-    """What an event says of a wall: which, which part, how far out [mm], and the way back in."""
+    """What an event says of a wall: which, which part, where, how far out [mm], and the way back in."""
     x, y, z = reading.outward
     known = reading.distance < math.inf
     way = f"{_word(-x, 'x')}{_word(-y, 'y')}{_word(-z, 'z')}".strip() if known else "unknown"
     out = 1000.0 * reading.distance if known else 0.0
-    back = -max(reading.distance, 0.0) if known else 0.0
-    of = {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way}
-    return of | {"x": back * x, "y": back * y, "z": back * z}
+    px, py, pz = reading.p
+    back = {"x": -x, "y": -y, "z": -z, "px": px, "py": py, "pz": pz}
+    return {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way} | back
 
 
 def caught(reading: Reading | None) -> bool:

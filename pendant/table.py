@@ -55,8 +55,9 @@ class Row(NamedTuple):
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
 
 
-WALL = ("wall", "part", "distance", "way", "x", "y", "z")
-"""Values of an event of a wall: its name, the part, how far out [mm], the way back in words and as a vector in B [m]."""
+WALL = ("wall", "part", "distance", "way", "x", "y", "z", "px", "py", "pz")
+"""Values of an event of a wall: its name, the part, how far out [mm], the way back in words and as a direction of length 1 (zeros
+where it cannot be told), the part's place [m]; both in B."""
 
 
 def _info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:

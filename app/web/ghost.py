@@ -22,7 +22,7 @@ class Ghost:
         self._server, self._arm = server, arm
         self._name, self._colour = name, colour
         self._q: tuple[float, ...] | None = None
-        self._label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center")
+        self._label = server.scene.add_label(f"{name} label", "", visible=False, anchor="top-center", font_screen_scale=0.9)
         self._node: viser.MeshHandle | None = None
 
     @property
@@ -32,11 +32,11 @@ class Ghost:
 
     @property
     def text(self) -> str:
-        """What is written at its flange."""
+        """What is written at its elbow, out of the way of what is told at the tool."""
         return self._label.text if self._label.visible else ""
 
     def show(self, q: Sequence[float] | None, snapshot: Snapshot, text: str = "") -> bool:
-        """Show the arm in posture `q` [rad] with a text at its flange, or nothing; True if anything changed."""
+        """Show the arm in posture `q` [rad] with a text at its elbow, or nothing; True if anything changed."""
         wanted = None if q is None else tuple(q)
         if wanted is not None and text != self._label.text:
             self._label.text = text
@@ -51,8 +51,8 @@ class Ghost:
             shape = limbs(self._arm, wanted)
             base = snapshot.truth_links[0]
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
-            tip = joint_frames(self._arm, np.array(wanted))[-1][:3, 3]
-            self._label.position = matrix_from_quaternion(base[3:]) @ tip + base[:3]
+            elbow = joint_frames(self._arm, np.array(wanted))[2][:3, 3]
+            self._label.position = matrix_from_quaternion(base[3:]) @ elbow + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
                 self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False

@@ -93,7 +93,7 @@ class DrawnWall:
         )
         nothing = np.zeros((1, 2, 3), dtype=np.float32)
         self.way = scene.add_line_segments(f"{name} way", nothing, GREY, thickness=1.5, thickness_units="screen", visible=False)
-        self.label = scene.add_label(f"{name} label", border.name, visible=False, anchor="bottom-center")
+        self.label = scene.add_label(f"{name} label", border.name, visible=False, anchor="top-center")
         self.force = scene.add_arrows(
             f"{name} force", nothing, AMBER, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
         )

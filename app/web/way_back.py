@@ -39,6 +39,7 @@ class WayBack:
         self._posture: tuple[float, ...] = ()
         self._tick = 0  # shown last
         self._wall: Event | None = None
+        self._pointed: tuple[object, ...] = ()
         self.ghost = Ghost(server, arm, "/ghost/back", AMBER)
         self.text = Html(server.gui)
         nothing = np.zeros((1, 2, 3), dtype=np.float32)
@@ -80,27 +81,25 @@ class WayBack:
         return max(abs(then - now) for then, now in zip(self._posture, snapshot.estimate.q.tolist(), strict=True)) < REACHED
 
     def _point(self, snapshot: Snapshot) -> bool:
-        """Show which way the part has to go to be behind the wall again."""
-        wall = self._wall
-        if wall is None:
-            changed = self.arrow.visible
-            if changed:
-                self.arrow.visible = self.label.visible = False
-            return changed
-        if self.arrow.visible:
+        """Show which way, and how far, the part has to go to be behind the wall again."""
+        told: tuple[object, ...] = ()
+        if self._wall is not None:
+            values, seen = self._wall.values, snapshot.estimate
+            back = np.array([float(values[name]) for name in ("x", "y", "z")])
+            p = {"flange": seen.p_BF, "tcp": seen.tcp[:3], "elbow": seen.elbow[:3]}[str(values["part"])]
+            before = np.array([float(values[name]) for name in ("px", "py", "pz")])
+            left = float(values["distance"]) + 1000.0 * float((before - p) @ back)  # [mm]
+            if left > 0.0 and back.any():
+                base = snapshot.truth_links[0]
+                turn = matrix_from_quaternion(base[3:])
+                tail = base[:3] + turn @ p
+                tip = tail + turn @ back * LENGTH
+                told = (*np.round(tail, 3).tolist(), *np.round(tip, 3).tolist(), f"{values['wall']}: {left:.1f} mm back")
+        if told == self._pointed:
             return False
-        values, seen = wall.values, snapshot.estimate
-        way = np.array([float(values[axis]) for axis in "xyz"])
-        size = float(np.linalg.norm(way))
-        if size < 1e-6:
-            return False
-        points = {"flange": seen.p_BF, "tcp": seen.tcp[:3], "elbow": seen.elbow[:3]}
-        base = snapshot.truth_links[0]
-        turn = matrix_from_quaternion(base[3:])
-        tail = base[:3] + turn @ points[str(values["part"])]
-        tip = tail + turn @ way / size * LENGTH
-        self.arrow.points = np.array([[tail, tip]], dtype=np.float32)
-        self.label.position = tip
-        self.label.text = f"{1000.0 * size:.1f} mm back: {values['wall']}"
-        self.arrow.visible = self.label.visible = True
+        self._pointed = told
+        self.arrow.visible = self.label.visible = bool(told)
+        if told:
+            ends = np.array(told[:6], dtype=np.float32).reshape(1, 2, 3)
+            self.arrow.points, self.label.position, self.label.text = ends, ends[0, 1], str(told[6])
         return True

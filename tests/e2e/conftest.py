@@ -47,7 +47,7 @@ def loop() -> Iterator[Loop]:
     """The shipped UR5e in its default posture."""
     arm = load_arm("ur5e")
     # Software rendering takes seconds for what a hand does at once: from the button to the arm within the shipped 3 s is luck.
-    settings = apply(Settings(), {"free_drive.period": 30.0})
+    settings = apply(Settings(), {"free_drive.period": 30.0, "free_drive.restart_period": 30.0})
     running = Loop(lambda: Simulation(arm, Scenario(), settings))
     running.start()
     yield running

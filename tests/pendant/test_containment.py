@@ -25,10 +25,13 @@ FLOOR = Area(name="floor", shape=HalfSpace(normal=(0.0, 0.0, -1.0)), position=(0
 LOOSE = {"limits.activation.flange_displacement.on": False}
 
 
-def out(distance: float, way: str, back: tuple[float, float, float]) -> dict[str, Any]:
-    """What an event says of a flange beyond the tether."""
-    vector = {axis: pytest.approx(value, abs=1e-9) for axis, value in zip("xyz", back, strict=True)}
-    return {"wall": "tether", "part": "flange", "distance": pytest.approx(distance), "way": way} | vector
+def out(distance: float, way: str, place: tuple[float, float, float]) -> dict[str, Any]:
+    """What an event says of a flange at a place beyond the tether, which lies round the origin."""
+    size = math.hypot(*place)
+    back = [-value / size if size else 0.0 for value in place]
+    vectors = zip(("x", "y", "z", "px", "py", "pz"), (*back, *place), strict=True)
+    of = {"wall": "tether", "part": "flange", "distance": pytest.approx(distance), "way": way}
+    return of | {name: pytest.approx(value, abs=1e-9) for name, value in vectors}
 
 
 class Bench:
@@ -90,7 +93,7 @@ def test_beyond_the_activation_shape_entry_is_refused_with_the_way_back() -> Non
     assert bench.step(LET_GO, at(0.0049)).phase is Phase.SEQUENCE
     decision = bench.step(NOTHING, at(0.0, 0.0, -0.0062))
     assert (decision.mode, decision.phase, decision.law) == (Mode.TEACH, Phase.OFF, Law.HOLD)
-    assert bench.events[-1] == Event(Kind.REFUSED_WALL, bench.tick, out(1.2, "+z", (0.0, 0.0, 0.0012)))
+    assert bench.events[-1] == Event(Kind.REFUSED_WALL, bench.tick, out(1.2, "+z", (0.0, 0.0, -0.0062)))
     assert decision.walls == ()
 
 
@@ -149,7 +152,7 @@ def test_the_arm_stops_at_the_wall_and_goes_free_when_pushed_back() -> None:
     assert wall.force == (pytest.approx(-0.6 * 200.0 * 0.1), 0.0, 0.0)
     decision = bench.step(NOTHING, at(0.0305, speed=0.1))
     assert (decision.mode, decision.law) == (Mode.FREE_DRIVE, Law.HOLD)
-    assert bench.events[-1] == Event(Kind.WALL_REACHED, bench.tick, out(0.5, "-x", (-0.0005, 0.0, 0.0)))
+    assert bench.events[-1] == Event(Kind.WALL_REACHED, bench.tick, out(0.5, "-x", (0.0305, 0.0, 0.0)))
     bench.run(20, NOTHING, at(0.0305))
     assert bench.kinds().count(Kind.WALL_REACHED) == 1
     assert bench.run(60, NOTHING, at(0.0305, force=20.0)).law is Law.HOLD
@@ -182,7 +185,7 @@ def test_the_tether_leaves_or_stops_instead(changes: dict[str, bool], kind: Kind
     assert (decision.mode, decision.phase) == (mode, Phase.OFF)
     assert decision.law is not Law.FREE
     assert bench.events[-1].kind is kind
-    assert bench.events[-1].values == out(10.0, "-y", (0.0, -0.01, 0.0))
+    assert bench.events[-1].values == out(10.0, "-y", (0.0, 0.04, 0.0))
 
 
 def test_walls_off_means_none() -> None:

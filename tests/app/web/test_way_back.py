@@ -11,7 +11,9 @@ from tests.app.web.fake_loop import HOME, FakeLoop
 
 THEN = HOME + np.array([0.1, 0.0, -0.2, 0.0, 0.0, 0.0])
 LIMIT = {"parameter": "joint speed", "part": "elbow", "value": 1.2, "limit": 1.0, "unit": "rad/s"}
-WALL = {"wall": "fence", "part": "tcp", "distance": 12.0, "way": "-y", "x": 0.0, "y": -0.012, "z": 0.0}
+WALL = {"wall": "fence", "part": "tcp", "distance": 12.0, "way": "-y"} | dict(
+    zip(("x", "y", "z", "px", "py", "pz"), (0.0, -1.0, 0.0, 0.3, 0.098, 0.3), strict=True)
+)
 BACK = {"joints": "elbow -11.5°, base +5.7°", "posture": posture_text(THEN)}
 
 
@@ -80,13 +82,22 @@ def test_behind_a_wall_an_arrow_leads_the_part_back(loop: FakeLoop, still: Serve
     tail, tip = np.asarray(back.arrow.points)[0]
     assert tail == pytest.approx((-0.1, 0.4, 1.3), abs=1e-6)
     assert tip - tail == pytest.approx((LENGTH, 0.0, 0.0), abs=1e-6)
-    assert back.label.text == "12.0 mm back: fence"
+    assert back.label.text == "fence: 14.0 mm back"  # it has run on by 2 mm since
     assert not back.show(snapshot, [])
+    snapshot.estimate.tcp[:3] = (0.5, 0.0865, 0.3)
+    assert back.show(snapshot, [])
+    assert back.label.text == "fence: 0.5 mm back"
+    snapshot.estimate.tcp[1] = 0.085
+    assert back.show(snapshot, [])
+    assert not back.arrow.visible
+    snapshot.estimate.tcp[1] = 0.1
+    assert back.show(snapshot, [])
+    assert back.arrow.visible
     assert back.show(snapshot, [Event(Kind.ENTERED, 2, {"from": "TEACH", "gain": 1.0})])
     assert not back.arrow.visible
     assert not back.label.visible
 
 
 def test_where_the_way_cannot_be_told_there_is_no_arrow(loop: FakeLoop, still: Served) -> None:
-    show(loop, still, (Kind.LEFT_WALL, WALL | {"distance": 0.0, "way": "unknown", "y": 0.0}))
+    show(loop, still, (Kind.LEFT_WALL, WALL | {"distance": 0.0, "way": "unknown", "y": 0.0, "px": 9.0}))
     assert not still.panel.back.arrow.visible
