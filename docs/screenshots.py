@@ -49,7 +49,7 @@ def walled(page: Page, cell: Cell) -> None:
     x, y, z = cell.position("wrist_3")
     cell.loop.desk.touch("hand", Pull("wrist_3", (0.0, 0.0, 0.0), (x, y, z - 0.15), 40.0))
     cell.wait(lambda: any(wall.near > 0.5 and wall.name == "step down" for wall in cell.loop.latest().decision.walls), "the wall")
-    time.sleep(3.0)
+    time.sleep(6.0)  # the page is behind
 
 
 def led_back(page: Page, cell: Cell) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 from playwright.sync_api import Locator, Page
 
 from pendant.events import Event, Kind
-from pendant.modes import Mode, Phase
+from pendant.modes import Mode
 from tests.e2e.cell import Cell
-from tests.e2e.hold import enter_free_drive, hold_until
+from tests.e2e.hold import enter_free_drive, hold_free_drive, hold_until
 
 WEIGHT = 2.0
 """Mass that is put on without telling the controller [kg]."""
@@ -55,7 +55,7 @@ class FirstUse:
         cell, page = self.cell, self.page
         self.register(1)
         enter_free_drive(page, cell)
-        for number, way in ((2, (-50.0, -80.0)), (3, (80.0, -30.0))):
+        for number, way in ((2, (20.0, -90.0)), (3, (70.0, 20.0))):
             before = cell.position("wrist_3")
             cell.drag(page, 0, before, way)
             cell.wait(lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
@@ -94,12 +94,14 @@ class FirstUse:
     def correct_and_enter(self) -> None:
         """The payload is entered; free-drive begins, counts down and ends."""
         cell, page = self.cell, self.page
-        cell.loop.desk.set({"free_drive.period": 2.0})
         self.fill(self.number(cell.served.lab.configured), f"{WEIGHT:g}")
         page.get_by_text("as configured").wait_for()
         cell.pass_time(2.2)  # the cool-down
-        enter_free_drive(page, cell)
-        cell.wait(lambda: cell.loop.latest().decision.phase is Phase.PERIOD, "it counts down")
+        hold_free_drive(page, cell)
+        cell.pass_time(0.45)  # as in enter_free_drive
+        cell.loop.desk.set({"free_drive.period": 3.0})
+        cell.pass_time(0.1)
+        page.mouse.up()
         self.see("corrected")
         cell.wait(lambda: cell.happened(Kind.LEFT_PERIOD), "left alone, it ends")
         page.get_by_text("Free-drive ended: nobody moved the arm").first.wait_for()
