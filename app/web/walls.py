@@ -9,7 +9,7 @@ from app.web.surfaces import plane, surface
 from pendant.barrier import Place
 from pendant.containment import TETHER
 from pendant.decision import WallState
-from pendant.pose import ORIGIN, Pose, Vector, dot, product, quaternion, turned
+from pendant.pose import ORIGIN, Pose, Quaternion, Vector, dot, product, quaternion, turned
 from pendant.shapes import HalfSpace
 from pendant.walls import AnyBorder, Wall
 from sim.snapshot import Snapshot
@@ -20,6 +20,9 @@ ROOT = "/walls"
 WALL_SIDE = 0.6
 AREA_SIDE = 2.0
 """Sides of the squares that stand for the plane of a wall and of an area [m]."""
+
+STEP = 1e-4
+"""Turns smaller than this are not sent [of a quaternion]."""
 
 OPACITY = 0.16
 CALM = 0.06
@@ -99,8 +102,10 @@ class DrawnWall:
         )
         self._nodes = (self.surface, self.outline, self.way, self.label, self.force)
         self._place: Place | None = None
-        self._lies: tuple[float, ...] = ()
+        self._state: WallState | None = None
         self._centre: Vector = ORIGIN
+        self._turn: Quaternion = (1.0, 0.0, 0.0, 0.0)
+        self._scale = 1.0
         self._told: tuple[object, ...] = ()
         self._colour = GREY
         self._pushes: tuple[float, ...] = ()
@@ -116,8 +121,10 @@ class DrawnWall:
 
     def show(self, place: Place, state: WallState | None) -> bool:
         """Bring it to a place in B, with what is known of the part, if it holds; True if anything changed."""
-        changed = place != self._place
-        if changed:
+        if place == self._place and state == self._state:
+            return False
+        changed, self._state = False, state
+        if place != self._place:
             self._place = place
             changed = self._move(*self._pose(place))
         colour = colour_of(state)
@@ -136,12 +143,19 @@ class DrawnWall:
     def _move(self, pose: Pose, scale: float) -> bool:
         """Bring the surface to a pose and a size; True if that is elsewhere than it was."""
         x, y, z = pose.p
-        lies = (*(round(value, 4) for value in (x, y, z, *quaternion(pose.R))), round(scale, 4))
-        if lies == self._lies:
+        centre, turn, scale = (round(x, 4), round(y, 4), round(z, 4)), quaternion(pose.R), round(scale, 4)
+        if max(abs(old - new) for old, new in zip(self._turn, turn, strict=True)) < STEP:
+            turn = self._turn
+        if (centre, turn, scale) == (self._centre, self._turn, self._scale):
             return False
-        self._lies, self._centre = lies, (x, y, z)
-        for node in (self.surface, self.outline):
-            node.position, node.wxyz, node.scale = (x, y, z), quaternion(pose.R), scale
+        for node in (self.surface, self.outline):  # what is set is sent: what stays is not set
+            if centre != self._centre:
+                node.position = centre
+            if turn != self._turn:
+                node.wxyz = turn
+            if scale != self._scale:
+                node.scale = scale
+        self._centre, self._turn, self._scale = centre, turn, scale
         return True
 
     def _pose(self, place: Place) -> tuple[Pose, float]:
@@ -174,7 +188,8 @@ class DrawnWall:
         self.way.visible = state is not None and bool(told)
         if not told:
             return True
-        self.label.text = str(told[0])
+        if self.label.text != told[0]:
+            self.label.text = str(told[0])
         self.label.position = self._centre if state is None else _nearest(state)
         if state is not None:
             self.way.points = np.array([[state.p, _nearest(state)]], dtype=np.float32)
