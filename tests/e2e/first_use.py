@@ -5,6 +5,7 @@ import io
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from playwright.sync_api import Locator, Page
 
 from pendant.events import Event, Kind
@@ -42,7 +43,7 @@ class FirstUse:
         cell, page = self.cell, self.page
         cell.pass_time(0.3)
         before = cell.position("wrist_3")
-        cell.drag(page, 0, before, (0.0, -200.0))
+        self.drag((0.0, -200.0))
         cell.wait(lambda: any(np.linalg.norm(touch[2]) > 45.0 for touch in cell.loop.latest().touches), "the hand is at its cap")
         cell.pass_time(0.3)
         assert cell.loop.latest().decision.mode is Mode.TEACH
@@ -57,7 +58,7 @@ class FirstUse:
         enter_free_drive(page, cell)
         for number, way in ((2, (20.0, -90.0)), (3, (70.0, 20.0))):
             before = cell.position("wrist_3")
-            cell.drag(page, 0, before, way)
+            self.drag(way)
             cell.wait(lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
             if number == 2:
                 self.see("guided")
@@ -128,6 +129,18 @@ class FirstUse:
         assert row["kind"] == "contact_gained"
         assert float(row["force"]) == float(event.values["force"])
         return text
+
+    def drag(self, by: tuple[float, float]) -> None:
+        """Drag the wrist by so many pixels. A page that is drawn late may still show the arm where it was: try again then."""
+        for _ in range(4):
+            self.cell.drag(self.page, 0, self.cell.position("wrist_3"), by)
+            end = self.cell.loop.latest().tick + 1000
+            while self.cell.loop.latest().tick < end:
+                if self.cell.loop.desk._touches:
+                    return
+                self.page.wait_for_timeout(20)
+            self.page.mouse.up()
+        pytest.fail("the pointer missed the arm each time")
 
     def register(self, number: int) -> None:
         """Register waypoint `number`."""
