@@ -40,7 +40,7 @@ class FirstUse:
 
     def push_it_held(self) -> None:
         """Dragged without free-drive, the arm holds its place."""
-        cell, page = self.cell, self.page
+        cell = self.cell
         cell.pass_time(0.3)
         before = cell.position("wrist_3")
         self.drag((0.0, -200.0))
