@@ -145,15 +145,15 @@ def cell_at(browser: Browser, picture: Picture) -> Iterator[tuple[Page, Cell]]:
 
 
 def main() -> None:
-    """Take every picture, or those that are named: `first-use` and the names above."""
-    chosen = sys.argv[1:] or ["first-use", *PICTURES]
+    """Take every picture, or those that are named: `first-use-1280`, `first-use-1024`, and the names above."""
+    chosen = sys.argv[1:] or [*PICTURES, *(f"first-use-{width}" for width, _ in WINDOWS)]
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(FLAGS))
         for name in [name for name in chosen if name in PICTURES]:
             with cell_at(browser, PICTURES[name]) as (page, cell):
                 PICTURES[name].act(page, cell)
                 shoot(page, name)
-        for width, height in WINDOWS if "first-use" in chosen else ():
+        for width, height in [size for size in WINDOWS if f"first-use-{size[0]}" in chosen]:
             with cell_at(browser, Picture(guided, width, height)) as (page, cell):
 
                 def see(state: str, page: Page = page, width: int = width) -> None:
