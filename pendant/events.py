@@ -40,6 +40,7 @@ class Kind(StrEnum):
     WALL_REACHED = "wall_reached"
     SINGULARITY = "singularity"
     WRENCH_LOST = "wrench_lost"
+    SENSOR_STEPPED = "sensor_stepped"
     HOLD_SILENT = "hold_silent"
     LEFT_PERIOD = "left_period"
     LEFT_RESTART = "left_restart"

@@ -21,7 +21,7 @@ from pendant.modes import TICK, Mode, Phase
 from pendant.nearness import Nearness, SingularityWatch
 from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
-from pendant.pose import norm
+from pendant.pose import UNTURNED, Rotation, flat, norm, turned, turned_back
 from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
 from pendant.settings import Settings, Walls, ticks
 from pendant.soft_limits import Damping
@@ -29,6 +29,7 @@ from pendant.sources import BUTTON, NONE, Presence
 from pendant.table import TABLE, Effect
 from pendant.walls import AnyBorder, Start
 from pendant.watch import Stillness, WrenchMean, joints_ok
+from pendant.zeroing import Drift, Six, Steps
 
 NAMES = {
     Phase.ACTIVATION: "activation",
@@ -81,6 +82,7 @@ class FreeDrive:
         "_containment",
         "_cool",
         "_cool_total",
+        "_drift",
         "_ended",
         "_hand",
         "_held",
@@ -95,8 +97,10 @@ class FreeDrive:
         "_sequence",
         "_signal",
         "_singularity",
+        "_steps",
         "_stirred",
         "_total",
+        "_turned",
         "_unpushed",
         "_verdict",
         "_zones",
@@ -144,6 +148,8 @@ class FreeDrive:
         self._singularity = SingularityWatch()
         self._hand: Hand | None = None
         self._operation: Operation | None = None
+        self._drift, self._steps = Drift(), Steps()  # of the flange sensor's zero
+        self._turned: Rotation = UNTURNED  # orientation of the flange in B at entry, in which `baseline` is
         self._posture: tuple[float, ...] | None = None  # at activation (FD-22)
         self.caught = False  # a wall keeps the arm where it is (VW-6)
 
@@ -386,6 +392,7 @@ class FreeDrive:
         if self.phase is Phase.PERIOD:
             self._begin(Phase.PERIOD, around, settings)
         self._hand = Hand(around.estimate, self.baseline)
+        self._drift, self._steps, self._turned = Drift(), Steps(), flat(around.estimate.R_BF)
         self._operation = Operation(around.estimate, settings, self.baseline, self._joints, self._rated)
         self._containment.enter(settings.walls)
         self._zones.enter(settings.joint_limits)
@@ -427,6 +434,8 @@ class FreeDrive:
         hand = self._hand
         assert hand is not None
         hand.step(estimate, self.use_wrench)
+        if self.use_wrench and settings.unexplained.sensor:
+            self._zero(around, hand, events)
         reading = self._containment.step(estimate, hand.user, hand.payload)
         before, self.caught = self.caught, caught(reading)
         if reading is not None and not self.caught:
@@ -445,6 +454,29 @@ class FreeDrive:
             return False
         events.append(self._over(ending.kind, estimate.tick, settings, ending.values))
         return True
+
+    def _zero(self, around: Surroundings, hand: Hand, events: list[Event]) -> None:
+        """What the flange sensor drifts or steps by is taken off the hand (FD-19)."""
+        estimate = around.estimate
+        stepped = self._steps.step(estimate, hand.change)
+        if stepped is not None:
+            self._take_off((*stepped, 0.0, 0.0, 0.0), estimate, hand)
+            self._drift.restart()
+            events.append(Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)}))
+        elif self.phase not in (Phase.PERIOD, Phase.RESTART):
+            self._drift.restart()
+        elif self._drift.due():
+            gone = self._drift.step(around.mean.mean())
+            if gone is not None:
+                self._take_off(gone, estimate, hand)
+
+    def _take_off(self, gone: Six, estimate: Estimate, hand: Hand) -> None:
+        """`gone` [N, N·m], axes of B now, is an offset of the sensor."""
+        R_BF = flat(estimate.R_BF)
+        hand.shift(R_BF, (gone[0], gone[1], gone[2]))
+        force = turned(self._turned, turned_back(R_BF, (gone[0], gone[1], gone[2])))
+        torque = turned(self._turned, turned_back(R_BF, (gone[3], gone[4], gone[5])))
+        self.baseline = tuple([a + b for a, b in zip(self.baseline, (*force, *torque), strict=True)])
 
     def _refuse_wall(self, reading: Reading, tick: int, settings: Settings) -> Event:
         """The activation shape is exceeded (VW-6, FD-10)."""

@@ -24,6 +24,9 @@ STEP = 2
 CERTAIN = 4
 """Ticks for which the step must last, before it is called one: no vibration does; the additional torque goes at once."""
 
+LASTS = 10
+"""And for so many, where less than half of the load is missing: then a residual that swings with the arm is as large."""
+
 LEAST = 4.0
 """Smallest step that is looked at [N]."""
 
@@ -208,7 +211,8 @@ class Operation:
         else:
             self._stepped = 0
         self.suspect = self._stepped > 0
-        if self._stepped <= CERTAIN and not self._follows(share, across, square, weight):
+        certain = CERTAIN if abs(self._level) >= MUCH else LASTS
+        if self._stepped <= certain and not self._follows(share, across, square, weight):
             return None
         return Ending(Kind.STOPPED_PAYLOAD, {"mass": -share * mass, "force": abs(share) * weight})
 

@@ -238,6 +238,13 @@ TABLE: dict[Kind, Row] = {
         "Flange force sensor not valid",
         "The arm is heavier to move: no help from the force sensor.",
     ),
+    Kind.SENSOR_STEPPED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The flange force sensor stepped",
+        "{force:.1f} N at once that the joints do not feel; taken off. Leave free-drive and check the sensor.",
+        ("force",),
+    ),
     Kind.HOLD_SILENT: Row(
         Effect.INFO,
         Severity.WARNING,

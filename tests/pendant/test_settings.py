@@ -19,6 +19,7 @@ EXPECTED = {
     "free_drive.allowed_from.run": (False, None, None, "", "FD-1", True),
     "free_drive.period": (3.0, 0.5, 30.0, "s", "FD-14", False),
     "free_drive.restart_period": (3.0, 0.5, 30.0, "s", "FD-15", False),
+    "unexplained.sensor": (True, None, None, "", "FD-19", True),
     "free_drive.restart_at_manipulation": (False, None, None, "", "FD-15", True),
     "free_drive.restart_after_force": (False, None, None, "", "FD-15", True),
     "limits.maintain.load_share": (0.0, 0.0, 1.0, "", "FD-13", True),

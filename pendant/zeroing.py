@@ -1,0 +1,140 @@
+"""The flange sensor's zero in free-drive: what it drifts and steps by is no hand's, and must not drive the arm (FD-19).
+
+A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
+taken off: of a hand's push next to nothing. A sensor that steps does so in no time, where a hand needs 10 ms or more; and the
+joints do not feel it. They feel the opposite first: the help that the step calls for pushes them from within.
+"""
+
+import math
+
+from pendant.estimate import Estimate
+from pendant.modes import TICK
+from pendant.pose import ORIGIN, Vector, dot
+from pendant.watch import WINDOW
+
+SLOW = 3.0
+"""So fast may a force drift [N/s]."""
+
+SLOW_TURN = 0.6
+"""And a torque [N·m/s]."""
+
+QUIET = 2.5
+"""Before a step nobody is felt: a hand that lets go is none [N]."""
+
+JUMP = 3.5
+"""Smallest step [N]; smaller ones do not move an arm."""
+
+STRAY = 0.3
+"""Share of it by which it may stray until it is judged: a knock is over by then."""
+
+LATER = 6
+"""Ticks from a step to the joints' answer."""
+
+ANSWER = -0.05
+"""Share of the step that the joints must feel at least: a hand's push is felt as it is, and help alone the other way."""
+
+Six = tuple[float, ...]
+
+
+class Drift:
+    """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window."""
+
+    __slots__ = ("_count", "_mean")
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._mean: Six | None = None
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._count, self._mean)
+
+    def restart(self) -> None:
+        """The arm is moved, or the sensor is not used."""
+        self._count, self._mean = 0, None
+
+    def due(self) -> bool:
+        """One tick; whether a mean is wanted in it."""
+        self._count = self._count % WINDOW + 1
+        return self._count == 1
+
+    def step(self, mean: Six) -> Six | None:
+        """The mean of the last window, axes of B [N, N·m]: what is to be taken off; None after the first."""
+        before, self._mean = self._mean, mean
+        if before is None:
+            return None
+        change = tuple([now - then for now, then in zip(mean, before, strict=True)])
+        time = WINDOW * TICK
+        return (*_within(change[:3], SLOW * time), *_within(change[3:], SLOW_TURN * time))
+
+
+def _within(change: Six, most: float) -> Vector:
+    """A change of three numbers, at most so large."""
+    x, y, z = change
+    share = most / max(math.sqrt(x * x + y * y + z * z), most)
+    return share * x, share * y, share * z
+
+
+class Steps:
+    """Looks for steps of the sensor that the joints do not feel."""
+
+    __slots__ = ("_age", "_felt", "_last", "_older", "_step", "_sum", "_zero")
+
+    def __init__(self) -> None:
+        self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
+        self._older: Vector = ORIGIN
+        self._age = 0  # ticks since a step, 0: none
+        self._zero: Vector = ORIGIN  # before it
+        self._step: Vector = ORIGIN
+        self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
+        self._felt: Vector = ORIGIN  # by the joints, then
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return tuple([getattr(self, name) for name in self.__slots__])
+
+    def step(self, estimate: Estimate, change: Vector) -> Vector | None:
+        """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
+        older, self._older, self._last = self._older, self._last, change
+        if self._age:
+            return self._judge(estimate, change)
+        x, y, z = _less(change, older)
+        if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
+            self._age = 1
+            self._zero, self._felt = older, _felt(estimate)
+        return None
+
+    def _judge(self, estimate: Estimate, change: Vector) -> Vector | None:
+        self._age += 1
+        if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
+            self._step = self._sum = _less(change, self._zero)
+            return None
+        now = _less(change, self._zero)
+        off = _less(now, self._step)
+        x, y, z = self._sum
+        self._sum = (x + now[0], y + now[1], z + now[2])
+        size = dot(self._step, self._step)
+        if dot(off, off) > STRAY * STRAY * size:
+            self._age = 0
+            return None
+        if self._age <= LATER:
+            return None
+        self._age = 0
+        answer = dot(_less(_felt(estimate), self._felt), self._step)
+        if answer >= ANSWER * size:
+            return None
+        self._last = self._older = ORIGIN
+        x, y, z = self._sum
+        count = LATER  # ticks 2 to LATER + 1 of its age
+        return x / count, y / count, z / count
+
+
+def _less(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _felt(estimate: Estimate) -> Vector:
+    x, y, z = estimate.F_joints.tolist()
+    return x, y, z

@@ -1,0 +1,153 @@
+"""The flange sensor's zero: drifts and steps are taken off, hands are not (FD-19)."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pendant.events import Kind
+from pendant.inputs import NOTHING
+from pendant.modes import Phase
+from pendant.pose import Vector
+from pendant.zeroing import ANSWER, JUMP, LATER, QUIET, SLOW, SLOW_TURN, STRAY, Drift, Steps
+from tests.pendant.estimates import estimate
+from tests.pendant.test_freedrive import Bench
+
+PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
+WINDOW = 0.1  # [s]
+
+
+def seen(steps: Steps, forces: list[Vector], felt: list[float] | None = None) -> list[Vector]:
+    """What is taken off, for these forces; from the fourth tick on the joints feel `felt`."""
+    joints = [[0.0] * 3] * 3 + [felt or [0.0] * 3] * (len(forces) - 3)
+    found = [steps.step(estimate(felt=by_joints), force) for force, by_joints in zip(forces, joints, strict=True)]
+    return [step for step in found if step is not None]
+
+
+def stepping(size: float, count: int = 20, before: float = 0.0) -> list[Vector]:
+    return [(0.0, 0.0, before)] * 2 + [(0.0, 0.0, before + size)] * count
+
+
+def against(steps: list[Vector], share: float) -> list[float]:
+    return [share * (now - then) for now, then in zip(steps[-1], steps[0], strict=True)]
+
+
+@pytest.mark.parametrize("size", [1.001 * JUMP, 5.0, -20.0, 60.0])
+def test_a_step_that_the_joints_feel_the_other_way_is_the_sensors(size: float) -> None:
+    forces = stepping(size)
+    assert seen(Steps(), forces, against(forces, 2.0 * ANSWER)) == [(0.0, 0.0, pytest.approx(size))]
+
+
+@pytest.mark.parametrize("share", [0.99 * ANSWER, 0.0, 0.5, 1.0])
+def test_a_step_that_the_joints_feel_or_do_not_is_a_hands(share: float) -> None:
+    forces = stepping(20.0)
+    assert seen(Steps(), forces, against(forces, share)) == []
+
+
+def test_it_is_judged_in_its_tick() -> None:
+    forces = stepping(20.0, LATER)
+    assert seen(Steps(), forces, against(forces, -0.5)) == []
+    forces = stepping(20.0, LATER + 1)
+    assert len(seen(Steps(), forces, against(forces, -0.5))) == 1
+
+
+@pytest.mark.parametrize(("before", "size"), [(0.0, 0.99 * JUMP), (1.01 * QUIET, 20.0), (20.0, -20.0)])
+def test_small_ones_and_those_of_a_hand_that_is_there_are_none(before: float, size: float) -> None:
+    steps = Steps()
+    assert seen(steps, [(0.0, 0.0, 0.01 * k * before) for k in range(101)]) == []
+    forces = stepping(size, before=before)
+    assert seen(steps, forces, against(forces, -0.5)) == []
+
+
+def test_a_knock_and_a_hand_that_comes_are_none() -> None:
+    knock = [(0.0, 0.0, 20.0 * math.sin(math.pi * k / 10)) for k in range(11)]
+    assert seen(Steps(), knock, [0.0, 0.0, -10.0]) == []
+    grab = [(0.0, 0.0, 2.0 * k) for k in range(11)] + [(0.0, 0.0, 20.0)] * 20
+    assert seen(Steps(), grab, [0.0, 0.0, -10.0]) == []
+
+
+def test_its_size_is_the_mean_of_what_was_seen() -> None:
+    stray = 0.9 * STRAY * 10.0
+    forces = [(0.0, 0.0, 0.0)] * 2 + [(0.0, 0.0, 10.0)] * 2 + [(0.0, 0.0, 10.0 + stray), (0.0, 0.0, 10.0 - stray)] * 3
+    found = seen(Steps(), forces, [0.0, 0.0, -5.0])
+    assert len(found) == 1
+    assert found[0][2] == pytest.approx(10.0, abs=stray / LATER + 1e-9)
+
+
+def test_after_a_step_the_next_one_is_found() -> None:
+    steps = Steps()
+    forces = stepping(10.0, LATER + 1)
+    assert len(seen(steps, forces, [0.0, 0.0, -5.0])) == 1
+    assert len(seen(steps, forces, [0.0, 0.0, -5.0])) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "gone"),
+    [
+        ((0.1, -0.2, 0.05, 0.01, 0.0, -0.02), (0.1, -0.2, 0.05, 0.01, 0.0, -0.02)),
+        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, SLOW_TURN * WINDOW)),
+        ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOW * WINDOW, 0.0, 0.8 * SLOW * WINDOW, 0.0, 0.0, 0.0)),
+    ],
+)
+def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
+    drift = Drift()
+    start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
+    assert drift.step(start) is None
+    assert drift.step(tuple(np.add(start, change).tolist())) == pytest.approx(gone)
+    drift.restart()
+    assert drift.step(start) is None
+
+
+def test_a_mean_is_wanted_once_a_window() -> None:
+    drift = Drift()
+    wanted = [drift.due() for _ in range(151)]
+    assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
+    assert drift.memory != Drift().memory
+
+
+def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
+    bench = Bench(free_drive__period=30.0, **changes).in_period()
+    for tick in range(round(500 * seconds)):
+        bench.step(NOTHING, estimate(force=[start, 0.0, rate * 0.002 * tick]))
+    return bench
+
+
+def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
+    bench = drifting(3.0)
+    assert bench.last.phase is Phase.PERIOD
+    assert bench.last.baseline[2] == pytest.approx(6.0, abs=0.5)
+    assert bench.last.baseline[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_switched_off_nothing_is_taken_off() -> None:
+    assert drifting(3.0, unexplained__sensor=False).last.baseline == pytest.approx((0.0,) * 6)
+
+
+def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
+    bench = Bench().in_period()
+    for tick in range(1000):
+        bench.step(NOTHING, estimate(force=[20.0 + 0.002 * tick, 0.0, 0.0], qd=0.3))
+    assert bench.last.phase is Phase.GUIDED
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.5)
+
+
+def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
+    bench = Bench().in_period()
+    bench.run(50)
+    bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0]))
+    for _ in range(LATER):
+        bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0], felt=list(PUSHED)))
+    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.SENSOR_STEPPED]
+    assert bench.events[-1].values == {"force": pytest.approx(15.0, abs=SLOW * WINDOW)}
+    assert bench.last.baseline == pytest.approx((0.0, 0.0, 15.0, 0.0, 0.0, 0.0))
+
+
+def test_the_baseline_is_in_the_axes_of_the_flange_at_entry() -> None:
+    bench = Bench().in_period()
+    turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # by 90° about z since then
+    for tick in range(LATER + 6):
+        value = estimate(force=[15.0 if tick > 4 else 0.0, 0.0, 0.0], felt=[-5.0 if tick > 6 else 0.0, 0.0, 0.0])
+        value.R_BF = turned
+        bench.step(NOTHING, value)
+    assert bench.events[-1].kind is Kind.SENSOR_STEPPED
+    assert bench.last.baseline[:3] == pytest.approx((0.0, -15.0, 0.0))
