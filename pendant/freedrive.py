@@ -456,12 +456,11 @@ class FreeDrive:
         return True
 
     def _zero(self, around: Surroundings, hand: Hand, events: list[Event]) -> None:
-        """What the flange sensor drifts or steps by is taken off the hand (FD-19)."""
+        """What the flange sensor drifts by is taken off the hand; one that steps is not used any more (FD-19)."""
         estimate = around.estimate
         stepped = self._steps.step(estimate, hand.change)
         if stepped is not None:
-            self._take_off((*stepped, 0.0, 0.0, 0.0), estimate, hand)
-            self._drift.restart()
+            self.use_wrench, self.baseline = False, ZEROS
             events.append(Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)}))
         elif self.phase not in (Phase.PERIOD, Phase.RESTART):
             self._drift.restart()

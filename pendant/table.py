@@ -242,7 +242,7 @@ TABLE: dict[Kind, Row] = {
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor stepped",
-        "{force:.1f} N at once that the joints do not feel; taken off. Leave free-drive and check the sensor.",
+        "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
         ("force",),
     ),
     Kind.HOLD_SILENT: Row(

@@ -9,6 +9,7 @@ import math
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
+from pendant.parameters import beyond_gravity
 from pendant.pose import ORIGIN, Vector, dot
 from pendant.watch import WINDOW
 
@@ -26,6 +27,12 @@ JUMP = 3.5
 
 STRAY = 0.3
 """Share of it by which it may stray until it is judged: a knock is over by then."""
+
+SHAKEN = 1.5
+"""What is felt by the accelerometer as well, in the step's first ticks, is a hand's or a knock [m/s²]."""
+
+SOON = 4
+"""Ticks of a step in which it shakes the flange; help comes later."""
 
 LATER = 6
 """Ticks from a step to the joints' answer."""
@@ -108,6 +115,9 @@ class Steps:
 
     def _judge(self, estimate: Estimate, change: Vector) -> Vector | None:
         self._age += 1
+        if self._age <= SOON and not (estimate.acceleration_valid and beyond_gravity(estimate) <= SHAKEN):
+            self._age = 0
+            return None
         if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._step = self._sum = _less(change, self._zero)
             return None
