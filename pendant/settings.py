@@ -312,7 +312,7 @@ class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True
     speed: Annotated[float, _number(0.005, 0.25, "m/s", "FD-19", "of the flange, from which on it counts as moving")] = 0.02
     time: Annotated[float, _number(0.02, 2.0, "s", "FD-19", "that it may move alone")] = 0.3
     force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", "a smaller force is nobody's")] = 1.5
-    sensor: Annotated[bool, _switch("FD-19", "what the flange sensor drifts by is taken off; one that steps is not used")] = True
+    sensor: Annotated[bool, _switch("FD-19", "a flange sensor that drifts or steps drives no arm")] = True
 
 
 class ToolUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
