@@ -65,7 +65,7 @@ TOLD = {
 
 def told(contact: Contact, action: str) -> Values:
     """The values of a contact's event (CD-16)."""
-    (fx, fy, fz), (x, y, z) = contact.force, contact.pose.p_BT
+    (fx, fy, fz), (ax, ay, az), (x, y, z) = contact.force, contact.acceleration, contact.pose.p_BT
     return {
         "part": contact.part,
         "source": contact.source,
@@ -74,7 +74,10 @@ def told(contact: Contact, action: str) -> Values:
         "fx": fx,
         "fy": fy,
         "fz": fz,
-        "acceleration": math.hypot(*contact.acceleration),
+        "acceleration": math.hypot(ax, ay, az),
+        "ax": ax,
+        "ay": ay,
+        "az": az,
         "ratio": contact.ratio,
         "steps": contact.steps,
         "x": x,

@@ -6,6 +6,7 @@ from collections import deque
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.web import svg
 from app.web.ghost import Ghost
@@ -17,6 +18,8 @@ from sim.arm import Arm
 from sim.frames import matrix_from_quaternion
 from sim.snapshot import Snapshot
 
+Array = NDArray[np.float64]
+
 LENGTH = 200
 """Contacts kept."""
 
@@ -24,7 +27,7 @@ SHOWN = 30
 """Contacts in the table."""
 
 NEWEST = "newest"
-RED = (201, 42, 42)
+RED, BLUE = (201, 42, 42), (28, 126, 214)
 COLUMNS = (
     "number",
     "t",
@@ -36,6 +39,9 @@ COLUMNS = (
     "fx",
     "fy",
     "fz",
+    "ax",
+    "ay",
+    "az",
     "delay_ms",
     "x",
     "y",
@@ -43,9 +49,9 @@ COLUMNS = (
     "posture",
     "action",
 )
-METRES_PER_NEWTON = 0.006
-LONGEST = 0.25
-"""Length of the arrow [m]."""
+METRES_PER_NEWTON, METRES_PER_ACCELERATION = 0.006, 0.03  # the latter for 1 m/s²
+SHORTEST, LONGEST = 0.05, 0.25
+"""Length of an arrow [m]."""
 
 
 class Contacts:
@@ -58,10 +64,8 @@ class Contacts:
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
         self.table = Html(gui, svg.contacts(()))
         self.export = gui.add_button("Export CSV", color="gray", disabled=True)
-        nothing = np.zeros((1, 2, 3), dtype=np.float32)
-        self.arrow = server.scene.add_arrows(
-            "/contact/arrow", nothing, RED, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False
-        )
+        self.force = _arrow(server, "/contact/force", RED)
+        self.acceleration = _arrow(server, "/contact/acceleration", BLUE)
         self.label = server.scene.add_label("/contact/label", "", visible=False, anchor="bottom-center")
         self.ghost = Ghost(server, arm, "/ghost/contact", RED)
         self._marked: tuple[int, str] | None = None
@@ -106,15 +110,27 @@ class Contacts:
         base = snapshot.truth_links[0]
         turn = matrix_from_quaternion(base[3:])
         point = base[:3] + turn @ np.array([float(values[name]) for name in "xyz"])
-        force = turn @ np.array([float(values[name]) for name in ("fx", "fy", "fz")])
-        size = max(float(np.linalg.norm(force)), 1e-9)
-        tail = point - force / size * min(max(size * METRES_PER_NEWTON, 0.05), LONGEST)  # outside of what was touched
-        self.arrow.visible = self.label.visible = True
-        self.arrow.points = np.array([[tail, point]], dtype=np.float32)
+        force, acceleration = (turn @ np.array([float(values[name + axis]) for axis in "xyz"]) for name in "fa")
+        tail = point - _drawn(force, METRES_PER_NEWTON)  # outside of what was touched
+        self.force.points = np.array([[tail, point]], dtype=np.float32)
+        self.acceleration.points = np.array([[point, point + _drawn(acceleration, METRES_PER_ACCELERATION)]], dtype=np.float32)
+        self.force.visible = self.acceleration.visible = self.label.visible = True
         self.label.position = tail
-        self.label.text = f"{number}: {_kind(event)}, {float(values['force']):.0f} N"
+        size = f"{float(values['force']):.0f} N, {float(values['acceleration']):.1f} m/s²"
+        self.label.text = f"{number}: {_kind(event)}, {size}"
         self.ghost.show(posture_of(values) if wanted != NEWEST else None, snapshot)  # of one that somebody has asked for
         return True
+
+
+def _arrow(server: viser.ViserServer, name: str, colour: tuple[int, int, int]) -> viser.ArrowsHandle:
+    nothing = np.zeros((1, 2, 3), dtype=np.float32)
+    return server.scene.add_arrows(name, nothing, colour, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False)
+
+
+def _drawn(vector: Array, scale: float) -> Array:
+    """A vector as long as its arrow [m]."""
+    size = max(float(np.linalg.norm(vector)), 1e-9)
+    return vector / size * min(max(size * scale, SHORTEST), LONGEST)
 
 
 def choices(count: int) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from pendant.events import Event, Kind, Values
 from pendant.table import LEAVING, TABLE, Clears, Effect, Row, Severity, render
 
 EXAMPLE: Values = {
-    **dict.fromkeys(("force", "acceleration", "ratio", "fx", "fy", "fz", "x", "y", "z", "px", "py", "pz"), -123.456),
+    **dict.fromkeys(("force", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az", "x", "y", "z", "px", "py", "pz"), -123.456),
     **{
         "source": "force and tool-side acceleration",
         "rule": "statistical",
@@ -139,7 +139,7 @@ def test_severities_are_ordered() -> None:
     assert sorted(Severity) == list(Severity)
 
 
-LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "x", "y", "z", "px", "py", "pz", "posture"}
+LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az", "x", "y", "z", "px", "py", "pz", "posture"}
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 

@@ -23,6 +23,9 @@ TOUCH = {
     "fy": 0.0,
     "fz": -11.9,
     "acceleration": 2.0,
+    "ax": 0.0,
+    "ay": 1.2,
+    "az": 1.6,
     "ratio": 3.0,
     "steps": 4,
     "x": 0.5,
@@ -77,11 +80,11 @@ def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) 
     assert "12 N −z" in shown
     assert "8 ms" in shown
     assert still.docks.plots.upper.shown.count("0v") == 2
-    assert contacts.arrow.visible
-    assert contacts.label.text == "2: lost, 9 N"
+    assert contacts.force.visible
+    assert contacts.label.text == "2: lost, 9 N, 2.0 m/s²"
     contacts.choice.value = "1"
     still.docks.show(loop.latest())
-    assert contacts.label.text == "1: gained, 12 N"
+    assert contacts.label.text == "1: gained, 12 N, 2.0 m/s²"
     assert contacts.ghost.posture == (0.0, -1.2, 1.5, -1.87, -1.57, 0.1)
     contacts.choice.value = "newest"
     still.docks.show(loop.latest())
