@@ -18,6 +18,10 @@ Array = NDArray[np.float64]
 SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leave them at rest
 BRAKING_SHARE = 0.7  # of a joint's torque that a stop plans with; the rest is for the feedback
 LEAST_BRAKING = 0.1  # of it, where gravity takes all of that
+MOVING_SHARE = 0.75  # of a joint's torque that a move plans with; friction, a wrong payload and the feedback need the rest
+EASINGS = 5  # times that a move is planned with less acceleration
+LEAST_EASED = 0.3  # of it, each time
+GLANCE = 0.02  # between the times of a move whose torques are looked at [s]
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
 SPACING = 0.01  # between the places along a line that are looked at beforehand [m]
 SAMPLES = (24, 200)  # fewest and most of them
@@ -62,6 +66,25 @@ def stop_time(dynamics: Dynamics, q: Array, qd: Array, rotor: Array, torque: Arr
     return 0.5 * math.pi * float(np.max(np.abs(momentum) / spare))
 
 
+class Strength(NamedTuple):
+    """What the joints can give for a move that is planned, the configured payload in hand."""
+
+    dynamics: Dynamics
+    rotor: Array  # inertia referred to the output (n,) [kg·m²]
+    torque: Array  # limits (n,) [N·m]
+
+    def left(self, trajectory: ruckig.Trajectory) -> float:
+        """By which factor the accelerations fit: 1 or more where every joint has enough all the way."""
+        least, count = math.inf, max(SAMPLES[0], math.ceil(trajectory.duration / GLANCE))
+        for k in range(count + 1):
+            q, qd, qdd = map(np.array, trajectory.at_time(k / count * trajectory.duration))
+            gravity = self.dynamics.gravity(q)
+            moving = self.dynamics.inverse(q, qd, qdd) + self.rotor * qdd - gravity
+            spare = np.maximum(MOVING_SHARE * self.torque - np.abs(gravity), LEAST_BRAKING * self.torque)
+            least = min(least, float(np.min(spare / np.maximum(np.abs(moving), 1e-9))))
+        return least
+
+
 class Stop:
     """Come to rest along the path the joints were on, then stand.
 
@@ -94,19 +117,29 @@ class Stop:
 
 
 class JointTrajectory:
-    """All joints to a target at rest, at the same time, within speed, acceleration and jerk limits (ruckig)."""
+    """All joints to a target at rest, at the same time, within speed, acceleration and jerk limits (ruckig).
 
-    def __init__(self, q: Array, move: JointMove, limits: tuple[Array, Array, Array]) -> None:
-        """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
+    A joint that would need more than `strength` gives is accelerated less, and all others with it: at its limit it would fall
+    behind, and swing when it catches up.
+    """
+
+    def __init__(self, q: Array, move: JointMove, limits: tuple[Array, Array, Array], strength: Strength | None = None) -> None:
+        """`limits` are the joints' speed, acceleration and position (±), each (n,); without `strength` they have any torque."""
         speed, acceleration, position = limits
         check_range(np.array(move.q), position, "joint move")
         n = q.size
         entry = ruckig.InputParameter(n)
         entry.current_position, entry.target_position = q.tolist(), list(move.q)
         entry.max_velocity = (move.speed * speed).tolist()
-        entry.max_acceleration = (move.acceleration * acceleration).tolist()
-        entry.max_jerk = (move.acceleration * acceleration / JERK_TIME).tolist()
-        self._trajectory = _planned(entry, n)
+        eased = 1.0
+        for _ in range(EASINGS if strength else 1):
+            entry.max_acceleration = (eased * move.acceleration * acceleration).tolist()
+            entry.max_jerk = (eased * move.acceleration * acceleration / JERK_TIME).tolist()
+            self._trajectory = _planned(entry, n)
+            share = 1.0 if strength is None else strength.left(self._trajectory)
+            if share >= 1.0:
+                break
+            eased *= max(share, LEAST_EASED)
         self._time, self._rate = 0.0, 1.0
         self.done = False
 

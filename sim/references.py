@@ -14,7 +14,7 @@ from sim.arm import Arm
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.force_move import ForceTrajectory
-from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, stop_time
+from sim.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.pace import Pace
 from sim.sensors import LATENCY
 
@@ -48,6 +48,7 @@ class References:
         self._pace = Pace(dynamics, tcp)
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
+        self._strength = Strength(dynamics, self._rotor, self._torque)
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -137,7 +138,7 @@ class References:
         q = self.now.q
         try:
             if isinstance(move, JointMove):
-                self._motion = JointTrajectory(q, move, self._limits)
+                self._motion = JointTrajectory(q, move, self._limits, self._strength)
             elif isinstance(move, LinearMove):
                 self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._R_FT, self._limits)
             elif isinstance(move, ApplyForce):

@@ -74,7 +74,8 @@ def test_a_contact_is_told_with_its_numbers() -> None:
     assert decision.contacts == (GAINED,)
     assert event.values == {
         "part": "tool", "source": "sensor", "rule": "difference", "force": 6.0, "fx": 0.0, "fy": 0.0, "fz": -6.0,
-        "acceleration": 4.0, "ax": 0.0, "ay": 0.0, "az": 4.0, "ratio": -1.4, "steps": 3, "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
+        "acceleration": 4.0, "ax": 0.0, "ay": 0.0, "az": 4.0, "ratio": -1.4, "steps": 3,
+        "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
         "posture": "0.2000 0.2000 0.2000 0.2000 0.2000 0.2000",
     }  # fmt: skip
     assert render(event)[0] == "Contact gained: tool"

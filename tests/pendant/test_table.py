@@ -8,7 +8,9 @@ from pendant.events import Event, Kind, Values
 from pendant.table import LEAVING, TABLE, Clears, Effect, Row, Severity, render
 
 EXAMPLE: Values = {
-    **dict.fromkeys(("force", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az", "x", "y", "z", "px", "py", "pz"), -123.456),
+    **dict.fromkeys(
+        ("force", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az", "x", "y", "z", "px", "py", "pz"), -123.456
+    ),
     **{
         "source": "force and tool-side acceleration",
         "rule": "statistical",

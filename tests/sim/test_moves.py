@@ -10,6 +10,7 @@ from sim.dynamics import Dynamics
 from sim.frames import joint_frames, quaternion_from_matrix, rotation, rotation_from_rpy
 from sim.moves import (
     BRAKING_SHARE,
+    MOVING_SHARE,
     SHORTEST_STOP,
     JointTrajectory,
     LinearTrajectory,
@@ -17,6 +18,7 @@ from sim.moves import (
     MoveRefused,
     Reference,
     Stop,
+    Strength,
     stop_time,
 )
 from tests.sim.arms import UR5E
@@ -297,3 +299,26 @@ def test_a_line_beyond_a_joint_limit_is_refused() -> None:
     with pytest.raises(MoveRefused, match=r"linear move: joint 6 would reach 6\.\d+ rad, allowed ±6\.2832"):
         line([0.0, 0.0, 0.0], rotation(2, 0.6), q=wound)
     assert len(play(line([0.0, 0.0, 0.0], rotation(2, -0.6), q=wound))) > 10, "the other way is open"
+
+
+def test_a_move_that_needs_more_torque_than_there_is_is_accelerated_less() -> None:
+    stretched = np.array([0.0, -0.1, 0.0, 0.0, 0.0, 0.0])
+    move = JointMove(q=tuple((stretched - [0.0, 1.2, 0.0, 0.0, 0.0, 0.0]).tolist()))
+    rigid = chain(UR5E)
+    loads = [Body(mass, np.array([0.0, 0.0, 0.1]), np.eye(3) * 0.01 * mass) for mass in (0.0, 5.0)]
+    nothing, heavy = (Dynamics(rigid, rigid.links, load, [0.0, 0.0, 0.0], UR5E.chain.elbow) for load in loads)
+    rotor, torque = np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque)
+
+    def needed(dynamics: Dynamics, rows: list[Reference]) -> float:
+        return max(float(np.abs((dynamics.inverse(*row) + rotor * row.qdd) / torque).max()) for row in rows)
+
+    plain = play(JointTrajectory(stretched, move, LIMITS))
+    eased = play(JointTrajectory(stretched, move, LIMITS, Strength(heavy, rotor, torque)))
+    assert needed(heavy, plain) > MOVING_SHARE + 0.05
+    assert needed(heavy, eased) <= MOVING_SHARE + 0.02
+    assert 1.0 < len(eased) / len(plain) < 2.0
+    assert np.allclose(eased[-1].q, move.q)
+    light = np.array([0.0, -1.57, 1.57, 0.0, 0.0, 0.0])
+    small = JointMove(q=tuple((light + 0.1).tolist()))
+    strong = play(JointTrajectory(light, small, LIMITS, Strength(nothing, rotor, torque)))
+    assert len(strong) == len(play(JointTrajectory(light, small, LIMITS)))
