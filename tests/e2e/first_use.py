@@ -16,6 +16,9 @@ from tests.e2e.hold import enter_free_drive, hold_free_drive, hold_until
 WEIGHT = 2.0
 """Mass that is put on without telling the controller [kg]."""
 
+SHORT, LONG = 1000, 5000
+"""For so many ticks a hand may not have taken hold, and may hold without what it is there for."""
+
 
 class FirstUse:
     """One page and its cell. `see` is told the name of each state once it is on the page."""
@@ -43,8 +46,7 @@ class FirstUse:
         cell = self.cell
         cell.pass_time(0.3)
         before = cell.position("wrist_3")
-        self.drag((0.0, -200.0))
-        cell.wait(lambda: any(np.linalg.norm(touch[2]) > 45.0 for touch in cell.loop.latest().touches), "the hand is at its cap")
+        self.drag((0.0, -200.0), lambda: self.strongest() > 45.0, "the hand is at its cap")
         cell.pass_time(0.3)
         assert cell.loop.latest().decision.mode is Mode.TEACH
         assert np.linalg.norm(cell.position("wrist_3") - before) < 0.003
@@ -58,8 +60,7 @@ class FirstUse:
         enter_free_drive(page, cell)
         for number, way in ((2, (20.0, -90.0)), (3, (70.0, 20.0))):
             before = cell.position("wrist_3")
-            self.drag(way)
-            cell.wait(lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
+            self.drag(way, lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
             if number == 2:
                 self.see("guided")
             self.let_go()
@@ -130,17 +131,30 @@ class FirstUse:
         assert float(row["force"]) == float(event.values["force"])
         return text
 
-    def drag(self, by: tuple[float, float]) -> None:
-        """Drag the wrist by so many pixels. A page that is drawn late may still show the arm where it was: try again then."""
-        for _ in range(4):
-            self.cell.drag(self.page, 0, self.cell.position("wrist_3"), by)
-            end = self.cell.loop.latest().tick + 1000
-            while self.cell.loop.latest().tick < end:
-                if self.cell.loop.desk._touches:
+    def drag(self, by: tuple[float, float], true: Callable[[], bool], what: str) -> None:
+        """Drag the wrist by so many pixels until something is true.
+
+        A page that is drawn late may still show the arm where it was, and one that stalls lets go (FD-23): take hold again then.
+        """
+        cell = self.cell
+        for _ in range(5):
+            cell.drag(self.page, 0, cell.position("wrist_3"), by)
+            start, held = cell.loop.latest().tick, False
+            while True:
+                if true():
                     return
+                touched = bool(cell.loop.desk._touches)
+                waited = cell.loop.latest().tick - start
+                if (held and not touched) or waited > (LONG if held else SHORT):
+                    break
+                held |= touched
                 self.page.wait_for_timeout(20)
             self.page.mouse.up()
-        pytest.fail("the pointer missed the arm each time")
+        pytest.fail(f"dragged in vain: {what}")
+
+    def strongest(self) -> float:
+        """The largest force of a hand [N]."""
+        return max((float(np.linalg.norm(touch[2])) for touch in self.cell.loop.latest().touches), default=0.0)
 
     def register(self, number: int) -> None:
         """Register waypoint `number`."""
