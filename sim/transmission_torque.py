@@ -22,11 +22,14 @@ ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/
 ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
 LATELY = math.exp(-TICK / 0.3)
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
-OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
+OFFSET_TIME = 60.0  # after which the deflection's offset is another one: the ripple changes with the angle, its mean is 0 [s]
+OFFSET_SHARE = math.sqrt(1.0 / 3.0)  # of the ripple's torque: RMS of two harmonics that share its amplitude by chance
 RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
 CORRELATED = 100.0  # ticks over which the deflection's error stays alike
 CONTACT = 2.5  # deviations between two ways that count as a contact
 CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
+SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
+REMEMBERED = TICK / 3.0  # how long it is remembered that they differed [s]
 SETTLE_TICKS = 100  # after a contact, before its end is believed
 
 
@@ -36,8 +39,11 @@ class TransmissionTorque:
     The rigid model is right up to masses and centres while nothing is touched, and wrong by the external torque in contact.
     The deflection feels contacts, but its stiffness is known to a fifth and the output encoder's ripple counts in full: the
     stiffness error and an offset are learned from the rigid model while nothing is touched. The motor's way is uncertain by
-    the friction estimate, and by the whole stiction while the joint stands. A contact is where the rigid model differs from
-    the deflection, or without it from the motor's way, by more than both allow.
+    the friction estimate, and by the whole stiction while the joint stands. The model's errors change fast, with accelerations
+    that it does not see in time; the deflection's slowly, with the angle. So the deflection is trusted as far as the two have
+    agreed lately, in the mean over a third of a second (innovation-based adaptive estimation: Mehra, 1970).
+
+    A contact is where the rigid model differs from the deflection, or without it from the motor's way, by more than both allow.
 
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
@@ -59,8 +65,11 @@ class TransmissionTorque:
         self.correction = np.zeros((2, n))
         self.stiffer, self.offset = self.correction
         self._covariance = np.zeros((n, 2, 2))
+        self._slow = np.zeros((2, n))  # by what model and deflection differ slowly [N·m]; the mean of its square
         self.forget()
-        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
+        self._fade = math.exp(-TICK / OFFSET_TIME)
+        offset_walk = OFFSET_SHARE * ripple * math.sqrt(1.0 - self._fade**2)
+        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK * math.sqrt(TICK)), offset_walk]) ** 2
         self.ways, self.deviations = np.zeros((2, 3, n))
         self.fused, self.deviation, self.external = np.zeros((3, n))
         self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
@@ -72,7 +81,9 @@ class TransmissionTorque:
         self.correction[:] = 0.0
         self._covariance[:] = 0.0
         self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
-        self._covariance[:, 1, 1] = self._constants[1] ** 2
+        self._covariance[:, 1, 1] = (OFFSET_SHARE * self._constants[1]) ** 2
+        self._slow[0] = 0.0
+        self._slow[1] = (RIPPLE_LEFT * self._constants[1]) ** 2
 
     def update(
         self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]
@@ -90,7 +101,7 @@ class TransmissionTorque:
             use: which of `WAYS` may be used, of which joint (3, n).
         """
         rubbing = (friction_deviation, stiction)
-        learned = (self.correction, self._covariance, self._walk)
+        learned = (self.correction, self._covariance, self._walk, self._fade, self._slow)
         touched = _compare(
             self.ways, self.deviations, rubbing, acceleration, self._constants, self._swing, learned, use,
             moving and self._quiet >= SETTLE_TICKS, self._model, self.external,
@@ -103,7 +114,7 @@ class TransmissionTorque:
 @numba.njit(cache=True)
 def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external) -> bool:
     """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
-    correction, covariance, walk = learned
+    correction, covariance, walk, fade, slow = learned
     friction_deviation, stiction = rubbing
     n = external.size
     swing[0] *= LATELY
@@ -117,7 +128,7 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
         ways[1, i] += x * correction[0, i] + correction[1, i]
         model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
-        deviations[1, i] = np.sqrt(known + (RIPPLE_LEFT * ripple) ** 2 + (0.3 * floor) ** 2)
+        deviations[1, i] = np.sqrt(min(known + (RIPPLE_LEFT * ripple) ** 2, slow[1, i]) + (0.3 * floor) ** 2)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
         external[i] = 0.0
@@ -135,18 +146,24 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
             continue
         P, ripple = covariance[i], constants[1, i]
         x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
+        slow[0, i] += SLOWLY * (external[i] - slow[0, i])
+        slow[1, i] += REMEMBERED * (slow[0, i] ** 2 - slow[1, i])
+        correction[1, i] *= fade
         P[0, 0] += walk[i, 0]
-        P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
+        P[0, 1] *= fade
+        P[1, 1] = fade * fade * P[1, 1] + walk[i, 1]
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
         correction[0, i] += g0 * external[i] / spread
         correction[1, i] += g1 * external[i] / spread
-        correction[0, i] = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
-        correction[1, i] = min(max(correction[1, i], -ripple), ripple)
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
         P[1, 0] = P[0, 1]
+        # Where the stiffness ends the offset takes the rest: their sum is known better than either.
+        within = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
+        correction[1, i] += (within - correction[0, i]) * P[0, 1] / P[0, 0]
+        correction[0, i] = within
     return False
 
 
