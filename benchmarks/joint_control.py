@@ -284,7 +284,8 @@ def tracking(full: bool, seed: int) -> dict[str, list[Case]]:
     few, least = [("excitation", False, f) for f in (0.6, 1.4)], [("excitation", False, 1.4)]
     some = [*few, ("pick and place", False, 1.4), ("slow reversing", False, 0.6)]
     groups: dict[str, list[Case]] = {}
-    for mismatch in BARS if full else ("on",):
+    kinds: tuple[Mismatch, ...] = ("on", "nominal") if full else ("on",)
+    for mismatch in kinds:
         for bandwidth, rows in ((12.0, some), (8.0, few)):
             label = f"gains of {bandwidth:g} Hz, mismatch {mismatch}"
             groups[label] = compared(everything if full else rows, seed, mismatch, bandwidth=bandwidth)

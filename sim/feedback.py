@@ -27,7 +27,7 @@ bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and 
 PRESLIDING = 0.4e-3
 """Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
 
-BACK = 0.1  # of the torque beyond the motor's limits, a tick: a time constant of 20 ms
+BACK = 0.02  # of the torque beyond the motor's limits, a tick: as fast as the integral itself
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 # The optional terms are gentle: they show their effect without touching the loop's margins.
 OUTPUT_SPEED = 0.05  # of the motor-speed gain

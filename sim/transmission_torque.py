@@ -178,7 +178,10 @@ def _fuse(ways, deviations, uncertain, external, contact, use, fused, deviation)
     for i in range(fused.size):
         outside = external[i] if contact else 0.0
         rigid = (LINK_MASS * ways[0, i]) ** 2 + floor[i] ** 2
-        deviations[0, i] = np.sqrt(min(model[i] ** 2, rigid + shaken[i]) + outside**2)
+        variance = model[i] ** 2
+        if use[1, i]:  # without an output angle the model's acceleration is made of this torque itself
+            variance = min(variance, rigid + shaken[i])
+        deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = 0.0, 0.0
         for k in range(3):
             if use[k, i]:
