@@ -263,7 +263,7 @@ def describe(case: Case) -> str:
 
 def compared(rows: list[tuple[str, bool, float]], seed: int, mismatch: Mismatch = "on", **fixed: float) -> list[Case]:
     """Every law on the same runs."""
-    cases = [Case(name, 35.0, load, factor, mismatch, seed + k, **fixed) for k, (name, load, factor) in enumerate(rows)]
+    cases = [Case(name, 35.0, load, factor, mismatch, seed + k)._replace(**fixed) for k, (name, load, factor) in enumerate(rows)]
     return [case._replace(law=law) for case in cases for law in LAWS]
 
 
@@ -297,7 +297,8 @@ def tracking(full: bool, seed: int) -> dict[str, list[Case]]:
 def measure(report: Report) -> None:
     """Fill the report."""
     full, seed = report.options.full, report.options.seed
-    friction, groups = {mismatch: learning(full, seed, mismatch) for mismatch in BARS}, tracking(full, seed)
+    friction: dict[Mismatch, list[Case]] = {mismatch: learning(full, seed, mismatch) for mismatch in BARS}
+    groups = tracking(full, seed)
     cases = [case for group in (*friction.values(), *groups.values()) for case in group]
     done = iter(spread(measure_case, cases))
     for mismatch, runs in friction.items():
