@@ -11,10 +11,9 @@ from itertools import zip_longest
 from pathlib import Path
 
 from app.checked import load
-from app.library import bundled
 from app.prepare import prepare
 from app.runner import run, simulate
-from app.session import Session, find
+from app.session import Session, bundled, find
 from pendant.events import Event
 from pendant.modes import TICK
 from pendant.table import TABLE, Effect
@@ -43,7 +42,7 @@ def differences(wanted: Sequence[Deed], done: Sequence[Deed]) -> list[str]:
     for then, now in zip_longest(wanted, done):
         if then is None or now is None:
             found.append(f"never before: {now}" if then is None else f"missing: {then}")
-        elif then[1] != now[1] or abs(then[0] - now[0]) > GRACE:
+        elif then[1] != now[1] or abs(then[0] - now[0]) > GRACE + 1e-9:
             found.append(f"{then} is now {now}")
     return found
 

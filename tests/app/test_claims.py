@@ -14,6 +14,7 @@ from app.prepare import prepare, without
 from app.runner import Outcome, run, simulate
 from app.session import Session
 from app.watch import Verdict
+from tests import golden
 
 SESSIONS = claiming()
 MET = Outcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s")])
@@ -35,6 +36,7 @@ def test_a_claiming_session_holds(name: str, tmp_path: Path) -> None:
     outcome = ran(SESSIONS[name], tmp_path)
     assert outcome.verdicts
     assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []
+    assert golden.differences(golden.known()[name], golden.deeds(outcome.events)) == []
 
 
 @pytest.mark.parametrize("name", SESSIONS)

@@ -11,6 +11,7 @@ from app.runner import Outcome, run, simulate
 from app.session import Session, bundled, find
 from benchmarks import determinism
 from pendant.modes import Mode
+from tests import golden
 from tests.app.fakes import FakeSimulation
 
 SHORT: dict[str, Any] = {
@@ -95,6 +96,7 @@ def test_a_bundled_session_without_a_switch_meets_its_expectations(name: str, tm
     session = load(find(name), Session)
     outcome = really(session, tmp_path)
     assert [verdict for verdict in outcome.verdicts if not verdict.passed] == []
+    assert golden.differences(golden.known()[name], golden.deeds(outcome.events)) == []
 
 
 @pytest.mark.parametrize(
