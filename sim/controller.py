@@ -121,5 +121,5 @@ class Controller:
             self.torque_feedback.add(measured, desired, torque)
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
-        self.feedback.add(reference, desired, estimate, use, self.motor.excess, torque, start, sticking, stiffer)
+        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start, sticking, stiffer)
         return torque

@@ -22,15 +22,11 @@ ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/
 ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
 LATELY = math.exp(-TICK / 0.3)
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
-OFFSET_TIME = 60.0  # after which the deflection's offset is another one: the ripple changes with the angle, its mean is 0 [s]
-OFFSET_SHARE = math.sqrt(1.0 / 3.0)  # of the ripple's torque: RMS of two harmonics that share its amplitude by chance
-RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves, until that is known better
+OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
+RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
 CORRELATED = 100.0  # ticks over which the deflection's error stays alike
 CONTACT = 2.5  # deviations between two ways that count as a contact
 CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
-SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
-REMEMBERED = TICK / 3.0  # how long it is remembered that they differed [s]
-SHAKING = 0.02  # what the model misses of accelerations before that is known, relative to the torque limit
 SETTLE_TICKS = 100  # after a contact, before its end is believed
 
 
@@ -40,12 +36,8 @@ class TransmissionTorque:
     The rigid model is right up to masses and centres while nothing is touched, and wrong by the external torque in contact.
     The deflection feels contacts, but its stiffness is known to a fifth and the output encoder's ripple counts in full: the
     stiffness error and an offset are learned from the rigid model while nothing is touched. The motor's way is uncertain by
-    the friction estimate, and by the whole stiction while the joint stands. The model's errors change fast, with accelerations
-    that it does not see in time; the deflection's slowly, with the angle. So the deflection is trusted as far as the two have
-    agreed lately, in the mean over a third of a second; the model as far as the rest of their difference was small
-    (innovation-based adaptive estimation: Mehra, 1970).
-
-    A contact is where the rigid model differs from the deflection, or without it from the motor's way, by more than both allow.
+    the friction estimate, and by the whole stiction while the joint stands. A contact is where the rigid model differs from
+    the deflection, or without it from the motor's way, by more than both allow.
 
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
@@ -67,11 +59,8 @@ class TransmissionTorque:
         self.correction = np.zeros((2, n))
         self.stiffer, self.offset = self.correction
         self._covariance = np.zeros((n, 2, 2))
-        self._differ = np.zeros((3, n))  # model from deflection, slowly [N·m]; mean squares of that, and of the rest
         self.forget()
-        self._fade = math.exp(-TICK / OFFSET_TIME)
-        offset_walk = OFFSET_SHARE * ripple * math.sqrt(1.0 - self._fade**2)
-        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK * math.sqrt(TICK)), offset_walk]) ** 2
+        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.ways, self.deviations = np.zeros((2, 3, n))
         self.fused, self.deviation, self.external = np.zeros((3, n))
         self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
@@ -83,10 +72,7 @@ class TransmissionTorque:
         self.correction[:] = 0.0
         self._covariance[:] = 0.0
         self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
-        self._covariance[:, 1, 1] = (OFFSET_SHARE * self._constants[1]) ** 2
-        self._differ[0] = 0.0
-        self._differ[1] = (RIPPLE_LEFT * self._constants[1]) ** 2
-        self._differ[2] = (SHAKING * self._constants[0] / MODEL_FLOOR) ** 2
+        self._covariance[:, 1, 1] = self._constants[1] ** 2
 
     def update(
         self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]
@@ -104,21 +90,20 @@ class TransmissionTorque:
             use: which of `WAYS` may be used, of which joint (3, n).
         """
         rubbing = (friction_deviation, stiction)
-        learned = (self.correction, self._covariance, self._walk, self._fade, self._differ)
+        learned = (self.correction, self._covariance, self._walk)
         touched = _compare(
             self.ways, self.deviations, rubbing, acceleration, self._constants, self._swing, learned, use,
             moving and self._quiet >= SETTLE_TICKS, self._model, self.external,
         )  # fmt: skip
         self._quiet = 0 if touched else self._quiet + 1
         self.contact = self._quiet < SETTLE_TICKS
-        uncertain = (self._model, self._constants[0], self._differ[2])
-        _fuse(self.ways, self.deviations, uncertain, self.external, self.contact, use, self.fused, self.deviation)
+        _fuse(self.ways, self.deviations, self._model, self.external, self.contact, use, self.fused, self.deviation)
 
 
 @numba.njit(cache=True)
 def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external) -> bool:
     """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
-    correction, covariance, walk, fade, differ = learned
+    correction, covariance, walk = learned
     friction_deviation, stiction = rubbing
     n = external.size
     swing[0] *= LATELY
@@ -132,7 +117,7 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
         ways[1, i] += x * correction[0, i] + correction[1, i]
         model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
-        deviations[1, i] = np.sqrt(min(known + (OFFSET_SHARE * ripple) ** 2, differ[1, i]) + (0.3 * floor) ** 2)
+        deviations[1, i] = np.sqrt(known + (RIPPLE_LEFT * ripple) ** 2 + (0.3 * floor) ** 2)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
         external[i] = 0.0
@@ -150,38 +135,26 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
             continue
         P, ripple = covariance[i], constants[1, i]
         x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
-        differ[0, i] += SLOWLY * (external[i] - differ[0, i])
-        differ[1, i] += REMEMBERED * (differ[0, i] ** 2 - differ[1, i])
-        differ[2, i] += REMEMBERED * ((external[i] - differ[0, i]) ** 2 - differ[2, i])
-        correction[1, i] *= fade
         P[0, 0] += walk[i, 0]
-        P[0, 1] *= fade
-        P[1, 1] = fade * fade * P[1, 1] + walk[i, 1]
+        P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
         correction[0, i] += g0 * external[i] / spread
         correction[1, i] += g1 * external[i] / spread
+        correction[0, i] = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
+        correction[1, i] = min(max(correction[1, i], -ripple), ripple)
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
         P[1, 0] = P[0, 1]
-        # Where the stiffness ends the offset takes the rest: their sum is known better than either.
-        within = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
-        correction[1, i] += (within - correction[0, i]) * P[0, 1] / P[0, 0]
-        correction[0, i] = within
     return False
 
 
 @numba.njit(cache=True)
-def _fuse(ways, deviations, uncertain, external, contact, use, fused, deviation) -> None:
-    model, floor, shaken = uncertain
+def _fuse(ways, deviations, model, external, contact, use, fused, deviation) -> None:
     for i in range(fused.size):
         outside = external[i] if contact else 0.0
-        rigid = (LINK_MASS * ways[0, i]) ** 2 + floor[i] ** 2
-        variance = model[i] ** 2
-        if use[1, i]:  # without an output angle the model's acceleration is made of this torque itself
-            variance = min(variance, rigid + shaken[i])
-        deviations[0, i] = np.sqrt(variance + outside**2)
+        deviations[0, i] = np.sqrt(model[i] ** 2 + outside**2)
         weight, total = 0.0, 0.0
         for k in range(3):
             if use[k, i]:

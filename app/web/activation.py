@@ -41,13 +41,15 @@ class Activation:
 
     def __init__(self, gui: viser.GuiApi, guard: Guard, loop: Running) -> None:
         self._guard, self._loop = guard, loop
-        self._settings: Settings | None = None
+        self._settings: Settings = loop.settings
         self._holder: int | None = None  # the client for whom the enabling device is held
         self._held: Button | None = None
         with gui.add_folder("Free-drive starts by", expand_by_default=False):
-            self.switches = {name: gui.add_checkbox(label, False) for name, label in SWITCHES.items()}
+            self.switches = {
+                name: gui.add_checkbox(label, bool(value_of(loop.settings, name))) for name, label in SWITCHES.items()
+            }
             self.grip: viser.GuiDropdownHandle[str] = gui.add_dropdown(
-                "Grip", tuple(Grip), hint="How the enabling device is held"
+                "Grip", tuple(Grip), disabled=not loop.settings.enabling.on, hint="How the enabling device is held"
             )
         for name, control in self.switches.items():
             control.on_update(self._sets(name, control))

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from pendant.modes import TICK
-from sim.calibration import STIFFNESS
 from sim.transmission_torque import SETTLE_TICKS, TransmissionTorque
 from tests.sim.arms import UR5E
 
@@ -105,35 +103,6 @@ def test_a_wrong_stiffness_is_learned_while_moving_and_not_at_rest() -> None:
         errors.append(np.abs(module.ways[1] - 10.0).max())
     assert errors[0] < 0.3
     assert errors[1] > 1.0
-
-
-def test_the_deflection_is_trusted_as_far_as_it_has_slowly_agreed_with_the_model() -> None:
-    """The model's errors are fast, 0.8 % of the rated torque at 10 Hz; a slow one in the deflection counts against that."""
-    rated = np.array(UR5E.limits.torque)
-    deviations = {}
-    for slow in (0.0, 0.003):
-        gears = Gears()
-        for k in range(5000):
-            fast = 0.008 * rated * np.sin(2.0 * np.pi * 10.0 * TICK * k)
-            wrong = slow * rated * np.sin(2.0 * np.pi * 0.3 * TICK * k)
-            gears.tick(fast, wrong, 0.0, friction_deviation=9.0, acceleration=20.0, moving=True)
-        deviations[slow] = gears.module.deviations[1] / rated
-    first = Gears().tick(0.0, 0.0, 0.0).deviations[1] / rated
-    assert (deviations[0.0] < 0.5 * first).all()
-    assert (deviations[0.0] > 0.001).all(), "its noise stays"
-    assert (deviations[0.003] > 1.5 * deviations[0.0]).all()
-    assert (deviations[0.003] <= first * 1.01).all(), "and never less than was believed at first"
-
-
-def test_a_stiffness_at_its_bound_leaves_the_rest_to_the_offset() -> None:
-    """A spring 40 % stiffer than believed, under a load that hardly changes: what counts is right all the same."""
-    gears, load = Gears(), CALM
-    module = gears.module
-    for k in range(20000):
-        load = np.array(UR5E.limits.torque) * (0.1 + 0.01 * np.sin(0.004 * k))
-        gears.tick(load, load / 1.4, load, moving=True)
-    assert np.abs(module.stiffer).max() <= STIFFNESS
-    np.testing.assert_allclose(module.ways[1], load, rtol=0.1)
 
 
 def test_a_sudden_external_torque_is_a_contact_until_it_has_been_gone_for_a_while() -> None:
