@@ -100,9 +100,11 @@ def test_junit_has_a_case_for_each_expectation(tmp_path: Path) -> None:
         write(tmp_path / "file" / "junit.xml", {})
 
 
-@pytest.mark.parametrize("name", bundled("sessions"))
-def test_the_schema_accepts_every_bundled_session(name: str) -> None:
-    jsonschema.validate(load(find(name), dict[str, object]), msgspec.json.decode(schema_of("session")))
+def test_the_schema_accepts_every_bundled_session() -> None:
+    schema = jsonschema.Draft202012Validator(msgspec.json.decode(schema_of("session")))
+    for name in bundled("sessions"):
+        found = [error.message for error in schema.iter_errors(load(find(name), dict[str, object]))]
+        assert (name, found) == (name, [])
 
 
 @pytest.mark.parametrize(

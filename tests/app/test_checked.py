@@ -100,7 +100,7 @@ def test_good_input_becomes_a_value() -> None:
         ),
         ("x: " + "[" * 5000, "line 1: here: expected at most 40 levels of nesting"),
         ("floors: 1" + "0" * 5000, f"line 1: '{'1' + '0' * 75}...: expected a number of at most 30 digits"),
-        ("\n\nfloors: [1", "line 3: expected YAML (expected ',' or ']', but got '<stream end>')"),
+        ("\n\nfloors: [1", "line 3: expected YAML (did not find expected ',' or ']')"),
         ("a: 1\n---\na: 1", "line 2: expected YAML (but found another document)"),
     ],
 )

@@ -121,6 +121,7 @@ def painted(client: RawClient, dark: bool, floor: float) -> tuple[dict[str, Any]
 
 
 def test_each_page_is_dark_or_light_for_itself(served: Served, join: Join) -> None:
+    until(lambda: served._shown >= 0, "the first picture, which lays the floor")
     served.scene._floor.position = (0.0, 0.0, -0.4)
     operator, watcher = join(), join()
     operator.set(served.control._strips[0].take._impl.uuid, value=True)
