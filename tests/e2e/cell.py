@@ -30,7 +30,7 @@ class Cell:
         """Wait for a state."""
         end = time.monotonic() + seconds
         while not true():
-            assert time.monotonic() < end, f"waited {seconds} s in vain: {what}"
+            assert time.monotonic() < end, f"waited {seconds} s in vain: {what}; {self.told()}"
             time.sleep(0.01)
 
     def pass_time(self, seconds: float) -> None:
@@ -41,6 +41,10 @@ class Cell:
     def happened(self, kind: Kind) -> bool:
         """Whether an event of that kind has happened."""
         return any(event.kind is kind for event in self.loop.events(0))
+
+    def told(self) -> str:
+        """The last events, for a test that fails."""
+        return ", ".join(f"{event.tick} {event.kind} {event.values}" for event in self.loop.events(0)[-8:])
 
     def position(self, part: str, point: tuple[float, ...] = (0.0, 0.0, 0.0)) -> Array:
         """Where a point of a part truly is now, in W [m]."""

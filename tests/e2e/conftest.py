@@ -23,7 +23,6 @@ FLAGS = (
     "--disable-background-networking",
     "--disable-quic",
 )
-WINDOW = ViewportSize(width=1280, height=800)
 COARSE = "?fixedDpr=0.3"
 """Draws the scene with a tenth of the pixels, in software ten times as fast; controls stay sharp, the pointer where it is."""
 
@@ -72,12 +71,15 @@ def cell(loop: Loop, served: Served) -> Cell:
 
 
 @pytest.fixture
-def visit(browser: Browser, cell: Cell) -> Iterator[Callable[[], Page]]:
-    """Opens the page in a window of its own, and waits until it is there."""
+def visit(browser: Browser, cell: Cell) -> Iterator[Callable[..., Page]]:
+    """Opens the page in a window of its own, and waits until it is there.
+
+    A window of another size has it from the beginning: after a change of size, viser's panels glide at the next change of theirs.
+    """
     pages: list[Page] = []
 
-    def open_page() -> Page:
-        page = browser.new_context(viewport=WINDOW).new_page()
+    def open_page(width: int = 1280, height: int = 800) -> Page:
+        page = browser.new_context(viewport=ViewportSize(width=width, height=height)).new_page()
         pages.append(page)
         page.goto(f"{cell.served.url}/{COARSE}")
         page.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)

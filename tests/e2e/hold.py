@@ -9,28 +9,35 @@ from pendant.events import Kind
 from pendant.modes import Mode, Phase
 from tests.e2e.cell import Cell
 
+IN_VAIN = frozenset({Kind.HOLD_SILENT, Kind.REFUSED_MOVING, Kind.ACTIVATION_CANCELLED, Kind.NOT_YET})
+"""After these the button has to be pressed again."""
+
+COOL_DOWN = 2.2
+"""Longer than the shipped one [s]."""
+
 
 def hold_until(page: Page, cell: Cell, true: Callable[[], bool], what: str) -> None:
     """Press the free-drive button with the pointer and hold it until something is true.
 
-    Drawing in software, a page may stall for half a second, which FD-23 takes for a released button: press again then, as
-    a hand would.
+    Drawing in software, a page may stall for a second, which FD-23 takes for a released button, or the pointer may press while
+    the arm still swings, which is refused: press again then, as a hand would.
     """
 
-    def silences() -> int:
-        return sum(event.kind is Kind.HOLD_SILENT for event in cell.loop.events(0))
+    def vain() -> int:
+        return sum(event.kind in IN_VAIN for event in cell.loop.events(0))
 
     box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     for _ in range(4):
-        known = silences()
+        known = vain()
         page.mouse.down()
-        cell.wait(lambda known=known: true() or silences() > known, what)
+        cell.wait(lambda known=known: true() or vain() > known, what)
         if true():
             return
         page.mouse.up()
-    pytest.fail("the page stalled each time that the button was held")
+        cell.pass_time(COOL_DOWN)
+    pytest.fail(f"held in vain, {what}: {cell.told()}")
 
 
 def hold_free_drive(page: Page, cell: Cell) -> None:

@@ -10,15 +10,13 @@ from tests.e2e.cell import Cell
 from tests.e2e.first_use import FirstUse
 
 pytestmark = pytest.mark.e2e
-Visit = Callable[[], Page]
+Visit = Callable[..., Page]
 SIZES = ((1280, 800), (1024, 768))
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_a_stranger_walks_through_the_first_use(visit: Visit, cell: Cell, size: tuple[int, int]) -> None:
-    page = visit()
-    page.set_viewport_size({"width": size[0], "height": size[1]})
-    FirstUse(page, cell).walk()
+    FirstUse(visit(*size), cell).walk()
 
 
 def test_nothing_of_the_pendant_is_out_of_sight(visit: Visit) -> None:
