@@ -115,8 +115,9 @@ def run(
         for tick in range(1, last + 1):
             decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
+            quiet = not decision.events
             for each in watches:
-                if tick >= each.due or tick == last:
+                if each.needs(tick, quiet) or tick == last:
                     each.see(tick, decision, simulation.glance)
             see(decision)
             file.write(tick, decision.events)

@@ -25,7 +25,7 @@ class Verdict:
 class Watch:
     """Base: one expectation, followed through a run. Call `see` with ticks counted from 1, then `verdict` once.
 
-    The ticks before `due` may be left out, but for the last of the run.
+    Ticks for which `needs` says no may be left out, but for the last of the run.
     """
 
     joints: list[str]
@@ -35,6 +35,12 @@ class Watch:
     last: int = -1  # the last tick seen
     due: int = 0  # the next tick to be shown
     ends_alone: bool = False  # looks at the first and the last tick of its interval, and at none between
+    events_alone: bool = False  # looks at nothing but events
+    deaf: bool = False  # from now on a tick without an event tells it nothing
+
+    def needs(self, tick: int, quiet: bool) -> bool:
+        """Whether it has to see a tick, which is `quiet` without an event."""
+        return tick >= self.due and not (quiet and self.deaf)
 
     def see(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
         """Take in one tick; `glance` reads it, and is called only where the tick is in the interval and it is needed."""
@@ -45,6 +51,7 @@ class Watch:
             start = self.trigger.happened
             if start is None:
                 return
+        self.deaf = self.events_alone
         begin, end = start + self.begin, None if self.end is None else start + self.end
         if begin <= tick and (end is None or tick <= end):
             self.look(tick, decision, glance)
@@ -139,6 +146,7 @@ class StateWatch(Watch):
 class EventWatch(Watch):
     """Follows `Happens` and `Never`."""
 
+    events_alone: bool = True
     wanted: Happens | Never = field(kw_only=True)
     found: list[int] = field(default_factory=list)
 

@@ -40,7 +40,6 @@ class ContactSources:
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         self._turns = np.zeros((2, 2, 3))  # tool side, arm side: last gyro value, smoothed angular acceleration
         self._out = np.zeros((4, 12))  # a signal a row, in the order of its fields
-        self._on_links = self._out[2:]
         self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
         n = dynamics.recursion.origins.shape[0]
         self._before, self._started = np.zeros((2, 3, n)), False  # Jacobians of the two points, a tick ago
@@ -67,24 +66,23 @@ class ContactSources:
             self._out[:, 10] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
         links = use.links and sample.joints_valid
-        out = self._out
-        if pair:
-            at = (self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach)
-            _transfer(sample.wrench, sample.acceleration_tool, sample.gyro_tool, self._turns[0], *at, out[0])
-            if use.flange:
-                _transfer(sample.wrench, sample.acceleration_flange, sample.gyro_flange, self._turns[1], *at, out[1])
-        if links:
-            rigid = self._dynamics.recursion
-            motion = (estimate.tau_ext, estimate.qd, estimate.qdd, estimate.g_B)
-            _derive(rigid.origins, rigid.jacobian, self._links, self._before, self._started, *motion, self._on_links)
+        rigid, out = self._dynamics.recursion, self._out
+        flange = (self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns)
+        arm = (rigid.origins, rigid.jacobian, self._links, self._before, self._started)
+        which = (pair, pair and use.flange, links)
+        _read(*which, sample.values, *flange, *arm, estimate.tau_ext, estimate.qd, estimate.qdd, out)
         self._started = links
-        tool, flange, elbow, forearm = out.tolist()
+        tool, arm_side, elbow, forearm = out.tolist()
         estimate.signals = (
-            Signal(*tool) if pair else None,
-            Signal(*flange) if pair and use.flange else None,
-            Signal(*elbow) if links else None,
-            Signal(*forearm) if links else None,
+            new(Signal, tool) if pair else None,
+            new(Signal, arm_side) if pair and use.flange else None,
+            new(Signal, elbow) if links else None,
+            new(Signal, forearm) if links else None,
         )
+
+
+new = tuple.__new__
+"""A named tuple's own way takes its values one by one, at three times the cost; a row holds all of them."""
 
 
 @numba.njit(cache=True)
@@ -101,6 +99,20 @@ def _effective_mass(mass, R, jacobian, load, com, inertia) -> float:
     carried = load * (at_load.T @ at_load) + angular.T @ about @ angular
     mobility = linear @ np.linalg.solve(mass - carried, linear.T.copy())
     return 1.0 / np.linalg.eigvalsh(mobility)[-1]
+
+
+@numba.njit(cache=True)
+def _read(tool, arm_side, links, values, smoothing, com, R, gravity, reach, turns, origins, flange, points, before, started,
+          tau_ext, qd, qdd, out) -> None:  # fmt: skip
+    """All sources that are on, into the rows of `out`. One kernel: each array that is handed over costs as much as its work."""
+    rest = values[3 * qd.size :]
+    wrench = rest[:6]
+    if tool:
+        _transfer(wrench, rest[12:15], rest[15:18], turns[0], smoothing, com, R, gravity, reach, out[0])
+    if arm_side:
+        _transfer(wrench, rest[6:9], rest[9:12], turns[1], smoothing, com, R, gravity, reach, out[1])
+    if links:
+        _derive(origins, flange, points, before, started, tau_ext, qd, qdd, gravity, out[2:])
 
 
 @numba.njit(cache=True)

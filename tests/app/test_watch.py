@@ -5,7 +5,7 @@ import pytest
 
 from app.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
 from app.measures import watch
-from app.watch import Verdict
+from app.watch import Verdict, Watch
 from pendant.decision import Decision, Remaining
 from pendant.events import Kind
 from pendant.modes import Mode, Phase, Safety
@@ -239,17 +239,28 @@ def test_a_final_displacement_looks_at_two_ticks_alone(end: float | None) -> Non
 
     watched = watch(Displacement(begin=0.1, end=end, part="flange", measure="final", max=1.0), JOINTS)
     for tick in range(1, 151):
-        if tick >= watched.due or tick == 150:
+        if watched.needs(tick, quiet=True) or tick == 150:
             watched.see(tick, decision(), lambda tick=tick: picture(tick))
     assert looked == [50, 100 if end else 150]
     assert watched.verdict().seen == f"{0.001 * (looked[1] - 50):.6g} m at {0.002 * looked[1]:.3f} s"
 
 
-def test_a_watch_says_when_it_is_due() -> None:
-    watched = watch(Never(kind=Kind.RESET, after="mode RUN", begin=0.02, end=0.04), JOINTS)
-    due: list[int] = []
+def shown(watched: Watch, quiet: bool) -> list[int]:
+    """The ticks that it needs to see, of forty; mode RUN from the third on."""
+    needed: list[int] = []
     for tick in range(1, 40):
-        if tick >= watched.due:
-            due.append(tick)
+        if watched.needs(tick, quiet):
+            needed.append(tick)
             watched.see(tick, decision(Mode.RUN if tick >= 3 else Mode.TEACH), lambda: snapshot(1))
-    assert due == [1, 2, 3, *range(13, 24)]
+    return needed
+
+
+def test_a_watch_says_which_ticks_it_needs() -> None:
+    assert shown(watch(State(mode=Mode.RUN, after="mode RUN", begin=0.02, end=0.04), JOINTS), quiet=True) == [
+        1, 2, 3, *range(13, 24)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("quiet", "needed"), [(True, [1, 2, 3]), (False, [1, 2, 3, *range(13, 24)])])
+def test_what_waits_for_an_event_needs_no_tick_without_one(quiet: bool, needed: list[int]) -> None:
+    assert shown(watch(Never(kind=Kind.RESET, after="mode RUN", begin=0.02, end=0.04), JOINTS), quiet) == needed
