@@ -53,6 +53,11 @@ class Attempt:
         return tuple([getattr(self, name) for name in self.__slots__ if name != "_settings"])
 
     @property
+    def confirmed(self) -> bool:
+        """It is ready with the handshake only (FD-8)."""
+        return self._settings.handshake.on
+
+    @property
     def present(self) -> float:
         """How long the signal has been present [s]."""
         return (self.total - self.left + 1) * TICK

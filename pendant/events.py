@@ -31,6 +31,8 @@ class Kind(StrEnum):
     REFUSED_MODE = "refused_mode"
     REFUSED_SENSORS = "refused_sensors"
     REFUSED_CHANGING = "refused_changing"
+    REFUSED_SHORT = "refused_short"
+    REFUSED_NOT_STORED = "refused_not_stored"
     REFUSED_MOVING = "refused_moving"
     NOT_YET = "not_yet"
     MANIPULATION = "manipulation"

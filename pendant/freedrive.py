@@ -22,10 +22,11 @@ from pendant.nearness import Nearness, SingularityWatch
 from pendant.operation import Operation, way_back
 from pendant.parameters import ZEROS
 from pendant.pose import UNTURNED, Rotation, flat, norm, turned, turned_back
-from pendant.sequence import JOINTS_SENSED, Seen, Sequence, Verdict
+from pendant.sequence import JOINTS_SENSED, SHORTEST, Seen, Sequence, Verdict
 from pendant.settings import Settings, Walls, ticks
 from pendant.soft_limits import Damping
 from pendant.sources import BUTTON, NONE, Presence
+from pendant.stored import Stored
 from pendant.table import TABLE, Effect
 from pendant.walls import AnyBorder, Start
 from pendant.watch import Stillness, WrenchMean, joints_ok
@@ -99,6 +100,7 @@ class FreeDrive:
         "_singularity",
         "_steps",
         "_stirred",
+        "_stored",
         "_total",
         "_turned",
         "_unpushed",
@@ -148,6 +150,7 @@ class FreeDrive:
         self._singularity = SingularityWatch()
         self._hand: Hand | None = None
         self._operation: Operation | None = None
+        self._stored = Stored()  # for the sequence to compare with
         self._drift, self._steps = Drift(), Steps()  # of the flange sensor's zero
         self._turned: Rotation = UNTURNED  # orientation of the flange in B at entry, in which `baseline` is
         self._posture: tuple[float, ...] | None = None  # at activation (FD-22)
@@ -241,6 +244,8 @@ class FreeDrive:
 
     def step(self, around: Surroundings, settings: Settings) -> list[Event]:
         """Decide the tick that `sense` began. Returns what happened, in order."""
+        if settings.sequence.stored:
+            self._keep(around)
         events = self._decide(around, settings)
         if self._posture is not None and self.phase not in KNOWN:
             if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
@@ -251,6 +256,17 @@ class FreeDrive:
                     )
             self._posture = None
         return events
+
+    def _keep(self, around: Surroundings) -> None:
+        """Keep the state of an arm that is held, before anybody tries to free it (FD-9)."""
+        estimate = around.estimate
+        if self.phase in KNOWN or (around.mode is Mode.RUN and around.still.count == 0):
+            self._stored.forget()
+        elif self.phase is Phase.OFF and self._stored.due(estimate.tick):
+            if joints_ok(estimate):
+                self._stored.keep(estimate, around.wrench_ok, around.mean)
+            else:
+                self._stored.forget()
 
     def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
         if not around.enabled and self.phase is not Phase.OFF:
@@ -269,8 +285,9 @@ class FreeDrive:
         self._end(kind, settings)
 
     def forget(self) -> None:
-        """The configured payload changes: what a refusal was to be told by is no more."""
+        """The configured payload changes: what a refusal was to be told by, and was stored, is no more."""
         self._verdict.waiting = False
+        self._stored.forget()
 
     def _activate(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The signal is present and free-drive is not on."""
@@ -303,7 +320,7 @@ class FreeDrive:
                 events.append(self._refuse_wall(reading, tick, settings))
                 return events
         if outcome is Outcome.READY:
-            events += self._end_activation(around, settings)
+            events += self._end_activation(attempt.confirmed, around, settings)
         elif outcome is not Outcome.GOES_ON:
             events.append(self._ask(outcome, attempt, around, settings))
         return events
@@ -329,7 +346,7 @@ class FreeDrive:
         self._containment.leave()
         self._zones.leave()
 
-    def _end_activation(self, around: Surroundings, settings: Settings) -> list[Event]:
+    def _end_activation(self, confirmed: bool, around: Surroundings, settings: Settings) -> list[Event]:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
@@ -342,14 +359,24 @@ class FreeDrive:
         self._posture = tuple(around.estimate.q.tolist())
         if not settings.sequence.on:
             return [self._enter(around, settings)]
+        use, stored = settings.sequence, None
+        if use.stored:
+            stored = self._stored.of(tick, ticks(use.age), around.wrench_ok)
+            if stored is None:
+                return [self._over(Kind.REFUSED_NOT_STORED, tick, settings, {"age": use.age})]
+        elif use.period < SHORTEST and not confirmed:
+            return [self._over(Kind.REFUSED_SHORT, tick, settings, {"value": use.period, "limit": SHORTEST})]
         self._attempt = None
         self.phase = Phase.SEQUENCE
-        self._total = self._left = ticks(settings.sequence.period)
-        self._sequence = Sequence(seen(around), settings, self._joints, self._rated)
+        self._total = self._left = ticks(use.period)
+        self._sequence = Sequence(seen(around), settings, self._joints, self._rated, stored)
         self.use_wrench = around.wrench_ok
         self.baseline = around.mean.mean()
         self._containment.begin(Start.SEQUENCE, settings.walls)
-        return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(around, settings)]
+        events = [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(around, settings)]
+        if self._total == 0 and len(events) == 1:
+            events.append(self._enter(around, settings))
+        return events
 
     def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The activation sequence runs; the button does not matter any more (FD-8a)."""

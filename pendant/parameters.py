@@ -1,7 +1,7 @@
 """The parameters that limits bound: how each is read from what the controller knows in one tick (FD-9, FD-13, FD-18)."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from pendant.estimate import Estimate
@@ -171,15 +171,21 @@ class Monitor:
 
     __slots__ = ("_gauges",)
 
-    def __init__(self, limits: Section) -> None:
-        """`limits`: a section of `pendant.settings.Limits`."""
+    def __init__(self, limits: Section, names: Iterable[str] = PARAMETERS, suffix: str = "") -> None:
+        """
+        Args:
+            limits: a section of `pendant.settings.Limits`.
+            names: of the parameters that are looked at.
+            suffix: of what they are called.
+        """
         self._gauges: list[tuple[Reader, bool, bool, Gauge]] = []  # how it is read, what sensors it needs
-        for name, parameter in PARAMETERS.items():
-            limit = getattr(limits, name, None)
+        for name in names:
+            parameter, limit = PARAMETERS[name], getattr(limits, name, None)
             if isinstance(limit, Limit) and limit.on:
                 stop = bool(getattr(limit, "stop", False))
                 low = -limit.max if parameter.signed else -math.inf
-                gauge = Gauge(parameter.text, parameter.unit, low=low, high=limit.max, allowed=ticks(limit.time), stop=stop)
+                text, allowed = parameter.text + suffix, ticks(limit.time)
+                gauge = Gauge(text, parameter.unit, low=low, high=limit.max, allowed=allowed, stop=stop)
                 self._gauges.append((parameter.read, parameter.wrench, parameter.acceleration, gauge))
 
     def step(self, view: View) -> list[Gauge]:

@@ -17,6 +17,23 @@ ACCELERATION_SENSED = "flange accelerometer"
 
 PAYLOAD_LIKE = frozenset({"payload-like force", "payload-like torque"})
 
+SHORTEST = 0.25
+"""Period that needs neither the handshake nor a stored state (FD-9) [s]."""
+
+COMPARED = (
+    "flange_displacement",
+    "joint_displacement",
+    "joint_torque",
+    "payload_force",
+    "payload_torque",
+    "user_force",
+    "user_torque",
+)
+"""Parameters whose change since a stored state is a parameter of its own, with the same limit."""
+
+AGAINST = ", against stored"
+"""Added to the names of these."""
+
 
 class Seen(NamedTuple):
     """What one tick brings to the sequence."""
@@ -29,19 +46,41 @@ class Seen(NamedTuple):
 class Sequence:
     """One run of it, from its first tick on."""
 
-    __slots__ = ("_acceleration", "_joints", "_monitor", "_scale", "_share", "_since", "_start", "_up", "_wrench")
+    __slots__ = (
+        "_acceleration",
+        "_changes",
+        "_joints",
+        "_monitor",
+        "_scale",
+        "_share",
+        "_since",
+        "_start",
+        "_stored",
+        "_up",
+        "_wrench",
+    )
 
-    def __init__(self, seen: Seen, settings: Settings, joints: tuple[str, ...], rated: tuple[float, ...]) -> None:
+    def __init__(
+        self,
+        seen: Seen,
+        settings: Settings,
+        joints: tuple[str, ...],
+        rated: tuple[float, ...],
+        stored: Reference | None = None,
+    ) -> None:
         """
         Args:
             seen: the tick in which it starts; its joint values are finite.
             settings: as they are now; they stay so to the end of the sequence.
             joints: names, base to flange.
             rated: torque of each joint [N·m].
+            stored: an earlier state, with the same sensors, that it is compared with as well; None: with none.
         """
         limits = settings.limits.activation
         estimate = seen.estimate
         self._monitor = Monitor(limits)
+        self._changes = None if stored is None else Monitor(limits, COMPARED, AGAINST)
+        self._stored = stored
         self._joints = joints
         self._scale = rated
         self._share = limits.load_share
@@ -56,7 +95,8 @@ class Sequence:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._since, self._wrench, self._acceleration, self._up, self._start, self._share, self._monitor.memory)
+        own = (self._since, self._stored, self._wrench, self._acceleration, self._up, self._start, self._share)
+        return (*own, self._monitor.memory, None if self._changes is None else self._changes.memory)
 
     def missing(self, seen: Seen) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
@@ -71,11 +111,18 @@ class Sequence:
     def check(self, seen: Seen) -> list[Gauge]:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
         parts = split(seen.mean.mean(), self._up) if self._wrench else None
-        return self._monitor.step(View(seen.estimate, self._since, parts, self._joints, self._scale, self._share))
+        beyond = self._monitor.step(View(seen.estimate, self._since, parts, self._joints, self._scale, self._share))
+        changes, stored = self._changes, self._stored
+        if changes is None or stored is None:
+            return beyond
+        if self._wrench:
+            parts = split([now - then for now, then in zip(seen.mean.mean(), stored.wrench, strict=True)], self._up)
+        return beyond + changes.step(View(seen.estimate, stored, parts, self._joints, self._scale, self._share))
 
     def monitored(self) -> tuple[Monitored, ...]:
         """What was checked last."""
-        return self._monitor.monitored()
+        told = self._monitor.monitored()
+        return told if self._changes is None else told + self._changes.monitored()
 
     def reasons(self, beyond: list[Gauge], seen: Seen, settings: Settings) -> list[Event]:
         """Every parameter that prevented entry (FD-11), then the refusal itself (FD-10)."""

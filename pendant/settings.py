@@ -46,7 +46,9 @@ class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The activation sequence, in which the arm is freed to see whether it stays."""
 
     on: Annotated[bool, _switch("FD-24", "free-drive begins with an activation sequence")] = True
-    period: Annotated[float, _number(0.25, 5.0, "s", "FD-9", "how long the freed arm must stay within limits")] = 1.0
+    period: Annotated[float, _number(0.0, 5.0, "s", "FD-9", "how long the freed arm must stay within limits")] = 1.0
+    stored: Annotated[bool, _switch("FD-9", "it is also compared with its state of some time ago")] = False
+    age: Annotated[float, _number(0.5, 15.0, "s", "FD-9", "how old the state is that it is compared with")] = 2.0
     amplified: Annotated[bool, _switch("FD-9", "the user's force is amplified in it already")] = False
     protective_stop: Annotated[bool, _switch("FD-10", "a limit exceeded in it is a protective stop")] = False
 

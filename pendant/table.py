@@ -157,6 +157,16 @@ TABLE: dict[Kind, Row] = {
     Kind.REFUSED_CHANGING: _refused(
         "Free-drive refused: the payload is being changed", "{mass:.2f} kg by now. Wait until it is done.", ("mass",)
     ),
+    Kind.REFUSED_SHORT: _refused(
+        "Free-drive refused: the check is too short",
+        "{value:.3f} s; below {limit:.2f} s only with the handshake or a stored state.",
+        ("value", "limit"),
+    ),
+    Kind.REFUSED_NOT_STORED: _refused(
+        "Free-drive refused: no stored state",
+        "None of {age:.1f} s ago to compare with. Leave the arm untouched for so long, then try again.",
+        ("age",),
+    ),
     Kind.SEQUENCE_STARTED: Row(
         Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
     ),

@@ -129,6 +129,8 @@ class World:
     anew: bool = False  # the period that runs was asked to begin anew
     registered: bool = False  # a waypoint was registered
     tried: bool = False  # the sensor was valid when the sequence began
+    kept: list[tuple[int, float, float, bool]] = field(default_factory=list)  # tick, mean force, torque, sensor valid
+    compared: tuple[int, float, float, bool] | None = None  # what the sequence is compared with
 
 
 def follow(stream: list[Step], settings: Settings) -> list[Seen]:
@@ -351,6 +353,8 @@ def _free(
     allowed = s.free_drive.allowed_from
     may = {Mode.TEACH: allowed.teach, Mode.NORMAL: allowed.normal, Mode.RUN: allowed.run}.get(w.mode, False)
     cooling = t - w.cool_from < _n(s.free_drive.cool_down)
+    if s.sequence.stored:
+        _keep(w, t, i)
     if w.phase is Phase.OFF and present:
         if cooling or w.blocked:
             if pressed:
@@ -381,9 +385,29 @@ def _free(
     _stay(w, t, i, s, pressed, let_go, static, kinds)
 
 
+def _mean(w: World) -> float:
+    return sum(w.forces) / len(w.forces) if w.forces else 0.0
+
+
+def _keep(w: World, t: int, i: Step) -> None:
+    """What the arm was like while nobody tried to free it, twenty times a second."""
+    if w.phase not in (Phase.OFF, Phase.ACTIVATION) or (w.mode is Mode.RUN and w.fast_at == t):
+        w.kept = []
+    elif w.phase is Phase.OFF and (not w.kept or t >= w.kept[-1][0] + 25):
+        if w.kept and w.kept[-1][3] != i.wrench:
+            w.kept = []
+        w.kept = [*w.kept, (t, _mean(w), i.tau, i.wrench)] if i.joints else []
+
+
 def _begin_entry(w: World, t: int, i: Step, s: Settings, static: bool, kinds: list[Kind]) -> None:
     if not i.joints or not static:
         kinds.append(Kind.REFUSED_MOVING if i.joints else Kind.REFUSED_SENSORS)
+        _end(w, t, True, cool=True)
+        return
+    old = [item for item in w.kept if _n(s.sequence.age) <= t - item[0] <= 15 * 500 + 25 and item[3] == i.wrench]
+    w.compared = old[-1] if old and s.sequence.stored else None
+    if s.sequence.on and (s.sequence.stored or s.sequence.period < 0.25) and w.compared is None:
+        kinds.append(Kind.REFUSED_NOT_STORED if s.sequence.stored else Kind.REFUSED_SHORT)
         _end(w, t, True, cool=True)
     elif s.sequence.on:
         kinds.append(Kind.SEQUENCE_STARTED)
@@ -391,7 +415,8 @@ def _begin_entry(w: World, t: int, i: Step, s: Settings, static: bool, kinds: li
         if w.program is ProgramState.RUNNING:
             kinds.append(Kind.PROGRAM_PAUSED)
             w.program, w.brake = ProgramState.PAUSED, True
-        _stays(w, t, i, s, True, kinds)
+        if _stays(w, t, i, s, True, kinds) and s.sequence.period == 0.0:
+            _enter(w, t, i, True, kinds)
     else:
         _enter(w, t, i, True, kinds)
 
@@ -406,8 +431,12 @@ def _stays(w: World, t: int, i: Step, s: Settings, present: bool, kinds: list[Ki
     beyond = [
         abs(i.qd) > limits.joint_speed.max,
         abs(i.tau) > 100.0 * limits.joint_torque.max,
-        w.tried and abs(sum(w.forces) / len(w.forces)) > limits.user_force.max,
+        w.tried and abs(_mean(w)) > limits.user_force.max,
     ]
+    if w.compared is not None:
+        _, force, torque, _ = w.compared
+        beyond.append(abs(i.tau - torque) > 100.0 * limits.joint_torque.max)
+        beyond.append(w.tried and abs(_mean(w) - force) > limits.user_force.max)
     if any(beyond):
         stop = s.sequence.protective_stop
         kinds += [Kind.ENTRY_PREVENTED] * sum(beyond) + [Kind.SEQUENCE_STOPPED if stop else Kind.REFUSED_LIMIT]

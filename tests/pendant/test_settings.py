@@ -11,7 +11,9 @@ from pendant.settings import Row, SettingError, Settings, Value, apply, describe
 EXPECTED = {
     "activation.period": (1.0, 0.0, 15.0, "s", "FD-7", True),
     "sequence.on": (True, None, None, "", "FD-24", True),
-    "sequence.period": (1.0, 0.25, 5.0, "s", "FD-9", True),
+    "sequence.period": (1.0, 0.0, 5.0, "s", "FD-9", True),
+    "sequence.stored": (False, None, None, "", "FD-9", True),
+    "sequence.age": (2.0, 0.5, 15.0, "s", "FD-9", True),
     "sequence.amplified": (False, None, None, "", "FD-9", True),
     "sequence.protective_stop": (False, None, None, "", "FD-10", True),
     "free_drive.allowed_from.normal": (False, None, None, "", "FD-1", True),

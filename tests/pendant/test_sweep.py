@@ -29,6 +29,11 @@ SHORT = apply(
 FROM_ANYWHERE = apply(SHORT, {"free_drive.allowed_from.run": True, "free_drive.allowed_from.normal": True})
 HOLD_TO_RUN = apply(SHORT, {"button.hold_to_run": True, "free_drive.cool_down": 0.0})
 CHECKED = apply(FROM_ANYWHERE, {"sequence.on": True, "sequence.period": 0.25})
+COMPARED = apply(CHECKED, {"sequence.period": 0.1, "sequence.stored": True, "sequence.age": 0.5})
+"""Against a state stored 250 ticks ago, for 50 ticks."""
+
+AT_A_GLANCE = apply(COMPARED, {"sequence.period": 0.0})
+TOO_SHORT = apply(CHECKED, {"sequence.period": 0.248})
 STOPPING = apply(CHECKED, {"sequence.protective_stop": True})
 AT_ONCE = apply(SHORT, {"activation.period": 0.0})
 
@@ -208,7 +213,29 @@ ODD = st.tuples(STEPS, st.integers(1, 60)).map(lambda pair: [pair[0]] * pair[1])
 STREAMS = st.lists(USUAL | ODD, min_size=1, max_size=40).map(lambda parts: [step for part in parts for step in part])
 
 
+OPTIONS = (SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, CHECKED, STOPPING, COMPARED, AT_A_GLANCE, TOO_SHORT)
+UNTOUCHED = ticks_of(250)
+PUSHED = {"force": (-8.0, -4.0, 4.0, 8.0), "tau": (-3.0, -1.0, 1.0, 3.0)}
+
+
+@pytest.mark.parametrize("option", [COMPARED, AT_A_GLANCE, TOO_SHORT], ids=["compared", "at a glance", "too short"])
+def test_comparison_with_a_stored_state_is_as_the_spec_says(option: Settings) -> None:
+    """FD-9: what differs, for how long it did, and when it comes."""
+    for wait in (239, 240):
+        for what, values in PUSHED.items():
+            for before in values[::2]:
+                stored = ticks_of(wait, **{what: before})
+                for now in values:
+                    agree([*stored, *ticks_of(5, held=True), *ticks_of(70, held=True, **{what: now}), *ticks_of(60)], option)
+        for step in (Step(wrench=False), Step(joints=False), Step(qd=0.2)):
+            agree([*ticks_of(wait), *[step] * 30, *UNTOUCHED, *ticks_of(70, held=True)], option)
+            agree([*ticks_of(wait), *[step] * 30, *ticks_of(70, held=True)], option)
+        agree(
+            [*UNTOUCHED, *ticks_of(70, held=True), Step(released=True), *ticks_of(wait + 150), *ticks_of(70, held=True)], option
+        )
+
+
 @hypothesis_settings(max_examples=150, deadline=None)
-@given(stream=STREAMS, option=st.sampled_from([SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, CHECKED, CHECKED, STOPPING]))
+@given(stream=STREAMS, option=st.sampled_from([*OPTIONS, CHECKED]))
 def test_random_streams_do_what_the_spec_says(stream: list[Step], option: Settings) -> None:
     agree(REST + stream, option)
