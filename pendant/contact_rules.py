@@ -25,6 +25,8 @@ MEAN = 20
 """Samples of the stored means that it is held against, q."""
 LAGS = (20, 60, 200)
 """Ages of the stored means that the newest is held against (CD-8): steep changes show early, flat ones in the long run."""
+DIED_OUT = 0.25
+"""Change of the acceleration that is none any more [m/s²]: with a larger one a contact has been gained, and is no clamping."""
 
 
 class Rule(Word):
@@ -157,7 +159,7 @@ def slow(history: History, limit: ContactLimits) -> Slow:
         size, change = ff**0.5, (ax * ax + ay * ay + az * az) ** 0.5
         sightings = min(int(size / threshold), HEAVIEST)
         if size > limit.clamping * change:
-            return Slow(sightings, True)
+            return Slow(sightings, change < DIED_OUT)
         if size < threshold + limit.payload_margin * change:
             continue
         dot = dfx * ax + dfy * ay + dfz * az
