@@ -92,7 +92,7 @@ def measure(report: Report) -> None:
         some = [result for result in results if result.fault.kind == kind]
         report.row(f"{len(some)} of {kind}: way of the flange, largest", max(r.way for r in some), "mm", at_most=30.0)
     far = [result for result in results if result.way > MOVED]
-    share = sum(result.named for result in far) / max(len(far), 1) if far else 1.0
+    share = sum(result.named for result in far) / len(far) if far else 1.0
     report.row(f"{len(far)} that moved by more than {MOVED:g} mm: cause named", share, "", at_least=1.0)
     for r in sorted(results, key=lambda r: -r.way)[:4]:
         report.notes.append(

@@ -29,7 +29,7 @@ from sim.touch import Pull
 from tests.e2e.cell import Cell
 from tests.e2e.conftest import FLAGS
 from tests.e2e.first_use import FirstUse
-from tests.e2e.hold import enter_free_drive, hold_until
+from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_until
 
 IMAGES = Path(__file__).parent / "images"
 
@@ -59,7 +59,7 @@ def led_back(page: Page, cell: Cell) -> None:
     page.get_by_role("button", name="Play").click()
     cell.wait(lambda: cell.happened(Kind.LEFT_WALL), "the fence", 60.0)
     page.get_by_text("Way back to the ghost").wait_for()
-    cell.pass_time(2.2)  # the cool-down
+    cell.pass_time(COOL_DOWN)
 
 
 def asked(page: Page, cell: Cell) -> None:

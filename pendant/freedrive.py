@@ -499,10 +499,10 @@ class FreeDrive:
     def _take_off(self, gone: Six, estimate: Estimate, hand: Hand) -> None:
         """`gone` [N, N·m], axes of B now, is an offset of the sensor."""
         R_BF = flat(estimate.R_BF)
-        hand.shift(R_BF, (gone[0], gone[1], gone[2]))
-        force = turned(self._turned, turned_back(R_BF, (gone[0], gone[1], gone[2])))
-        torque = turned(self._turned, turned_back(R_BF, (gone[3], gone[4], gone[5])))
-        self.baseline = tuple([a + b for a, b in zip(self.baseline, (*force, *torque), strict=True)])
+        force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
+        hand.shift(force)
+        at_entry = (*turned(self._turned, force), *turned(self._turned, torque))
+        self.baseline = tuple([a + b for a, b in zip(self.baseline, at_entry, strict=True)])
 
     def _refuse_wall(self, reading: Reading, tick: int, settings: Settings) -> Event:
         """The activation shape is exceeded (VW-6, FD-10)."""

@@ -8,7 +8,7 @@ import math
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
-from pendant.pose import ORIGIN, Rotation, Vector, dot, flat, turned_back
+from pendant.pose import ORIGIN, Vector, dot, flat, turned_back
 from pendant.residual import upward
 
 SETTLING = 1.5
@@ -77,9 +77,9 @@ class Hand:
         """All of its state, to compare."""
         return tuple([getattr(self, name) for name in self.__slots__])
 
-    def shift(self, R_BF: Rotation, force: Vector) -> None:
-        """The sensor's zero has gone by `force`, axes of B [N], which is nobody's."""
-        x, y, z = turned_back(R_BF, force)
+    def shift(self, force: Vector) -> None:
+        """The sensor's zero has gone by `force`, axes of F [N], which is nobody's."""
+        x, y, z = force
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
 

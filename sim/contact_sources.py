@@ -74,15 +74,11 @@ class ContactSources:
         self._started = links
         tool, arm_side, elbow, forearm = out.tolist()
         estimate.signals = (
-            new(Signal, tool) if pair else None,
-            new(Signal, arm_side) if pair and use.flange else None,
-            new(Signal, elbow) if links else None,
-            new(Signal, forearm) if links else None,
+            Signal._make(tool) if pair else None,
+            Signal._make(arm_side) if pair and use.flange else None,
+            Signal._make(elbow) if links else None,
+            Signal._make(forearm) if links else None,
         )
-
-
-new = tuple.__new__
-"""A named tuple's own way takes its values one by one, at three times the cost; a row holds all of them."""
 
 
 @numba.njit(cache=True)

@@ -62,7 +62,7 @@ def test_a_simulation_is_stepped_by_hand() -> None:
 
 
 def test_an_example_sweeps_the_payload_error(tmp_path: Path) -> None:
-    said = example("payload_error", tmp_path, "1")
+    said = example("payload_error", tmp_path, "2")
     shares = ast.literal_eval(said.partition(":")[2].strip())
     assert (shares[-1.5], shares[0.0], shares[1.5]) == (100.0, 0.0, 100.0)
     assert "<svg" in (tmp_path / "payload_error.svg").read_text()

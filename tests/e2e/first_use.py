@@ -16,6 +16,12 @@ from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_free_drive, hold_un
 WEIGHT = 2.0
 """Mass that is put on without telling the controller [kg]."""
 
+BY_ITSELF = {
+    Kind.LEFT_PERIOD: "Free-drive ended: nobody moved the arm",
+    Kind.LEFT_RESTART: "Free-drive ended: the arm stood still",
+}
+"""What the page says of a free-drive that ended because nobody guided the arm."""
+
 SHORT, LONG = 1000, 5000
 """For so many ticks a hand may not have taken hold, and may hold without what it is there for."""
 
@@ -107,11 +113,12 @@ class FirstUse:
             self.see("corrected")
             cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left alone, it ends")
             # A page that stalls while the button is held lets go and takes hold again, and a short press leaves.
-            if any(event.kind in (Kind.LEFT_PERIOD, Kind.LEFT_RESTART) for event in cell.loop.events(0)[known:]):
+            ended = [event for event in cell.loop.events(0)[known:] if event.kind in BY_ITSELF]
+            if ended:
                 break
         else:
             pytest.fail(f"it never ended by itself: {cell.told()}")
-        page.get_by_text("Free-drive ended: ").first.wait_for()
+        page.get_by_text(BY_ITSELF[ended[0].kind]).first.wait_for()
 
     def touch_the_table(self) -> str:
         """A ready-made program touches the table: the contact is in the log, and in the file."""

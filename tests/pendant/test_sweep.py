@@ -151,7 +151,7 @@ def test_situations_cover_every_mode_phase_safety_and_law() -> None:
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_every_input_in_every_situation_does_what_the_spec_says(name: str, after: str) -> None:
     stream = SITUATIONS[name][0]
-    for step in (INPUTS if after == "rest" else FOR_OPTIONS).values():
+    for step in INPUTS.values():
         agree([*stream, step, *AFTER[after]], SHORT)
 
 
@@ -169,7 +169,7 @@ def test_every_input_in_the_activation_sequence_does_what_the_spec_says(name: st
     stream = CHECKED_SITUATIONS[name]
     assert agree(stream, option)[-1][2] is Phase.SEQUENCE
     assert agree(stream, option)[-1][3] is Law.FREE
-    for step in (INPUTS if option is CHECKED else FOR_OPTIONS).values():
+    for step in INPUTS.values():
         for after in (ticks_of(140), ticks_of(30, held=True) + ticks_of(160)):
             agree([*stream, step, *after], option)
         agree([*stream, *[step] * 40, *ticks_of(100)], option)
