@@ -92,6 +92,7 @@ class Kind(StrEnum):
     TOOL_SWITCHED = "tool_switched"
     TOOL_CHANGED = "tool_changed"
     TOOL_REFUSED = "tool_refused"
+    TOOLS_CHANGED = "tools_changed"
     PAYLOAD_CHANGED = "payload_changed"
     POSTURE_MEASURED = "posture_measured"
     POSTURE_REFUSED = "posture_refused"

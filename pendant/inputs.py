@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pendant.load import Load
 from pendant.program import Program
+from pendant.tools import Tool
 from pendant.word import Word
 
 
@@ -57,6 +58,7 @@ class Inputs:
     high: frozenset[int] = frozenset()  # digital inputs that are high
     tool: str = ""  # the tool to use from now on, by its name in the table
     load: Load | None = None  # the payload to configure, beyond the tool
+    tools: tuple[Tool, ...] = ()  # the table of tools from now on; empty: as it was
 
 
 NOTHING = Inputs()

@@ -31,7 +31,7 @@ from pendant.sources import PROGRAM
 from pendant.stopping import Stopping
 from pendant.table import TABLE, Effect
 from pendant.tooling import Fitting, Tooling
-from pendant.tools import Equipment
+from pendant.tools import Equipment, Tool
 from pendant.walls import AnyBorder
 from pendant.watch import Stillness, WrenchMean, joints_ok, motion_ok
 
@@ -156,6 +156,11 @@ class Supervisor:
     def fitting(self) -> Fitting:
         """Tool and payload, as configured."""
         return self._tooling.fitting
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The table of tools as it is now."""
+        return self._tooling.tools
 
     @property
     def places(self) -> tuple[tuple[AnyBorder, Place], ...]:

@@ -418,6 +418,7 @@ TABLE: dict[Kind, Row] = {
         "It was {old}. Tool centre point {x:z.0f}, {y:z.0f}, {z:z.0f} mm, {mass:.2f} kg; no payload beyond it.",
         ("name", "old", "mass", "x", "y", "z"),
     ),
+    Kind.TOOLS_CHANGED: _info("Table of tools: {change}", "{count} tools.", ("change", "count")),
     Kind.TOOL_REFUSED: _denied("Not changed: {what}", "{reason}.", ("what", "reason")),
     Kind.PAYLOAD_CHANGED: _info(
         "Payload {mass:.2f} kg",
@@ -441,7 +442,11 @@ TABLE: dict[Kind, Row] = {
     Kind.SETTING_CHANGED: _info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: _denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),
     # The loop that runs all of it
-    Kind.OVERRUN: _denied("Simulation late by {late:.0f} ms", "The machine is busy; the lost time is dropped.", ("late",)),
+    Kind.OVERRUN: _denied(
+        "Simulation late {often}, by {late:.0f} ms at worst",
+        "The machine is busy; {lost:.1f} s were dropped.",
+        ("late", "lost", "often"),
+    ),
 }
 
 

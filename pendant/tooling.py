@@ -1,5 +1,6 @@
-"""The tool in use and the configured payload: chosen, refused, changed as one, and led over without a jump."""
+"""The tool in use, the table it is from, and the configured payload: chosen, refused, changed as one, led over without a jump."""
 
+import math
 from typing import NamedTuple
 
 from pendant.estimate import Estimate
@@ -9,7 +10,7 @@ from pendant.load import NOTHING, Load, problem
 from pendant.modes import Mode, Phase, way_out
 from pendant.payload_wizard import PayloadWizard
 from pendant.settings import ToolUse, ticks
-from pendant.tools import Equipment, Tool
+from pendant.tools import Equipment, Tool, difference, first_problem
 from pendant.watch import WINDOW, wrench_ok
 
 WIZARD = frozenset({Command.WIZARD_MEASURE, Command.WIZARD_APPLY, Command.WIZARD_CLEAR})
@@ -31,7 +32,7 @@ class Tooling:
     __slots__ = ("_age", "_from", "_most", "_plate", "_ramp", "changing", "fitting", "tools", "wizard")
 
     def __init__(self, equipment: Equipment) -> None:
-        self.tools = {tool.name: tool for tool in equipment.tools}
+        self.tools = equipment.tools  # the table
         self.fitting = Fitting(0, equipment.tool, equipment.load, 1.0, equipment.load.mass)
         self.wizard = PayloadWizard()
         self.changing = False
@@ -44,7 +45,7 @@ class Tooling:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.fitting, self.changing, self._ramp, self._age, self._from, self.wizard.memory)
+        return (self.fitting, self.tools, self.changing, self._ramp, self._age, self._from, self.wizard.memory)
 
     def step(self, estimate: Estimate, inputs: Inputs, mode: Mode, phase: Phase, still: bool, use: ToolUse) -> list[Event]:
         """One tick.
@@ -58,12 +59,14 @@ class Tooling:
             use: settings.
         """
         steered = not WIZARD.isdisjoint(inputs.commands)
-        if not (inputs.tool or inputs.load or steered or self.changing or self.wizard.measuring):
+        if not (inputs.tool or inputs.load or inputs.tools or steered or self.changing or self.wizard.measuring):
             return []
         events: list[Event] = []
         why_not = "" if phase is Phase.OFF else "free-drive is being tried"
         if mode in (Mode.RUN, Mode.FREE_DRIVE):
             why_not = way_out(mode)
+        if inputs.tools:
+            events += self._tabulate(inputs.tools, why_not, estimate.tick, use)
         if inputs.tool:
             events += self._choose(inputs.tool, why_not, estimate.tick, use)
         if inputs.load is not None:
@@ -96,11 +99,40 @@ class Tooling:
             self.wizard.clear()
         return events
 
+    def _tabulate(self, tools: tuple[Tool, ...], why_not: str, tick: int, use: ToolUse) -> list[Event]:
+        """Another table. The tool in use stays in it; what is changed of it is led over, and it keeps what it holds."""
+        if tools == self.tools:
+            return []
+        used = next((tool for tool in tools if tool.name == self.fitting.tool.name), None)
+        why_not = why_not or self._objection(tools, used)
+        if used is None or why_not:
+            return [_refused("table of tools", why_not, tick)]
+        change, self.tools = difference(self.tools, tools), tools
+        if used != self.fitting.tool:
+            self._lead(used, self.fitting.load, use)
+            self.wizard.clear()
+        return [Event(Kind.TOOLS_CHANGED, tick, {"change": change, "count": len(tools)})]
+
+    def _objection(self, tools: tuple[Tool, ...], used: Tool | None) -> str:
+        """Why a table cannot be taken, or "". What was in the last one as it is may be heavier than what can be used."""
+        if used is None:
+            return f"{self.fitting.tool.name} is in use, and keeps its name"
+        fresh = [tool for tool in tools if tool not in self.tools]
+        for entries, most in ((fresh, self._most), (tools, math.inf)):
+            wrong = first_problem(entries, most)
+            if wrong is not None:
+                place, (field, value, allowed) = wrong
+                return f"{entries[place].name or 'no name'}: {field} {value}, allowed: {allowed}"
+        together, beyond = used.mass + self.fitting.load.mass, self.fitting.load.mass
+        if used != self.fitting.tool and together > self._most:
+            return f"{used.name}: mass {used.mass:g}, allowed: 0 .. {self._most - beyond:g} kg with this payload"
+        return ""
+
     def _choose(self, name: str, why_not: str, tick: int, use: ToolUse) -> list[Event]:
         what = f"tool {name}"
-        tool = self.tools.get(name)
+        tool = next((tool for tool in self.tools if tool.name == name), None)
         if tool is None:
-            why_not = f"there is {', '.join(self.tools)}"
+            why_not = f"there is {', '.join(tool.name for tool in self.tools)}"
         elif not why_not and tool.mass > self._most:
             why_not = f"{tool.mass:.2f} kg, at most {self._most:g} kg"
         if tool is None or why_not:

@@ -10,6 +10,9 @@ from pendant.load import NOTHING, Load, NotNegative, Problem, Vector, misplaced,
 LONGEST = 40
 """Of a tool's name [characters]."""
 
+MOST = 50
+"""Tools in a table."""
+
 
 class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A tool: its tool centre point and its load go together, so that no change takes one without the other."""
@@ -51,12 +54,34 @@ def tool_problem(tool: Tool, most: float) -> Problem | None:
 
 def table_problem(tools: Sequence[Tool], most: float) -> Problem | None:
     """Why a table cannot be used, or None; the field begins with the tool's place."""
+    wrong = first_problem(tools, most)
+    return None if wrong is None else wrong[1]._replace(field=f"[{wrong[0]}].{wrong[1].field}")
+
+
+def first_problem(tools: Sequence[Tool], most: float) -> tuple[int, Problem] | None:
+    """The place of the first tool with which a table cannot be used, and why, or None."""
     names: set[str] = set()
     for place, tool in enumerate(tools):
         wrong = tool_problem(tool, most)
         if wrong is None and tool.name in names:
             wrong = Problem("name", tool.name, "each tool needs a name of its own")
+        if wrong is None and place == MOST:
+            wrong = Problem("name", tool.name, f"at most {MOST} tools")
         if wrong is not None:
-            return wrong._replace(field=f"[{place}].{wrong.field}")
+            return place, wrong
         names.add(tool.name)
     return None
+
+
+def difference(before: Sequence[Tool], after: Sequence[Tool]) -> str:
+    """What was done to a table, in words: by name where it is one tool."""
+    old, new = ({tool.name: tool for tool in tools} for tools in (before, after))
+    done = {
+        "added": [name for name in new if name not in old],
+        "changed": [name for name in new if name in old and new[name] != old[name]],
+        "deleted": [name for name in old if name not in new],
+    }
+    count = sum(map(len, done.values()))
+    if count == 0:
+        return "in another order"
+    return ", ".join(f"{names[0] if count == 1 else len(names)} {what}" for what, names in done.items() if names)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+import pendant.tools
 from sim.arm import Arm
 from sim.frames import com_in_joint_frame, inertia_matrix, link_transform, skew
 from sim.scenario import Load, Tool
@@ -82,12 +83,12 @@ def load_body(load: Load) -> Body:
     return Body(load.mass, np.array(load.com), inertia)
 
 
-def tool_body(tool: Tool | None) -> Body:
-    """`tool` as a body in F: without an inertia a cylinder of its length and radius; no tool weighs nothing."""
+def tool_body(tool: pendant.tools.Tool | None) -> Body:
+    """`tool` as a body in F: without an inertia a cylinder of its length and radius, or as a load; no tool weighs nothing."""
     if tool is None:
         return Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    if tool.inertia is not None:
-        return Body(tool.mass, np.array(tool.com), inertia_matrix(tool.inertia))
+    if tool.inertia is not None or not isinstance(tool, Tool):
+        return load_body(Load(mass=tool.mass, com=tool.com, inertia=tool.inertia))
     across = tool.mass * (3 * tool.radius**2 + tool.length**2) / 12.0
     return Body(tool.mass, np.array(tool.com), np.diag([across, across, tool.mass * tool.radius**2 / 2.0]))
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from pendant.inputs import Button, Command, Inputs
 from pendant.program import Program
+from pendant.tools import Tool
 from sim.changes import AnyChange
 from sim.scenario import Load
 from sim.touch import Touch
@@ -30,13 +31,14 @@ class Wishes:
             ours.high | theirs.high,
             theirs.tool or ours.tool,
             theirs.load or ours.load,
+            theirs.tools or ours.tools,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 
 
 @dataclass(slots=True)
 class Desk:
-    """Latest-value slots for touches, queues for what must not be lost. Every method may be called from any thread."""
+    """Latest values of touches and inputs, queues for what must not be lost. Every method may be called from any thread."""
 
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _held: set[Button] = field(default_factory=set)
@@ -46,8 +48,10 @@ class Desk:
     _program: Program | None = None
     _changes: list[AnyChange] = field(default_factory=list)
     _touches: dict[str, Touch] = field(default_factory=dict)
+    _high: frozenset[int] = frozenset()
     _tool: str = ""
     _load: Load | None = None
+    _tools: tuple[Tool, ...] = ()
 
     def hold(self, button: Button) -> None:
         """Say that `button` is held now: a keep-alive (FD-23), good until the next tick."""
@@ -81,10 +85,25 @@ class Desk:
         with self._lock:
             self._changes.append(change)
 
+    @property
+    def high(self) -> frozenset[int]:
+        """Digital inputs that are high; they stay so until they are set low."""
+        return self._high
+
+    def wire(self, number: int, high: bool) -> None:
+        """Give a digital input a level; it lasts."""
+        with self._lock:
+            self._high = self._high | {number} if high else self._high - {number}
+
     def choose(self, tool: str) -> None:
         """Say which tool of the table the controller is to use."""
         with self._lock:
             self._tool = tool
+
+    def tabulate(self, tools: tuple[Tool, ...]) -> None:
+        """Say what the table of tools is to be, all of it."""
+        with self._lock:
+            self._tools = tools
 
     def configure(self, load: Load) -> None:
         """Say what payload the controller is to believe in, beyond the tool."""
@@ -102,7 +121,7 @@ class Desk:
             self._touches.pop(who, None)
 
     def take(self) -> Wishes:
-        """Read all wishes and empty the queues; touches stay until they are let go."""
+        """Read all wishes and empty the queues; touches and digital inputs stay as they are."""
         with self._lock:
             inputs = Inputs(
                 frozenset(self._held),
@@ -110,8 +129,10 @@ class Desk:
                 tuple(self._commands),
                 self._settings,
                 self._program,
+                self._high,
                 tool=self._tool,
                 load=self._load,
+                tools=self._tools,
             )
             wishes = Wishes(inputs, tuple(self._touches.values()), tuple(self._changes))
             self._held = set()
@@ -120,14 +141,14 @@ class Desk:
             self._settings = {}
             self._program = None
             self._changes = []
-            self._tool, self._load = "", None
+            self._tool, self._load, self._tools = "", None, ()
             return wishes
 
     def clear(self) -> None:
-        """Forget every wish, touches too: after a reset nobody holds anything."""
+        """Forget every wish, touches and digital inputs too: after a reset nobody holds anything."""
         with self._lock:
             self._held, self._released = set(), set()
             self._commands, self._settings, self._changes = [], {}, []
             self._program = self._load = None
-            self._tool = ""
+            self._tool, self._tools, self._high = "", (), frozenset()
             self._touches.clear()

@@ -11,10 +11,12 @@ from contextlib import suppress
 from typing import Protocol
 
 from pendant.decision import Decision
-from pendant.events import Event, Kind
+from pendant.events import Event
 from pendant.modes import TICK, TICK_RATE
 from pendant.settings import Settings
+from pendant.tools import Tool
 from sim.desk import Desk, Wishes
+from sim.lateness import Lateness
 from sim.scenario import Scenario
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
@@ -23,10 +25,9 @@ SNAPSHOT_TICKS = 8
 """A snapshot every 16 ms: one for each frame of a 60 Hz picture."""
 
 DEBT = 0.05
-"""Lateness up to which the loop catches up [s]; what is beyond is dropped and told as an event."""
+"""Lateness up to which the loop catches up [s]; what is beyond is dropped, and told once a spell (sim.lateness)."""
 
 RATE_TICKS = TICK_RATE // 2  # the actual rate is a mean over this many ticks
-QUIET_TICKS = TICK_RATE  # dropped debt is told at most once a second
 SWITCH_INTERVAL = 5e-4  # [s] Python's default of 5 ms would let a busy web thread hold up two ticks
 DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must leave the others some of the processor
 PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
@@ -63,6 +64,7 @@ class Loop:
         self.actual_rate = 0.0
         self.lateness: deque[float] = deque(maxlen=60 * TICK_RATE)  # of each tick's start [s], for measurements
         self.dropped = 0.0  # debt dropped so far [s]
+        self._spell = Lateness()
         self._steps = threading.Semaphore(0)  # single steps asked for and not done yet
         self._reset = False
         self._stop = threading.Event()
@@ -85,6 +87,11 @@ class Loop:
     def settings(self) -> Settings:
         """The pendant's settings as they are now."""
         return self.simulation.settings
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The pendant's table of tools as it is now."""
+        return self.simulation.tools
 
     def start(self) -> None:
         """Start the thread; returns once the first tick is done."""
@@ -177,8 +184,10 @@ class Loop:
 
     def _pace(self) -> None:
         due = time.perf_counter()
-        since, ticks, quiet = due, 0, 0
+        since, ticks, spell = due, 0, self._spell
         while not self._stop.is_set():
+            if spell.times and spell.over(time.perf_counter()):
+                self._tell_spell()
             if self._reset:
                 self._start_over()
                 due = time.perf_counter()
@@ -198,20 +207,19 @@ class Loop:
             if late > DEBT:
                 self.dropped += late
                 due = now + length
-                if quiet <= 0:
-                    quiet = QUIET_TICKS
-                    self._tell(Event(Kind.OVERRUN, self.simulation.plant.tick, {"late": round(1000.0 * late, 1)}))
+                spell.drop(late, now)
                 time.sleep(DEBT_NAP)
-            quiet -= 1
             self._do_tick()
             ticks += 1
             if ticks == RATE_TICKS:
                 now = time.perf_counter()
                 self.actual_rate = ticks * TICK / (now - since)
                 since, ticks = now, 0
+        if spell.times:
+            self._tell_spell()
 
-    def _tell(self, event: Event) -> None:
-        self._events.append(event)
+    def _tell_spell(self) -> None:
+        self._events.append(self._spell.tell(self.simulation.plant.tick))
 
 
 def _ask_for_real_time() -> None:

@@ -13,7 +13,7 @@ from pendant.pose import Pose
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from pendant.tooling import Fitting
-from pendant.tools import Equipment
+from pendant.tools import Equipment, Tool
 from sim import calibration
 from sim.arm import Arm
 from sim.chain import chain, load_body, plate_body, tool_body
@@ -64,8 +64,8 @@ class Simulation:
         self.plant = Plant(arm, scenario, step)
         self.sensors = Sensors(arm, self.calibration, noise)
         rigid = chain(arm)
-        self._tools = {tool.name: tool for tool in table(scenario)}
-        used = next(iter(self._tools.values()))
+        tools = tuple(table(scenario))
+        used = tools[0]
         self.tcp, self.R_FT = np.array(used.tcp), rotation_from_rpy(used.rpy)
         self._plate = plate = plate_body(arm)
         # What the controller takes to be beyond the flange, before a change and after it.
@@ -78,7 +78,7 @@ class Simulation:
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
         joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
         fixed = Load(mass=plate.mass, com=plate.com.tolist())
-        equipment = Equipment(tuple(self._tools.values()), used, scenario.payload_configured, arm.payload, fixed)
+        equipment = Equipment(tools, used, scenario.payload_configured, arm.payload, fixed)
         walls, frames = tuple(scenario.walls), known_frames(scenario)
         self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment)
         self.fitting = self.supervisor.fitting
@@ -100,6 +100,11 @@ class Simulation:
     def settings(self) -> Settings:
         """The pendant's settings as they are now."""
         return self.supervisor.settings
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The pendant's table of tools as it is now."""
+        return self.supervisor.tools
 
     @property
     def estimate(self) -> Estimate:
@@ -142,13 +147,13 @@ class Simulation:
         """Make this the tool and the payload that the controller believes in: between two ticks, all at once.
 
         Args:
-            fitting: as the supervisor decided; its tool is one of the scenario's.
+            fitting: as the supervisor decided.
         """
         if fitting.number != self.fitting.number:
             self._before = self.dynamics.load
             self.estimator.transmission.forget()
             self.tcp[:], self.R_FT[:] = fitting.tool.tcp, rotation_from_rpy(fitting.tool.rpy)
-            self._after = self._plate + tool_body(self._tools[fitting.tool.name]) + load_body(fitting.load)
+            self._after = self._plate + tool_body(fitting.tool) + load_body(fitting.load)
         self.fitting = fitting
         body = self._after if fitting.share == 1.0 else self._before.blend(self._after, fitting.share)
         self.dynamics.set_load(body)

@@ -45,6 +45,7 @@ class Lab:
         pairs = [
             ("Time", f"{snapshot.tick / TICK_RATE:.1f} s"),
             ("Rate asked, real", f"{self._loop.speed:.1f} ×, {state}"),
+            ("Time dropped", f"{self._loop.dropped:.1f} s"),
             ("Seed", f"{self._loop.seed}"),
         ]
         decision = snapshot.decision

@@ -6,6 +6,7 @@ from typing import Protocol
 from pendant.decision import Decision
 from pendant.events import Event
 from pendant.settings import Settings
+from pendant.tools import Tool
 from sim.desk import Desk
 from sim.loop import Script
 from sim.scenario import Scenario
@@ -20,6 +21,7 @@ class Running(Protocol):
     speed: float
     paused: bool
     watch: Callable[[Simulation, Decision], None] | None  # shown each tick
+    dropped: float  # time that it was too late for, so far [s]
 
     @property
     def simulation(self) -> Simulation:
@@ -44,6 +46,11 @@ class Running(Protocol):
     @property
     def settings(self) -> Settings:
         """The pendant's settings as they are now."""
+        ...
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The pendant's table of tools as it is now."""
         ...
 
     def latest(self) -> Snapshot:

@@ -31,6 +31,9 @@ START = Load(mass=1.0)
 EQUIPMENT = Equipment((BARE, GRIPPER, ANVIL), BARE, START, 5.0, PLATE)
 USE = ToolUse(ramp=0.02, measure=0.1)  # 10 ticks, 50 ticks
 RAMP = 10
+Table = tuple[Tool, ...]
+SIX = "six numbers: ixx iyy izz ixy ixz iyz"
+HOOK = Tool(name="hook", mass=0.3, com=[0.0, 0.0, 0.02], tcp=[0.0, 0.0, 0.08])
 
 
 class Bench:
@@ -41,8 +44,8 @@ class Bench:
         self.mode, self.phase, self.still, self.use = Mode.TEACH, Phase.OFF, True, USE
         self.value = estimate()
 
-    def step(self, *commands: Command, tool: str = "", load: Load | None = None) -> list[Event]:
-        inputs = Inputs(commands=commands, tool=tool, load=load)
+    def step(self, *commands: Command, tool: str = "", load: Load | None = None, tools: Table = ()) -> list[Event]:
+        inputs = Inputs(commands=commands, tool=tool, load=load, tools=tools)
         return self.tooling.step(self.value, inputs, self.mode, self.phase, self.still, self.use)
 
     def run(self, count: int) -> list[Event]:
@@ -172,9 +175,11 @@ def test_nothing_changes_while_the_arm_moves_or_is_tried(mode: Mode, phase: Phas
     bench.measure(2.0)
     before = bench.tooling.fitting
     bench.mode, bench.phase = mode, phase
-    for events in (bench.step(tool="gripper"), bench.step(load=Load(mass=2.0)), bench.step(Command.WIZARD_APPLY)):
+    asked = (bench.step(tool="gripper"), bench.step(load=Load(mass=2.0)), bench.step(tools=(BARE, HOOK)))
+    for events in (*asked, bench.step(Command.WIZARD_APPLY)):
         assert [(event.kind, event.values["reason"]) for event in events] == [(Kind.TOOL_REFUSED, words)]
     assert bench.tooling.fitting is before
+    assert bench.tooling.tools == EQUIPMENT.tools
     assert bench.tooling.wizard.progress.finding is not None
 
 
@@ -183,6 +188,60 @@ def test_in_every_other_mode_it_may_change(mode: Mode) -> None:
     bench = Bench()
     bench.mode = mode
     assert [event.kind for event in bench.step(tool="gripper")] == [Kind.TOOL_CHANGED]
+
+
+def test_a_table_is_taken_as_a_whole_and_what_it_has_can_be_used() -> None:
+    bench = Bench()
+    before = bench.tooling.fitting
+    (event,) = bench.step(tools=(BARE, HOOK))
+    assert (event.kind, event.values) == (Kind.TOOLS_CHANGED, {"change": "1 added, 2 deleted", "count": 2})
+    assert bench.tooling.tools == (BARE, HOOK)
+    assert bench.tooling.fitting is before
+    assert [event.kind for event in bench.step(tool="hook")] == [Kind.TOOL_CHANGED]
+    assert bench.tooling.fitting.tool is HOOK
+    assert bench.step(tools=(BARE, HOOK)) == [], "as it is"
+    (event,) = bench.step(tool="gripper")
+    assert event.values["reason"] == "there is flange, hook"
+
+
+def test_the_tool_in_use_changes_as_one_and_keeps_what_it_holds() -> None:
+    bench = Bench()
+    bench.step(tool="gripper")
+    bench.step(load=Load(mass=2.0))
+    bench.run(RAMP + WINDOW)
+    bench.measure(2.0)
+    longer = msgspec.structs.replace(GRIPPER, mass=1.1, tcp=[0.0, 0.0, 0.3])
+    (event,) = bench.step(tools=(BARE, longer, ANVIL))
+    assert (event.kind, event.values["change"]) == (Kind.TOOLS_CHANGED, "gripper changed")
+    assert bench.tooling.fitting == Fitting(3, longer, Load(mass=2.0), 0.0, 2.0)
+    assert bench.tooling.changing
+    assert bench.tooling.wizard.progress.postures == 0, "it measured beyond another tool"
+    (event,) = bench.run(RAMP)
+    assert (event.kind, event.values["total"]) == (Kind.PAYLOAD_CHANGED, 3.1)
+
+
+@pytest.mark.parametrize(
+    ("tools", "words"),
+    [
+        ((GRIPPER, ANVIL), "flange is in use, and keeps its name"),
+        ((BARE, GRIPPER, msgspec.structs.replace(HOOK, mass=5.1)), "hook: mass 5.1, allowed: 0 .. 5 kg"),
+        ((BARE, msgspec.structs.replace(HOOK, name="")), "no name: name , allowed: 1 to 40 characters"),
+        ((BARE, GRIPPER, GRIPPER), "gripper: name gripper, allowed: each tool needs a name of its own"),
+        ((BARE, msgspec.structs.replace(HOOK, inertia=[1.0])), "hook: inertia [1.0], allowed: " + SIX),
+        ((msgspec.structs.replace(BARE, mass=4.5),), "flange: mass 4.5, allowed: 0 .. 4 kg with this payload"),
+    ],
+)
+def test_a_table_that_cannot_be_is_refused_whole(tools: Table, words: str) -> None:
+    bench = Bench()
+    before = bench.tooling.memory
+    (event,) = bench.step(tools=tools)
+    assert (event.kind, event.values) == (Kind.TOOL_REFUSED, {"what": "table of tools", "reason": words})
+    assert bench.tooling.memory == before
+
+
+def test_a_tool_that_was_too_heavy_before_stays_in_the_table() -> None:
+    bench = Bench()
+    assert [event.kind for event in bench.step(tools=(BARE, ANVIL, HOOK))] == [Kind.TOOLS_CHANGED]
 
 
 def test_the_wizard_finds_what_is_beyond_plate_and_tool_and_applies_it() -> None:
@@ -302,6 +361,17 @@ def test_the_frame_of_the_tool_is_told_to_walls_and_programs() -> None:
     robot.step(Inputs(tool="gripper"))
     for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor._containment.R_FT):
         assert turn == pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+
+
+def test_the_table_is_told_and_the_tool_in_use_takes_effect() -> None:
+    robot = Robot()
+    turned = msgspec.structs.replace(BARE, rpy=[0.0, 0.0, math.pi / 2.0])
+    robot.step(Inputs(tools=(turned, HOOK)))
+    assert robot.supervisor.tools == (turned, HOOK)
+    assert robot.last.fitting is not None
+    assert robot.last.fitting.tool is turned
+    R_FT = robot.supervisor._containment.R_FT
+    assert pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)) == R_FT
 
 
 def test_an_idle_tick_after_a_change_gives_the_same_decision_again() -> None:

@@ -6,12 +6,13 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.program import Program, Wait
 from sim.changes import DropPayload, Temperature
 from sim.desk import Desk, Wishes
-from sim.scenario import Load
+from sim.scenario import BARE, Load, Tool
 from sim.touch import Push
 
 EMPTY = Wishes(Inputs(), (), ())
 FIRST = Push("flange", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
 SECOND = Push("elbow", (0.0, 0.0, 0.0), (0.0, 2.0, 0.0))
+HOOK = Tool(name="hook", mass=0.3, com=[0.0, 0.0, 0.02], tcp=[0.0, 0.0, 0.08])
 PROGRAM = Program(steps=(Wait(duration=1.0),))
 
 
@@ -148,8 +149,31 @@ def test_a_chosen_tool_is_taken_once() -> None:
     assert desk.take() == EMPTY
 
 
+def test_a_table_of_tools_is_taken_once() -> None:
+    desk = Desk()
+    desk.tabulate((BARE,))
+    desk.tabulate((BARE, HOOK))
+    assert desk.take().inputs.tools == (BARE, HOOK)
+    assert desk.take() == EMPTY
+
+
+def test_digital_inputs_keep_their_level() -> None:
+    desk = Desk()
+    desk.wire(3, True)
+    desk.wire(5, True)
+    desk.wire(3, True)
+    assert desk.take().inputs.high == {3, 5}
+    desk.wire(5, False)
+    desk.wire(0, False)
+    assert desk.take().inputs.high == desk.high == {3}
+    desk.clear()
+    assert desk.high == frozenset()
+    assert desk.take() == EMPTY
+
+
 def test_a_cleared_desk_configures_nothing() -> None:
     desk = Desk()
+    desk.tabulate((BARE,))
     desk.configure(Load(mass=1.0))
     desk.choose("gripper")
     desk.clear()
@@ -163,16 +187,20 @@ def test_the_wishes_of_two_are_joined() -> None:
             frozenset({Button.FREE_DRIVE}),
             (Command.TEACH,),
             {"a": 1.0, "free_drive.period": 2.0},
+            high=frozenset({2}),
             tool="gripper",
             load=Load(mass=1.0),
+            tools=(BARE, HOOK),
         ),
         (SECOND,),
         (Temperature(celsius=50.0),),
     )
-    joined = full().take().joined(other)
+    desk = full()
+    desk.wire(1, True)
+    joined = desk.take().joined(other)
     settings = {"free_drive.period": 2.0, "a": 1.0}
     commands = (Command.RESET, Command.TEACH)
     button = frozenset({Button.FREE_DRIVE})
-    inputs = Inputs(button, button, commands, settings, PROGRAM, tool="gripper", load=Load(mass=1.0))
+    inputs = Inputs(button, button, commands, settings, PROGRAM, frozenset({1, 2}), "gripper", Load(mass=1.0), (BARE, HOOK))
     assert joined == Wishes(inputs, (FIRST, SECOND), (DropPayload(), Temperature(celsius=50.0)))
     assert EMPTY.joined(EMPTY) == EMPTY

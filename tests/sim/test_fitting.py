@@ -4,11 +4,13 @@ import msgspec
 import numpy as np
 import pytest
 
+import pendant.tools
 from pendant.events import Kind
 from pendant.inputs import Inputs
 from pendant.modes import Mode
 from pendant.program import LinearMove
 from pendant.settings import Settings, apply
+from sim.chain import tool_body
 from sim.desk import Wishes
 from sim.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.scenario import Load, Scenario, Tool, table
@@ -19,8 +21,8 @@ GRIPPER = Tool(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.02, 0
 PROBE = Tool(name="probe", mass=0.3, com=[0.0, 0.0, 0.03], tcp=[0.0, 0.0, 0.05], inertia=[1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0])
 
 
-def wish(tool: str = "", load: Load | None = None) -> Wishes:
-    return Wishes(Inputs(tool=tool, load=load), (), ())
+def wish(tool: str = "", load: Load | None = None, tools: tuple[pendant.tools.Tool, ...] = ()) -> Wishes:
+    return Wishes(Inputs(tool=tool, load=load, tools=tools), (), ())
 
 
 def bench(scenario: Scenario, ramp: float) -> Bench:
@@ -52,6 +54,21 @@ def test_a_tool_takes_its_point_and_its_load_from_the_next_tick_on() -> None:
     assert signal is not None
     assert signal.mass == pytest.approx(0.13 + 0.3)
     assert device.simulation.dynamics.load.inertia[0, 0] > 1e-3, "the inertia that the table says"
+
+
+def test_the_tool_in_use_is_believed_as_the_table_is_changed() -> None:
+    device = bench(Scenario(mismatch="nominal", tool=GRIPPER, payload_configured=Load(mass=1.0), tools=[PROBE]), 0.0)
+    assert device.simulation.tools == (GRIPPER, PROBE)
+    ball = pendant.tools.Tool(name="gripper", mass=1.4, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.3])
+    device.tick(wish(tools=(ball, PROBE)))
+    device.tick()
+    assert device.simulation.tools == (ball, PROBE)
+    seen = device.estimate
+    assert seen.load_mass == pytest.approx(0.13 + 1.4 + 1.0), "with what it holds"
+    assert seen.tcp[:3] == pytest.approx(seen.p_BF + seen.R_BF @ [0.0, 0.0, 0.3], abs=1e-9)
+    # Without a shape it counts as a sphere of water: r = (3 m / (4 pi rho))^(1/3), 2/5 m r^2.
+    radius = (3.0 * 1.4 / (4000.0 * np.pi)) ** (1.0 / 3.0)
+    assert tool_body(ball).inertia == pytest.approx(0.4 * 1.4 * radius**2 * np.eye(3))
 
 
 def test_a_tool_that_is_turned_is_moved_by_its_own_frame_as_soon_as_it_is_in_use() -> None:

@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import sim.lateness
 import sim.loop
 from pendant.decision import Decision
-from pendant.events import Event, Kind
+from pendant.events import Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.settings import Settings
-from pendant.table import render
 from sim.desk import Wishes
 from sim.loop import DEBT, SNAPSHOT_TICKS, Loop
 from sim.scenario import Scenario
@@ -157,22 +157,40 @@ def test_a_large_debt_is_dropped_and_told(running: Callable[..., Loop], clock: C
 
     loop = running(lambda: Ticker(during))
     until(lambda: len(times) > 300)
-    (event,) = loop.events(0)
     # The tick was due 2 ms after the last, and came 250 ms after it.
-    assert event == Event(Kind.OVERRUN, 100, {"late": 248.0})
-    assert render(event)[0] == "Simulation late by 248 ms"
     assert loop.dropped == pytest.approx(0.248)
     assert times[299] - times[1] == pytest.approx(298 * 0.002 + 0.248), "lost time is not chased"
     assert np.diff(times[102:299]) == pytest.approx(0.002)
 
 
-def test_debts_are_told_once_a_second_at_most(running: Callable[..., Loop], clock: Clock) -> None:
-    loop = running(lambda: Ticker(lambda tick: clock.pass_by(0.1)))
-    until(lambda: loop.simulation.plant.tick > 1600)
-    ticks = [event.tick for event in loop.events(0)]
-    assert len(ticks) >= 3
-    assert np.diff(ticks).min() >= 500
-    assert loop.dropped > 100.0
+def test_a_spell_of_stalls_is_told_once_when_it_is_over(
+    running: Callable[..., Loop], clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sim.lateness, "CALM", 0.5)
+    loop = running(lambda: Ticker(lambda tick: clock.pass_by(0.25 if tick in (100, 200, 300) else 0.0)))
+    until(lambda: loop.simulation.plant.tick > 600)
+    (event,) = loop.events(0)
+    assert event.kind is Kind.OVERRUN
+    assert event.tick == pytest.approx(300 + 250, abs=2), "0.5 s of calm after the last"
+    assert event.values["often"] == "3 times in 1 s"
+    assert loop.dropped == pytest.approx(3 * 0.248), "the measure counts each"
+
+
+def test_a_machine_that_never_keeps_up_loses_none_of_the_account(running: Callable[..., Loop], clock: Clock) -> None:
+    loop = running(lambda: Ticker(lambda tick: clock.pass_by(1.0)))
+    until(lambda: loop.simulation.plant.tick > 150)
+    loop.stop()
+    told = loop.events(0)
+    assert len(told) == pytest.approx((clock.now - 100.0) / 60.0, abs=1.0), "once a minute"
+    assert sum(float(event.values["lost"]) for event in told) == pytest.approx(loop.dropped, abs=0.01)
+
+
+def test_a_spell_is_over_in_a_pause_as_well(running: Callable[..., Loop], clock: Clock) -> None:
+    loop = running(lambda: Ticker(lambda tick: clock.pass_by(0.25 if tick == 100 else 0.0)))
+    until(lambda: loop.simulation.plant.tick > 120)
+    assert loop.events(0) == []
+    loop.paused = True
+    until(lambda: len(loop.events(0)) == 1)
 
 
 def test_paused_it_stands_and_steps_one_tick_at_a_time(running: Callable[..., Loop]) -> None:

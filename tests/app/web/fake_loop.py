@@ -18,10 +18,11 @@ from pendant.payload_wizard import IDLE
 from pendant.program import ProgramState
 from pendant.settings import Settings
 from pendant.tooling import Fitting
+from pendant.tools import Tool
 from pendant.walls import AnyBorder
 from sim.desk import Desk
 from sim.frames import joint_frames, quaternion_from_matrix
-from sim.scenario import Scenario
+from sim.scenario import Scenario, table
 from sim.simulation import Simulation
 from sim.snapshot import Snapshot
 
@@ -72,6 +73,7 @@ class FakeLoop:
         self.speed = 1.0
         self.paused = False
         self.actual_rate = 1.0
+        self.dropped = 0.0
         self.seed = 7
         self.settings = Settings()
         self.scenario = Scenario()
@@ -85,6 +87,7 @@ class FakeLoop:
         self.configured = 0.0
         self.fitting: Fitting | None = None
         self.wizard = IDLE
+        self.table: tuple[Tool, ...] = ()
         self.locks: AxisLocks | None = None
         self.singularity: Nearness | None = None
         self.payload = 0.0
@@ -103,6 +106,11 @@ class FakeLoop:
     def simulation(self) -> Simulation:
         """One of the scenario, at its start."""
         return Simulation(ARM, self.scenario, self.settings)
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The table: the scenario's until the test gives another."""
+        return self.table or tuple(table(self.scenario))
 
     def advance(self, seconds: float = 0.002) -> None:
         """Let simulated time pass and read the desk once."""
