@@ -121,15 +121,18 @@ class Containment:
         pairs = zip([reading.border for reading in self._reading], self._enclosure.places(), strict=False)
         return tuple([(border, place) for border, place in pairs if place is not None])
 
-    def resting(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
-        """The areas that will hold in free-drive, with where their shapes lie while it does not last.
+    def every_place(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
+        """What holds, and every area that will in free-drive, each with where its shape lies.
 
-        Those that lie in a part of the arm are left out; one whose size follows the posture has its smallest size.
+        Areas that do not hold yet and lie in a part of the arm are left out; one whose size follows the posture has its smallest.
         """
+        hold = self.places()
         if not walls.on:
-            return ()
+            return hold
+        names = {border.name for border, _ in hold}
         areas = [border for border in self._borders if isinstance(border, Area) and border.reference in self._frames]
-        return tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in areas])
+        rest = [area for area in areas if area.name not in names]
+        return hold + tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in rest])
 
     def _build(self, walls: Walls) -> Enclosure | None:
         borders = self._borders if not walls.tether else (tether(walls), *self._borders)

@@ -1,15 +1,13 @@
 """The activation sequence (FD-9 to FD-12): the arm is freed for a while, to see whether it stays and nothing pulls at it."""
 
-from typing import NamedTuple
-
-from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.limits import Gauge, Monitored
 from pendant.modes import TICK
 from pendant.parameters import ZEROS, Monitor, Reference, View
 from pendant.residual import Vector, mass_error, split, upward
 from pendant.settings import Settings
-from pendant.watch import WrenchMean, joints_ok
+from pendant.surroundings import Surroundings
+from pendant.watch import joints_ok
 
 JOINTS_SENSED = "joint encoders and motor currents"
 FORCE_SENSED = "flange force sensor"
@@ -35,14 +33,6 @@ AGAINST = ", against stored"
 """Added to the names of these."""
 
 
-class Seen(NamedTuple):
-    """What one tick brings to the sequence."""
-
-    estimate: Estimate
-    wrench_ok: bool
-    mean: WrenchMean
-
-
 class Sequence:
     """One run of it, from its first tick on."""
 
@@ -62,7 +52,7 @@ class Sequence:
 
     def __init__(
         self,
-        seen: Seen,
+        around: Surroundings,
         settings: Settings,
         joints: tuple[str, ...],
         rated: tuple[float, ...],
@@ -70,14 +60,14 @@ class Sequence:
     ) -> None:
         """
         Args:
-            seen: the tick in which it starts; its joint values are finite.
+            around: the tick in which it starts; its joint values are finite.
             settings: as they are now; they stay so to the end of the sequence.
             joints: names, base to flange.
             rated: torque of each joint [N·m].
             stored: an earlier state, with the same sensors, that it is compared with as well; None: with none.
         """
         limits = settings.limits.activation
-        estimate = seen.estimate
+        estimate = around.estimate
         self._monitor = Monitor(limits)
         self._changes = None if stored is None else Monitor(limits, COMPARED, AGAINST)
         self._stored = stored
@@ -87,7 +77,7 @@ class Sequence:
         # Torques are judged as they are, not as changes: what was wrong before is what is looked for.
         place, angles = tuple(estimate.p_BF.tolist()), tuple(estimate.q.tolist())
         self._since = Reference(place, ZEROS, (0.0,) * len(joints), angles)
-        self._wrench = seen.wrench_ok
+        self._wrench = around.wrench_ok
         self._acceleration = estimate.acceleration_valid
         self._up: Vector = upward(estimate.g_B.tolist())
         self._start = estimate.tick
@@ -98,35 +88,35 @@ class Sequence:
         own = (self._since, self._stored, self._wrench, self._acceleration, self._up, self._start, self._share)
         return (*own, self._monitor.memory, None if self._changes is None else self._changes.memory)
 
-    def missing(self, seen: Seen) -> str:
+    def missing(self, around: Surroundings) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
-        if not joints_ok(seen.estimate):
+        if not joints_ok(around.estimate):
             return JOINTS_SENSED
-        if self._wrench and not seen.wrench_ok:
+        if self._wrench and not around.wrench_ok:
             return FORCE_SENSED
-        if self._acceleration and not seen.estimate.acceleration_valid:
+        if self._acceleration and not around.estimate.acceleration_valid:
             return ACCELERATION_SENSED
         return ""
 
-    def check(self, seen: Seen) -> list[Gauge]:
+    def check(self, around: Surroundings) -> list[Gauge]:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
-        parts = split(seen.mean.mean(), self._up) if self._wrench else None
-        beyond = self._monitor.step(View(seen.estimate, self._since, parts, self._joints, self._scale, self._share))
+        parts = split(around.mean.mean(), self._up) if self._wrench else None
+        beyond = self._monitor.step(View(around.estimate, self._since, parts, self._joints, self._scale, self._share))
         changes, stored = self._changes, self._stored
         if changes is None or stored is None:
             return beyond
         if self._wrench:
-            parts = split([now - then for now, then in zip(seen.mean.mean(), stored.wrench, strict=True)], self._up)
-        return beyond + changes.step(View(seen.estimate, stored, parts, self._joints, self._scale, self._share))
+            parts = split([now - then for now, then in zip(around.mean.mean(), stored.wrench, strict=True)], self._up)
+        return beyond + changes.step(View(around.estimate, stored, parts, self._joints, self._scale, self._share))
 
     def monitored(self) -> tuple[Monitored, ...]:
         """What was checked last."""
         told = self._monitor.monitored()
         return told if self._changes is None else told + self._changes.monitored()
 
-    def reasons(self, beyond: list[Gauge], seen: Seen, settings: Settings) -> list[Event]:
+    def reasons(self, beyond: list[Gauge], around: Surroundings, settings: Settings) -> list[Event]:
         """Every parameter that prevented entry (FD-11), then the refusal itself (FD-10)."""
-        tick = seen.estimate.tick
+        tick = around.estimate.tick
         after = (tick - self._start) * TICK
         events: list[Event] = []
         for gauge in beyond:
@@ -137,7 +127,7 @@ class Sequence:
         if settings.sequence.protective_stop:
             events.append(Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict())))
         elif gauge.name in PAYLOAD_LIKE:
-            force = split(seen.mean.mean(), self._up).payload_force
+            force = split(around.mean.mean(), self._up).payload_force
             values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
             events.append(Event(Kind.REFUSED_PAYLOAD, tick, {**values, "parameter": excess.parameter}))
         else:
@@ -163,19 +153,19 @@ class Verdict:
         """All of its state, to compare."""
         return (self.waiting, self._force, self._up)
 
-    def begin(self, seen: Seen) -> None:
+    def begin(self, around: Surroundings) -> None:
         """A refusal that may be payload or push."""
-        self._up = upward(seen.estimate.g_B.tolist())
-        self._force = split(seen.mean.mean(), self._up).payload_force
+        self._up = upward(around.estimate.g_B.tolist())
+        self._force = split(around.mean.mean(), self._up).payload_force
         self.waiting = True
 
-    def step(self, seen: Seen, last: bool) -> list[Event]:
+    def step(self, around: Surroundings, last: bool) -> list[Event]:
         """One tick of the cool-down, or its `last`."""
-        if not seen.wrench_ok:
+        if not around.wrench_ok:
             self.waiting = False
             return []
-        tick = seen.estimate.tick
-        force = split(seen.mean.mean(), self._up).payload_force
+        tick = around.estimate.tick
+        force = split(around.mean.mean(), self._up).payload_force
         if abs(force) < self.GONE * abs(self._force):
             self.waiting = False
             return [Event(Kind.RESIDUAL_GONE, tick, {"force": abs(self._force), "left": abs(force)})]

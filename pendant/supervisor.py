@@ -14,7 +14,7 @@ from pendant.decision import Decision
 from pendant.enabling import EnablingDevice, Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values, posture_text
-from pendant.freedrive import ASKED_FOR, FreeDrive, Surroundings, moving
+from pendant.freedrive import ASKED_FOR, FreeDrive
 from pendant.haptics import Haptics, Moment
 from pendant.inputs import Button, Command, Inputs
 from pendant.joint_zones import JointZones
@@ -29,6 +29,7 @@ from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, limits_checksum, ticks
 from pendant.sources import PROGRAM
 from pendant.stopping import Stopping
+from pendant.surroundings import Surroundings
 from pendant.table import TABLE, Effect
 from pendant.tooling import Fitting, Tooling
 from pendant.tools import Equipment, Tool
@@ -165,7 +166,7 @@ class Supervisor:
     @property
     def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
         """Every wall and area that holds, and every area that will in free-drive, with where its shape lies in B."""
-        return self._free.places(self.settings.walls)
+        return self._containment.every_place(self.settings.walls)
 
     @property
     def state(self) -> tuple[object, ...]:
@@ -293,7 +294,7 @@ class Supervisor:
         elif not joints_ok(estimate):
             events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": JOINTS_SENSED}))
         elif not self._static:
-            values = moving(self._still, self._joints, self.settings)
+            values = self._still.moves(self._joints, self.settings.static)
             events.append(Event(Kind.RESET_REFUSED_MOVING, estimate.tick, values))
         else:
             self._mode = Mode.TEACH

@@ -5,8 +5,9 @@ import math
 import numpy as np
 
 from pendant.estimate import Estimate
+from pendant.events import Values
 from pendant.parameters import ZEROS
-from pendant.settings import ticks
+from pendant.settings import Static, ticks
 
 WINDOW = ticks(0.1)
 """Ticks over which F_user is averaged before free-drive begins."""
@@ -61,6 +62,10 @@ class Stillness:
                     self.speed = abs(value)
                 return
         self.count += 1
+
+    def moves(self, joints: tuple[str, ...], static: Static) -> Values:
+        """Values of an event that says that the arm moves; `joints` are their names."""
+        return {"joint": joints[self.joint], "value": self.speed, "limit": static.speed, "time": static.time}
 
 
 class WrenchMean:

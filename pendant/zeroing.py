@@ -8,10 +8,12 @@ joints do not feel it. They feel the opposite first: the help that the step call
 import math
 
 from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.hand import Hand
 from pendant.modes import TICK
-from pendant.parameters import beyond_gravity
-from pendant.pose import ORIGIN, Vector, dot
-from pendant.watch import WINDOW
+from pendant.parameters import ZEROS, beyond_gravity
+from pendant.pose import ORIGIN, UNTURNED, Rotation, Vector, dot, flat, norm, turned, turned_back
+from pendant.watch import WINDOW, WrenchMean
 
 SLOW = 3.0
 """So fast may a force drift [N/s]."""
@@ -148,3 +150,63 @@ def _less(a: Vector, b: Vector) -> Vector:
 def _felt(estimate: Estimate) -> Vector:
     x, y, z = estimate.F_joints.tolist()
     return x, y, z
+
+
+class Zero:
+    """What of F_user is nobody's: from the activation sequence on, or from entry, to leaving.
+
+    Attributes:
+        used: the flange sensor is; it was valid in every tick since.
+        baseline: F_user in the beginning, and what the sensor drifted by, axes of B [N, N·m]; zeros without the sensor.
+    """
+
+    __slots__ = ("_drift", "_steps", "_turned", "baseline", "used")
+
+    def __init__(self) -> None:
+        self.used = False
+        self.baseline: Six = ZEROS
+        self._drift, self._steps = Drift(), Steps()
+        self._turned: Rotation = UNTURNED  # orientation of the flange in B in the beginning, in which `baseline` is
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self.used, self.baseline, self._turned, self._drift.memory, self._steps.memory)
+
+    def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
+        """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
+        self.used, self.baseline = wrench_ok, mean.mean()
+        self._drift, self._steps, self._turned = Drift(), Steps(), flat(estimate.R_BF)
+
+    def leave(self) -> None:
+        """The sensor is not used any more."""
+        self.used, self.baseline = False, ZEROS
+
+    def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
+        """One tick of free-drive with a valid sensor: what it drifts by is taken off; one that steps is not used any more.
+
+        Args:
+            estimate: of this tick.
+            hand: after its step.
+            mean: of F_user.
+            waits: nobody is known to move the arm.
+        """
+        stepped = self._steps.step(estimate, hand.change)
+        if stepped is not None:
+            self.leave()
+            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)})
+        if not waits:
+            self._drift.restart()
+        elif self._drift.due():
+            gone = self._drift.step(mean.mean())
+            if gone is not None:
+                self._take_off(gone, estimate, hand)
+        return None
+
+    def _take_off(self, gone: Six, estimate: Estimate, hand: Hand) -> None:
+        """`gone` [N, N·m], axes of B now, is an offset of the sensor."""
+        R_BF = flat(estimate.R_BF)
+        force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
+        hand.shift(force)
+        at_begin = (*turned(self._turned, force), *turned(self._turned, torque))
+        self.baseline = tuple([a + b for a, b in zip(self.baseline, at_begin, strict=True)])

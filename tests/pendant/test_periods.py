@@ -1,4 +1,4 @@
-"""The periods of free-drive: anew (FD-16), switched off (FD-24), not told (FD-20), and the way back (FD-22)."""
+"""The periods of free-drive: to the tick (FD-8a, FD-14, FD-15), anew (FD-16), off (FD-24), not told (FD-20); the way back."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from pendant.events import Event, Kind, posture_of
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
 from tests.pendant.estimates import estimate
-from tests.pendant.test_freedrive import LET_GO, Bench, remaining
+from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
 
 ANEW = Inputs(commands=(Command.RESTART_PERIOD,))
 MOVING = estimate(qd=0.5)
@@ -155,3 +155,113 @@ def test_the_hand_must_be_off_for_as_long_as_the_arm_must_be_static() -> None:
     bench.step(NOTHING, estimate(force=20.0))
     assert bench.run(99).phase is Phase.GUIDED
     assert bench.step().phase is Phase.RESTART
+
+
+@pytest.mark.parametrize(("seconds", "count"), [(0.5, 250), (3.0, 1500), (30.0, 15000)])
+def test_the_free_drive_period_lasts_to_its_tick(seconds: float, count: int) -> None:
+    """FD-14."""
+    bench = Bench(free_drive__period=seconds).in_period()
+    assert remaining(bench.last) == {"free-drive": (count, count)}
+    for left in range(count - 1, 0, -1):
+        bench.step()
+        assert remaining(bench.last) == {"free-drive": (left, count)}
+        assert (bench.last.mode, bench.last.law, bench.last.events) == (Mode.FREE_DRIVE, Law.FREE, ())
+    bench.step()
+    assert (bench.last.mode, bench.last.phase, bench.last.law) == (Mode.TEACH, Phase.OFF, Law.HOLD)
+    assert bench.events == [Event(Kind.LEFT_PERIOD, bench.tick, {"limit": seconds})]
+    assert remaining(bench.last) == {"cool-down": (1000, 1000)}
+
+
+@pytest.mark.parametrize("tick", [1, 2, 1499, 1500])
+def test_manipulation_in_any_tick_of_the_period_keeps_free_drive(tick: int) -> None:
+    """FD-13: also in the very last tick."""
+    bench = Bench().in_period()
+    bench.run(tick - 1)
+    bench.step(NOTHING, estimate(force=8.001))
+    assert bench.last.phase is Phase.GUIDED
+    assert bench.last.periods == ()
+    values = {"parameter": "user force", "part": "flange", "value": 8.001, "limit": 8.0, "unit": "N"}
+    assert bench.last.events == (Event(Kind.MANIPULATION, bench.tick, values),)
+
+
+def test_a_force_at_its_limit_is_no_manipulation() -> None:
+    bench = Bench().in_period()
+    assert bench.run(1499, NOTHING, estimate(force=8.0)).phase is Phase.PERIOD
+    assert bench.step(NOTHING, estimate(force=8.0)).phase is Phase.OFF
+
+
+@pytest.mark.parametrize("seconds", [0.5, 3.0])
+def test_the_restart_period_begins_when_the_arm_is_static_again(seconds: float) -> None:
+    """FD-15."""
+    count = round(seconds * 500)
+    bench = Bench(free_drive__restart_period=seconds).in_period()
+    bench.run(700, NOTHING, estimate(qd=0.5))
+    assert bench.last.phase is Phase.GUIDED
+    assert bench.run(49).phase is Phase.GUIDED
+    assert bench.step().phase is Phase.RESTART
+    assert bench.events[-1] == Event(Kind.RESTARTED, bench.tick, {"period": seconds})
+    assert remaining(bench.last) == {"restart": (count, count)}
+    assert bench.run(count - 1).mode is Mode.FREE_DRIVE
+    assert remaining(bench.last) == {"restart": (1, count)}
+    assert bench.step().mode is Mode.TEACH
+    assert bench.events[-1] == Event(Kind.LEFT_RESTART, bench.tick, {"limit": seconds})
+
+
+def test_a_push_that_moves_nothing_guides_for_the_static_time() -> None:
+    bench = Bench().in_period()
+    pushed = estimate(force=20.0)
+    assert bench.step(NOTHING, pushed).phase is Phase.GUIDED
+    assert bench.run(49, NOTHING, pushed).phase is Phase.GUIDED
+    assert bench.step(NOTHING, pushed).phase is Phase.RESTART
+    # the steady push is what the new period counts from; letting go is a change
+    assert bench.run(1000, NOTHING, pushed).phase is Phase.RESTART
+    assert bench.step().phase is Phase.GUIDED
+
+
+@pytest.mark.parametrize(("held", "leaves"), [(1, True), (2, True), (199, True), (200, False), (201, False), (2000, False)])
+@pytest.mark.parametrize("start", ["period", "guided", "restart"])
+def test_a_short_press_leaves_and_a_longer_one_suspends(start: str, held: int, leaves: bool) -> None:
+    """FD-8a, to the tick: 0.4 s are 200 ticks."""
+    bench = Bench().in_period()
+    if start != "period":
+        bench.run(1, NOTHING, estimate(qd=0.5))
+    if start == "restart":
+        bench.run(60)
+    for _ in range(held):
+        bench.step(HOLD)
+        assert (bench.last.phase, bench.last.periods) == (Phase.HELD, ())
+    bench.step(LET_GO)
+    if leaves:
+        assert bench.last.mode is Mode.TEACH
+        values = {"value": pytest.approx(held / 500), "limit": 0.4}
+        assert bench.last.events == (Event(Kind.LEFT_PRESS, bench.tick, values),)
+        assert remaining(bench.last) == {"cool-down": (1000, 1000)}
+    else:
+        assert bench.last.mode is Mode.FREE_DRIVE
+        assert remaining(bench.last) == {"free-drive": (1500, 1500)}
+
+
+def test_the_press_that_entered_may_be_short_without_leaving() -> None:
+    bench = Bench(activation__period=0.0)
+    bench.run(60)
+    bench.step(HOLD)
+    assert bench.step(LET_GO).phase is Phase.PERIOD
+    # the same when free-drive was left by a short press before
+    bench.step(HOLD)
+    assert bench.step(LET_GO).phase is Phase.OFF
+    bench.run(1000)
+    assert bench.step(HOLD).phase is Phase.HELD
+    assert bench.step(LET_GO).phase is Phase.PERIOD
+
+
+def test_held_for_long_suspends_everything() -> None:
+    bench = Bench().entered()
+    bench.run(20000, HOLD)
+    assert (bench.last.phase, bench.last.periods) == (Phase.HELD, ())
+
+
+def test_hold_to_run_leaves_on_release() -> None:
+    bench = Bench(button__hold_to_run=True).entered()
+    bench.run(1000, HOLD)
+    bench.step(LET_GO)
+    assert (bench.last.mode, bench.last.events) == (Mode.TEACH, (Event(Kind.LEFT_RELEASE, bench.tick, {}),))

@@ -272,7 +272,7 @@ def test_another_payload_makes_it_begin_anew() -> None:
 def test_switched_off_nothing_is_stored() -> None:
     made = Bench(sequence__on=True)
     made.run(30)
-    assert made.supervisor._free._stored.memory == (False,)
+    assert made.supervisor._free._activation._stored.memory == (False,)
 
 
 def test_a_decision_of_a_sequence_without_length_is_that_of_free_drive() -> None:

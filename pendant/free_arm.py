@@ -1,0 +1,120 @@
+"""The free arm, from entry to leaving: whose force moves it, what holds it back, and what ends it (FD-4, FD-18, FD-19, VW-6)."""
+
+from pendant.axis_locks import axis_locks
+from pendant.barrier import Consequence
+from pendant.containment import NOBODY, Containment, caught, facts
+from pendant.events import Event, Kind, Values
+from pendant.hand import Hand
+from pendant.joint_zones import JointZones
+from pendant.nearness import Nearness, SingularityWatch
+from pendant.operation import Operation
+from pendant.pose import Vector
+from pendant.sequence import JOINTS_SENSED
+from pendant.settings import Settings
+from pendant.soft_limits import Damping
+from pendant.surroundings import Surroundings
+from pendant.watch import joints_ok
+from pendant.zeroing import Zero
+
+
+class FreeArm:
+    """One free-drive.
+
+    Attributes:
+        caught: a wall keeps the arm where it is (VW-6).
+    """
+
+    __slots__ = ("_containment", "_hand", "_operation", "_singularity", "_zero", "_zones", "caught")
+
+    def __init__(
+        self,
+        around: Surroundings,
+        settings: Settings,
+        zero: Zero,
+        containment: Containment,
+        zones: JointZones,
+        joints: tuple[str, ...],
+        rated: tuple[float, ...],
+    ) -> None:
+        """
+        Args:
+            around: the tick of entry; its joint values are finite.
+            settings: as they are now.
+            zero: of the flange sensor, as of entry.
+            containment: walls and areas; here they begin to hold.
+            zones: before the joint limits; they begin to hold, too.
+            joints: names, base to flange.
+            rated: torque of each joint [N·m].
+        """
+        estimate = around.estimate
+        self._zero, self._containment, self._zones = zero, containment, zones
+        self._hand = Hand(estimate, zero.baseline)
+        self._operation = Operation(estimate, settings, zero.baseline, joints, rated)
+        self._singularity = SingularityWatch()
+        self.caught = False
+        zones.enter(settings.joint_limits)
+        containment.enter(settings.walls)
+        containment.step(estimate, *NOBODY)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; what it was given is compared elsewhere."""
+        return (self._hand.memory, self._operation.memory, self._singularity.memory, self.caught)
+
+    @property
+    def user(self) -> Vector:
+        """The user's force, axes of B [N]."""
+        return self._hand.user
+
+    @property
+    def damping(self) -> Damping | None:
+        """Where free motion is resisted before a limit on its speed (FD-12b)."""
+        return self._operation.damping
+
+    @property
+    def singularity(self) -> Nearness | None:
+        """How near the arm is to a singularity (FD-4)."""
+        return self._singularity.status
+
+    @property
+    def suspect(self) -> bool:
+        """A payload may have dropped (FD-19)."""
+        return self._operation.suspect
+
+    def step(self, around: Surroundings, settings: Settings, waits: bool) -> list[Event]:
+        """One tick. Returns what happened; free-drive is left where the last of it says so.
+
+        Args:
+            around: this tick.
+            settings: as they are now.
+            waits: nobody is known to move the arm: a period runs.
+        """
+        estimate, zero, hand = around.estimate, self._zero, self._hand
+        tick = estimate.tick
+        if not joints_ok(estimate):
+            return [Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED})]
+        events: list[Event] = []
+        if zero.used and not around.wrench_ok:
+            zero.leave()
+            events.append(Event(Kind.WRENCH_LOST, tick))
+        hand.step(estimate, zero.used)
+        if zero.used and settings.unexplained.sensor:
+            stepped = zero.step(estimate, hand, around.mean, waits)
+            if stepped is not None:
+                events.append(stepped)
+        reading = self._containment.step(estimate, hand.user, hand.payload)
+        before, self.caught = self.caught, caught(reading)
+        if reading is not None and not self.caught:
+            kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
+            events.append(Event(kind, tick, facts(reading)))
+            return events
+        if reading is not None and not before:
+            events.append(Event(Kind.WALL_REACHED, tick, facts(reading)))
+        self._zones.step(estimate)
+        if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
+            values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
+            events.append(Event(Kind.SINGULARITY, tick, values))
+        ending = self._operation.step(estimate, hand, zero.used, around.shaken or self.caught or self._zones.pushing)
+        if ending is not None:
+            events.append(Event(ending.kind, tick, ending.values))
+        return events

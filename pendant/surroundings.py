@@ -1,0 +1,29 @@
+"""What free-drive must know of the rest of the robot in one tick."""
+
+from typing import NamedTuple
+
+from pendant.enabling import Grip
+from pendant.estimate import Estimate
+from pendant.modes import Mode
+from pendant.watch import Stillness, WrenchMean
+
+
+class Surroundings(NamedTuple):
+    """The estimate, and what is kept of those before; mode, hand and devices."""
+
+    estimate: Estimate
+    mode: Mode
+    wrench_ok: bool  # pendant.watch.wrench_ok
+    still: Stillness
+    mean: WrenchMean  # of F_user
+    grip: Grip | None = None  # of the enabling device, None where none is needed
+    hand_off: bool = True  # no hand is felt (FD-8a)
+    felt: float = 0.0  # change of the force at the flange from the untouched state [N]
+    changing: float | None = None  # the configured payload by now, while it is being changed [kg]
+    guided: bool = False  # a step of a program asks for free-drive (CD-15)
+    shaken: bool = False  # haptic feedback moves the arm: not what a hand does (FD-19)
+
+    @property
+    def enabled(self) -> bool:
+        """No enabling device forbids motion."""
+        return self.grip is None or self.grip is Grip.MIDDLE

@@ -1,0 +1,71 @@
+"""The activation of free-drive: its period to the tick, and what refuses entry at its end."""
+
+import pytest
+
+from pendant.events import Event, Kind
+from pendant.modes import Law, Mode, Phase
+from tests.pendant.estimates import estimate
+from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
+
+
+@pytest.mark.parametrize(("seconds", "count"), [(0.0, 0), (0.002, 1), (0.25, 125), (1.0, 500), (15.0, 7500)])
+def test_activation_lasts_its_period_to_the_tick(seconds: float, count: int) -> None:
+    """FD-7, FD-20."""
+    bench = Bench(activation__period=seconds)
+    bench.run(60)
+    for left in range(count, 0, -1):
+        bench.step(HOLD)
+        assert (bench.last.mode, bench.last.phase, bench.last.law) == (Mode.TEACH, Phase.ACTIVATION, Law.HOLD)
+        assert remaining(bench.last) == {"activation": (left, count)}
+    bench.step(HOLD)
+    assert (bench.last.mode, bench.last.phase, bench.last.law) == (Mode.FREE_DRIVE, Phase.HELD, Law.FREE)
+    assert bench.last.periods == ()
+    assert [event.kind for event in bench.events] == [Kind.ACTIVATION_STARTED, Kind.ENTERED]
+    assert bench.events[0] == Event(Kind.ACTIVATION_STARTED, 60, {"period": pytest.approx(seconds)})
+    assert bench.events[1] == Event(Kind.ENTERED, 60 + count, {"from": Mode.TEACH, "gain": 1.0})
+
+
+@pytest.mark.parametrize("held", [1, 2, 250, 499, 500])
+def test_letting_go_before_the_end_cancels_without_a_cool_down(held: int) -> None:
+    """FD-8a."""
+    bench = Bench()
+    bench.run(60)
+    bench.run(held, HOLD)
+    bench.step(LET_GO)
+    assert (bench.last.mode, bench.last.phase, bench.last.periods) == (Mode.TEACH, Phase.OFF, ())
+    values = {"value": pytest.approx(held / 500), "limit": 1.0}
+    assert bench.events[-1] == Event(Kind.ACTIVATION_CANCELLED, 60 + held, values)
+    assert bench.step(HOLD).phase is Phase.ACTIVATION
+    assert remaining(bench.last) == {"activation": (500, 500)}
+
+
+def test_a_stutter_during_activation_does_not_cancel_it_and_silence_does() -> None:
+    bench = Bench()
+    bench.run(60)
+    bench.step(HOLD)
+    bench.run(250)
+    bench.step(HOLD)
+    assert bench.last.phase is Phase.ACTIVATION
+    bench.run(248)
+    assert remaining(bench.last) == {"activation": (1, 500)}
+    assert bench.step().phase is Phase.HELD
+    bench = Bench(activation__period=2.0)
+    bench.run(60)
+    bench.step(HOLD)
+    assert bench.run(250).phase is Phase.ACTIVATION
+    bench.step()
+    assert [event.kind for event in bench.last.events] == [Kind.HOLD_SILENT, Kind.ACTIVATION_CANCELLED]
+
+
+@pytest.mark.parametrize(("ago", "entered"), [(0, False), (1, False), (49, False), (50, True), (51, True)])
+def test_entry_is_refused_unless_the_arm_was_static(ago: int, entered: bool) -> None:
+    """0.1 s are 50 ticks."""
+    bench = Bench()
+    bench.run(60)
+    bench.run(500 - ago, HOLD)
+    bench.step(HOLD, estimate(qd=[0.0, 0.0, -0.0123, 0.0, 0.0, 0.0]))
+    bench.run(ago, HOLD)
+    assert (bench.last.mode is Mode.FREE_DRIVE) == entered
+    if not entered:
+        values = {"joint": "elbow", "value": 0.0123, "limit": 0.01, "time": 0.1}
+        assert bench.last.events == (Event(Kind.REFUSED_MOVING, bench.tick, values),)
