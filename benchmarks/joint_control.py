@@ -48,7 +48,7 @@ ASSUMED = {
 }
 """Values of the arm's file that nobody has published, changed in the arm and in the controller's model."""
 
-LEARNING, SCORED = 10.0, 6.0  # [s]
+LEARNING, UNLEARNING, SCORED = 10.0, 3.0, 4.0  # before friction that is learned, and that is not, is scored; and how long [s]
 FULL_LOAD = Load(mass=5.0, com=[0.0, 0.0, 0.06])
 
 
@@ -182,7 +182,7 @@ class Score:
 def measure_case(case: Case) -> Result:
     """One run, scored after the time to learn."""
     simulation = begin(case)
-    run(simulation, LEARNING if case.law == "ours" else 3.0)
+    run(simulation, LEARNING if case.law == "ours" else UNLEARNING)
     score = Score(simulation)
     run(simulation, SCORED, score.look)
     return score.result(case)
@@ -261,42 +261,71 @@ def describe(case: Case) -> str:
     return f"{case.program}, {case.celsius:g} degC, {'5' if case.payload else '0'} kg, friction x {case.factor:g}"
 
 
-def compared(full: bool, seed: int, mismatch: Mismatch = "on", **fixed: float) -> list[Case]:
-    """Every law on the same runs, with the friction 40 % off both ways."""
-    rows = [(name, load, factor) for name in PROGRAMS for load in ((False, True) if full else (False,)) for factor in (0.6, 1.4)]
-    cases = [Case(name, 35.0, load, factor, mismatch, seed + k, **fixed) for k, (name, load, factor) in enumerate(rows)]
+def compared(rows: list[tuple[str, bool, float]], seed: int, mismatch: Mismatch = "on", **fixed: float) -> list[Case]:
+    """Every law on the same runs."""
+    cases = [Case(name, 35.0, load, factor, mismatch, seed + k)._replace(**fixed) for k, (name, load, factor) in enumerate(rows)]
     return [case._replace(law=law) for case in cases for law in LAWS]
+
+
+def learning(full: bool, seed: int, mismatch: Mismatch) -> list[Case]:
+    """Runs whose friction and torque are scored."""
+    if full:
+        rows = [(c, load, f) for c in (20.0, 35.0, 50.0) for load in (False, True) for f in (0.6, 0.8, 1.0, 1.2, 1.4)]
+        cells = [(name, *row) for name in PROGRAMS for row in rows]
+    else:
+        rows = [(20.0, True, 0.6), (35.0, False, 1.4), (50.0, True, 1.4)]
+        cells = [(name, *rows[(k + turn) % 3]) for k, name in enumerate(PROGRAMS) for turn in (0, 1)]
+    return [Case(*cell, mismatch, seed + k) for k, cell in enumerate(cells)]
+
+
+def tracking(full: bool, seed: int) -> dict[str, list[Case]]:
+    """Runs in which laws are compared, by label; friction is 40 % off, both ways."""
+    everything = [(name, load, factor) for name in PROGRAMS for load in (False, True) for factor in (0.6, 1.4)]
+    few, least = [("excitation", False, f) for f in (0.6, 1.4)], [("excitation", False, 1.4)]
+    some = [*few, ("pick and place", False, 1.4), ("slow reversing", False, 0.6)]
+    groups: dict[str, list[Case]] = {}
+    kinds: tuple[Mismatch, ...] = ("on", "nominal") if full else ("on",)
+    for mismatch in kinds:
+        for bandwidth, rows in ((12.0, some), (8.0, few)):
+            label = f"gains of {bandwidth:g} Hz, mismatch {mismatch}"
+            groups[label] = compared(everything if full else rows, seed, mismatch, bandwidth=bandwidth)
+        for name, factors in ASSUMED.items():
+            groups[f"{name}, mismatch {mismatch}"] = compared(everything if full else least, seed, mismatch, **factors)
+    return groups
 
 
 def measure(report: Report) -> None:
     """Fill the report."""
     full, seed = report.options.full, report.options.seed
-    wide = [(20.0, True, 0.6), (35.0, False, 1.4), (50.0, True, 1.4)]
-    if full:
-        wide = [(c, load, f) for c in (20.0, 35.0, 50.0) for load in (False, True) for f in (0.6, 0.8, 1.0, 1.2, 1.4)]
-    for mismatch, bar in BARS.items():
-        runs = [Case(name, *row, mismatch, seed) for name in PROGRAMS for row in wide]
-        results = spread(measure_case, [case._replace(seed=seed + k) for k, case in enumerate(runs)])
-        friction_rows(report, f"mismatch {mismatch}", results, bar)
+    friction: dict[Mismatch, list[Case]] = {mismatch: learning(full, seed, mismatch) for mismatch in BARS}
+    groups = tracking(full, seed)
+    cases = [case for group in (*friction.values(), *groups.values()) for case in group]
+    done = iter(spread(measure_case, cases))
+    for mismatch, runs in friction.items():
+        results = [next(done) for _ in runs]
+        friction_rows(report, f"mismatch {mismatch}", results, BARS[mismatch])
         torque_rows(report, f"mismatch {mismatch}", results)
         report.row(f"mismatch {mismatch}: share of ticks in RUN", min(result.running for result in results), "", at_least=1.0)
-    for bandwidth in (12.0, 8.0):
-        for mismatch in BARS if full else ("on",):
-            results = spread(measure_case, compared(full, seed, mismatch, bandwidth=bandwidth))
-            tracking_rows(report, f"gains of {bandwidth:g} Hz, mismatch {mismatch}", results)
-    for name, factors in ASSUMED.items():
-        for mismatch in BARS if full else ("on",):
-            cases = compared(full, seed, mismatch, **factors)
-            results = spread(measure_case, cases if full else [case for case in cases if case.program == "excitation"])
-            label = f"{name}, mismatch {mismatch}"
-            ours = [result for result in results if result.case.law == "ours"]
-            friction_rows(report, label, ours, BARS[mismatch])
+    for label, runs in groups.items():
+        results = [next(done) for _ in runs]
+        ours = [result for result in results if result.case.law == "ours"]
+        if ours[0].case.stiffness != 1.0 or ours[0].case.rotor != 1.0:
+            friction_rows(report, label, ours, BARS[ours[0].case.mismatch])
             torque_rows(report, label, ours)
-            tracking_rows(report, label, results)
+        tracking_rows(report, label, results)
+    step_rows(report)
+
+
+def step_rows(report: Report) -> None:
+    """A step of the temperature, a contact."""
+    full, seed = report.options.full, report.options.seed
+    cases = [Case(name, 35.0, False, f, "on", seed + k) for name in PROGRAMS for k, f in enumerate((0.6, 1.4))]
+    cases = cases if full else cases[4:]
+    nominal = [case._replace(mismatch="nominal") for case in (cases if full else cases[1:])]
+    steps = spread(measure_step, cases + nominal)
     for mismatch, bar in BARS.items():
-        cases = [Case(name, 35.0, False, f, mismatch, seed + k) for name in PROGRAMS for k, f in enumerate((0.6, 1.4))]
-        steps = spread(measure_step, cases if full else cases[4:])
-        after, contact = max(step.after for step in steps), max(step.contact for step in steps)
+        mine = [step for step in steps if step.case.mismatch == mismatch]
+        after, contact = max(step.after for step in mine), max(step.contact for step in mine)
         report.row(f"mismatch {mismatch}: friction error 15-20 s after a step of 15 K, worst", 100.0 * after, "%", at_most=bar)
         report.row(f"mismatch {mismatch}: change by a contact, worst", 100.0 * contact, "%", at_most=5.0)
 
