@@ -281,7 +281,7 @@ def learning(full: bool, seed: int, mismatch: Mismatch) -> list[Case]:
 def tracking(full: bool, seed: int) -> dict[str, list[Case]]:
     """Runs in which laws are compared, by label; friction is 40 % off, both ways."""
     everything = [(name, load, factor) for name in PROGRAMS for load in (False, True) for factor in (0.6, 1.4)]
-    few, least = [("excitation", False, f) for f in (0.6, 1.4)], [("excitation", False, 1.4)]
+    few = [("excitation", False, factor) for factor in (0.6, 1.4)]
     some = [*few, ("pick and place", False, 1.4), ("slow reversing", False, 0.6)]
     groups: dict[str, list[Case]] = {}
     kinds: tuple[Mismatch, ...] = ("on", "nominal") if full else ("on",)
@@ -290,7 +290,7 @@ def tracking(full: bool, seed: int) -> dict[str, list[Case]]:
             label = f"gains of {bandwidth:g} Hz, mismatch {mismatch}"
             groups[label] = compared(everything if full else rows, seed, mismatch, bandwidth=bandwidth)
         for name, factors in ASSUMED.items():
-            groups[f"{name}, mismatch {mismatch}"] = compared(everything if full else least, seed, mismatch, **factors)
+            groups[f"{name}, mismatch {mismatch}"] = compared(everything if full else few, seed, mismatch, **factors)
     return groups
 
 
