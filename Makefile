@@ -16,14 +16,14 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate clean lint types contracts unit e2e wheel browser
+.PHONY: run test bench bench-full soak soak-quick mutate clean lint types contracts kernels unit e2e wheel browser
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
 
 # What keeps one core busy goes in pairs; the rest has the machine to itself.
 test: $(VENV)/dev.stamp
-	$(MAKE) --no-print-directory -j2 --output-sync=target lint types contracts wheel
+	$(MAKE) --no-print-directory -j2 --output-sync=target wheel types lint contracts kernels
 	$(MAKE) --no-print-directory unit
 	$(MAKE) --no-print-directory e2e
 
@@ -53,6 +53,12 @@ types: $(VENV)/dev.stamp
 
 contracts: $(VENV)/dev.stamp
 	$(BIN)/lint-imports --no-logo
+
+# A fresh clone compiles its kernels once, and not in each worker of the tests.
+kernels: $(VENV)/dev.stamp
+	$(BIN)/pendant run free-drive --out build/kernels >/dev/null
+	$(BIN)/pendant run axis-locks contact-3a --out build/kernels >/dev/null
+	@rm -rf build/kernels
 
 unit: $(VENV)/dev.stamp
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10

@@ -11,6 +11,7 @@ from pendant.modes import TICK
 from pendant.settings import ContactUse
 from pendant.signal import Signal
 from sim.chain import Body
+from sim.cholesky import factor, solve
 from sim.dynamics import Dynamics
 from sim.sensors import Sample
 
@@ -48,7 +49,7 @@ class ContactSources:
 
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
-        self._mass, self._com, self._inertia = load.mass, np.array(load.com), load.inertia
+        self._load, self._com = load, np.array(load.com)
         self._out[:2, 9] = load.mass
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
@@ -61,8 +62,7 @@ class ContactSources:
             use: which sources are on; the others give None.
         """
         if estimate.tick % MASS_TICKS == 1:
-            load = (self._mass, self._com, self._inertia)
-            lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, *load)
+            lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, 10] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
         links = use.links and sample.joints_valid
@@ -81,20 +81,16 @@ class ContactSources:
         )
 
 
-@numba.njit(cache=True)
-def _effective_mass(mass, R, jacobian, load, com, inertia) -> float:
-    """Smallest effective mass of the arm at the flange, its rotors decoupled, without what it carries [kg]."""
+def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
+    """Smallest effective mass of the arm at the flange, its rotors decoupled, without what it carries [kg].
+
+    Not compiled: it is asked for rarely, and a compiled solver of systems costs a fresh installation half a minute.
+    """
     linear, angular = jacobian[:3], jacobian[3:]
-    offset = R @ com
-    at_load = np.empty_like(linear)
-    for i in range(linear.shape[1]):
-        for k in range(3):
-            a, b = (k + 1) % 3, (k + 2) % 3
-            at_load[k, i] = linear[k, i] + angular[a, i] * offset[b] - angular[b, i] * offset[a]
-    about = R @ inertia @ R.T
-    carried = load * (at_load.T @ at_load) + angular.T @ about @ angular
-    mobility = linear @ np.linalg.solve(mass - carried, linear.T.copy())
-    return 1.0 / np.linalg.eigvalsh(mobility)[-1]
+    at_load = linear + np.cross(angular.T, R @ load.com).T
+    carried = load.mass * (at_load.T @ at_load) + angular.T @ (R @ load.inertia @ R.T) @ angular
+    mobility = linear @ np.linalg.solve(mass - carried, linear.T)
+    return 1.0 / float(np.linalg.eigvalsh(mobility)[-1])
 
 
 @numba.njit(cache=True)
@@ -126,7 +122,7 @@ def _transfer(wrench, acceleration, gyro, turns, smoothing, com, R, gravity, rea
         out[k] = wrench[k]
         out[3 + k] = acceleration[k] + tangential + gyro[k] * along - com[k] * square
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
-    out[11] = 1.0 if np.abs(wrench[:3]).max() >= reach else 0.0
+    out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= reach else 0.0
 
 
 @numba.njit(cache=True)
@@ -142,19 +138,21 @@ def _derive(origins, flange, links, all_before, started, tau_ext, qd, qdd, gravi
     right = np.empty(3)
     for which in range(links.size):
         joint, before, out = links[which], all_before[which], all_out[which]
-        jacobian[:] = 0.0
-        for i in range(joint):
+        for i in range(n):
             for k in range(3):
                 a, b = (k + 1) % 3, (k + 2) % 3
-                jacobian[k, i] = flange[3 + a, i] * (origins[joint, b] - origins[i, b])
-                jacobian[k, i] -= flange[3 + b, i] * (origins[joint, a] - origins[i, a])
-        if not started:
-            before[:] = jacobian
+                jacobian[k, i] = 0.0
+                if i < joint:
+                    jacobian[k, i] = flange[3 + a, i] * (origins[joint, b] - origins[i, b])
+                    jacobian[k, i] -= flange[3 + b, i] * (origins[joint, a] - origins[i, a])
+                if not started:
+                    before[k, i] = jacobian[k, i]
         for r in range(3):
             acceleration, push = 0.0, 0.0
             for i in range(n):
                 acceleration += jacobian[r, i] * qdd[i] + (jacobian[r, i] - before[r, i]) / TICK * qd[i]
                 push += jacobian[r, i] * tau_ext[i]
+                before[r, i] = jacobian[r, i]
             for c in range(3):
                 total = SINGULAR * SINGULAR if r == c else 0.0
                 for i in range(n):
@@ -163,5 +161,7 @@ def _derive(origins, flange, links, all_before, started, tau_ext, qd, qdd, gravi
             out[3 + r] = acceleration - gravity[r]
             out[6 + r] = gravity[r]
             right[r] = -push
-        before[:] = jacobian
-        out[:3] = np.linalg.solve(square, right)
+        factor(square, 3)
+        solve(square, right, 3)
+        for k in range(3):
+            out[k] = right[k]

@@ -6,9 +6,10 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.cholesky import factor, solve
 from sim.dynamics import Dynamics
 from sim.frames import quaternion_from_matrix
-from sim.newton_euler import cross
+from sim.newton_euler import cross, turned
 
 Array = NDArray[np.float64]
 
@@ -63,39 +64,57 @@ def rotation_vector(R: Array) -> Array:
     return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
 
 
+# Loops over scalars, and a solver of our own: the compiled products and solvers of numpy cost a fresh installation ten seconds.
+
+
 @numba.njit(cache=True)
 def _solve(p, R, jacobian, tcp, start, R_start, way, turn, s, rate):
-    lever = R @ tcp
-    at_tcp = np.ascontiguousarray(jacobian).copy()
-    for i in range(jacobian.shape[1]):
-        dx, dy, dz = cross(jacobian[3:, i], lever)
-        at_tcp[0, i] += dx
-        at_tcp[1, i] += dy
-        at_tcp[2, i] += dz
+    n = jacobian.shape[1]
+    lever, going, left = turned(R, tcp), turned(R_start, turn), _turn_between(R, R_start, turn, s)
     twist = np.empty(6)
-    twist[:3] = rate * way + LINE_GAIN * (start + s * way - p - lever)
-    left = R.T @ R_start @ _rotation(s * turn)
-    twist[3:] = R_start @ (rate * turn) + LINE_GAIN * (R @ _turn_of(left))
-    # Damping only bites near a singularity, where the plan has been refused already.
-    return np.linalg.solve(at_tcp.T @ at_tcp + 1e-8 * np.eye(at_tcp.shape[1]), at_tcp.T @ twist)
+    for k in range(3):
+        twist[k] = rate * way[k] + LINE_GAIN * (start[k] + s * way[k] - p[k] - lever[k])
+        twist[3 + k] = rate * going[k] + LINE_GAIN * left[k]
+    at_tcp = np.empty((6, n))
+    for i in range(n):
+        swing = cross(jacobian[3:, i], lever)
+        for k in range(3):
+            at_tcp[k, i] = jacobian[k, i] + swing[k]
+            at_tcp[3 + k, i] = jacobian[3 + k, i]
+    normal, speeds = np.empty((n, n)), np.empty(n)
+    for i in range(n):
+        speeds[i] = 0.0
+        for r in range(6):
+            speeds[i] += at_tcp[r, i] * twist[r]
+        for j in range(i + 1):
+            # Damping only bites near a singularity, where the plan has been refused already.
+            normal[i, j] = 1e-8 if i == j else 0.0
+            for r in range(6):
+                normal[i, j] += at_tcp[r, i] * at_tcp[r, j]
+    factor(normal, n)
+    solve(normal, speeds, n)
+    return speeds
 
 
 @numba.njit(cache=True)
-def _rotation(vector):
-    """Rotation matrix (3, 3) of axis times angle (3,) [rad], by Rodrigues' formula."""
-    angle = np.sqrt(vector @ vector)
-    axis = vector / angle if angle > 1e-12 else vector
-    x, y, z = axis
-    K = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    if angle <= 1e-12:
-        return np.eye(3) + K
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
-
-
-@numba.njit(cache=True)
-def _turn_of(R):
-    """Axis times angle (3,) [rad] of a rotation by less than half a turn."""
-    v = 0.5 * np.array((R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]))
-    sine = np.sqrt(v @ v)
-    cosine = 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
-    return v * (np.arctan2(sine, cosine) / sine if sine > 1e-12 else 1.0)
+def _turn_between(R, R_start, turn, s):
+    """Axis times angle (3,) [rad], in axes of B, of the rotation by less than half a turn from R to R_start·exp(s·turn)."""
+    angle = math.sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])
+    x, y, z = turn[0], turn[1], turn[2]
+    if angle > 1e-12:
+        x, y, z = x / angle, y / angle, z / angle
+    sine, versed = math.sin(s * angle), 1.0 - math.cos(s * angle)
+    # Columns of the goal, by Rodrigues' formula.
+    columns = (
+        turned(R_start, (1.0 - versed * (y * y + z * z), versed * x * y + sine * z, versed * x * z - sine * y)),
+        turned(R_start, (versed * x * y - sine * z, 1.0 - versed * (x * x + z * z), versed * y * z + sine * x)),
+        turned(R_start, (versed * x * z + sine * y, versed * y * z - sine * x, 1.0 - versed * (x * x + y * y))),
+    )
+    error = np.empty((3, 3))  # goal R^T
+    for i in range(3):
+        for j in range(3):
+            error[i, j] = columns[0][i] * R[j, 0] + columns[1][i] * R[j, 1] + columns[2][i] * R[j, 2]
+    vx, vy, vz = 0.5 * (error[2, 1] - error[1, 2]), 0.5 * (error[0, 2] - error[2, 0]), 0.5 * (error[1, 0] - error[0, 1])
+    size = math.sqrt(vx * vx + vy * vy + vz * vz)
+    scale = math.atan2(size, 0.5 * (error[0, 0] + error[1, 1] + error[2, 2] - 1.0)) / size if size > 1e-12 else 1.0
+    return scale * vx, scale * vy, scale * vz

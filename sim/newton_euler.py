@@ -76,7 +76,7 @@ def cross(a, b):
 
 
 @numba.njit(cache=True)
-def _turn(R, a):
+def turned(R, a):
     """R a."""
     return (
         R[0, 0] * a[0] + R[0, 1] * a[1] + R[0, 2] * a[2],
@@ -86,7 +86,7 @@ def _turn(R, a):
 
 
 @numba.njit(cache=True)
-def _turn_back(R, a):
+def turned_back(R, a):
     """R^T a."""
     return (
         R[0, 0] * a[0] + R[1, 0] * a[1] + R[2, 0] * a[2],
@@ -136,7 +136,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, 
         v_F[k] = 0.0
         for i in range(n):
             v_F[k] += jacobian[k, i] * motion[1, i]
-    offset = _turn(R_F, tcp)
+    offset = turned(R_F, tcp)
     swing = cross((v_F[3], v_F[4], v_F[5]), offset)
     for k in range(3):
         tip[k], tip[3 + k] = p_F[k] + offset[k], v_F[k] + swing[k]
@@ -177,13 +177,13 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
         last = here
 
         row = constants[i]
-        com = _turn(R[i], (row[COM], row[COM + 1], row[COM + 2]))
+        com = turned(R[i], (row[COM], row[COM + 1], row[COM + 2]))
         tangential, normal = cross(alpha, com), cross(w, cross(w, com))
         inertia = row[INERTIA:WIDTH].reshape(3, 3)
-        rate, local = _turn_back(R[i], alpha), _turn_back(R[i], w)
-        whirl = cross(local, _turn(inertia, local))
-        change = _turn(inertia, rate)
-        moment_com = _turn(R[i], (change[0] + whirl[0], change[1] + whirl[1], change[2] + whirl[2]))
+        rate, local = turned_back(R[i], alpha), turned_back(R[i], w)
+        whirl = cross(local, turned(inertia, local))
+        change = turned(inertia, rate)
+        moment_com = turned(R[i], (change[0] + whirl[0], change[1] + whirl[1], change[2] + whirl[2]))
         for k in range(3):
             force[i, k] = row[MASS] * (a[k] + tangential[k] + normal[k])
             moment[i, k] = moment_com[k]

@@ -225,8 +225,10 @@ def _gather(qpos, qvel, length, rate, plastic, at, springs, own) -> None:
 def _poses(positions, orientations, bodies):
     out = np.empty((bodies.size, 7))
     for k in range(bodies.size):
-        out[k, :3] = positions[bodies[k]]
-        out[k, 3:] = orientations[bodies[k]]
+        for i in range(3):
+            out[k, i] = positions[bodies[k], i]
+        for i in range(4):
+            out[k, 3 + i] = orientations[bodies[k], i]
     return out
 
 
