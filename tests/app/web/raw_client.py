@@ -28,7 +28,13 @@ class RawClient:
         address = url.replace("http", "ws", 1)
         more = None if cookie is None else {"Cookie": cookie}
         self.socket: ClientConnection = connect(
-            address, subprotocols=[VERSION], origin=named, max_size=None, proxy=None, additional_headers=more
+            address,
+            subprotocols=[VERSION],
+            origin=named,
+            max_size=None,
+            proxy=None,
+            additional_headers=more,
+            close_timeout=1.0,  # a client that has not read everything would wait for its goodbye in vain
         )
         if camera:
             self.send(**CAMERA)
