@@ -15,7 +15,7 @@ STEP = 3
 """Ticks between the two samples of a difference (CD-4)."""
 HEAVIEST = 5
 """Sightings that one of the slow rule counts for at most."""
-NEW = 8
+NEW = 5
 """Newest samples under test in the statistical rule (CD-6)."""
 OLD = 30
 """Samples before them, whose mean and variance they are held against."""
