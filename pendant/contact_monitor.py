@@ -14,7 +14,7 @@ from pendant.history import MASK, SIZE, SUMMED
 from pendant.modes import Mode
 from pendant.pose import flat, turned
 from pendant.settings import ContactUse
-from pendant.signal import Signal
+from pendant.signal import Signal, Signals
 
 
 class Source(NamedTuple):
@@ -85,7 +85,7 @@ class ContactMonitor:
         self._on_links = ContactUse()
         self._used = (False,) * len(SOURCES)
         self._poses = Poses()
-        self._kept: deque[tuple[Signal | None, ...]] = deque(maxlen=SUMMED)  # that the detectors have not got yet
+        self._kept: deque[Signals] = deque(maxlen=SUMMED)  # that the detectors have not got yet
 
     def now(self) -> ArmPose:
         """Where the arm is."""
@@ -103,7 +103,7 @@ class ContactMonitor:
             self._use, self._on_links = use, for_links(use)
             self._used = (use.tool, use.flange, use.links, use.links)
         contacts: tuple[Contact, ...] = ()
-        for index, signal in enumerate(estimate.signals):
+        for index, signal in enumerate(estimate.signals.each()):
             detector = self.detectors[index]
             if signal is None and detector.history.count == 0:
                 continue
@@ -124,7 +124,7 @@ class ContactMonitor:
             if len(self._kept) == SUMMED:
                 detector.sense(None)
         for signals in self._kept:
-            for detector, signal in zip(self.detectors, signals, strict=False):
+            for detector, signal in zip(self.detectors, signals.each(), strict=False):
                 detector.sense(signal)
         self._kept.clear()
 

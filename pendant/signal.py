@@ -2,6 +2,9 @@
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 class Signal(NamedTuple):
     """One tick of one source. All in the same axes, those of the part; at the carried load's centre, or at the contact point.
@@ -22,3 +25,17 @@ class Signal(NamedTuple):
     mass: float = 0.0  # configured, of what the force accelerates [kg]
     effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]
     saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size
+
+
+class Signals(NamedTuple):
+    """One tick of all sources. While nobody looks at them they stay the rows of numbers that they come as."""
+
+    rows: NDArray[np.float64]  # (sources, fields of `Signal`)
+    valid: tuple[bool, ...]  # of each source
+
+    def each(self) -> tuple[Signal | None, ...]:
+        """The signal of each source, None where it is not valid."""
+        return tuple(Signal._make(row) if valid else None for row, valid in zip(self.rows.tolist(), self.valid, strict=True))
+
+
+NO_SIGNALS = Signals(np.zeros((0, len(Signal._fields))), ())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pendant.estimate import Estimate
 from pendant.modes import TICK
 from pendant.settings import ContactUse
-from pendant.signal import Signal
+from pendant.signal import Signals
 from sim.chain import Body
 from sim.cholesky import factor, solve
 from sim.dynamics import Dynamics
@@ -72,13 +72,7 @@ class ContactSources:
         which = (pair, pair and use.flange, links)
         _read(*which, sample.values, *flange, *arm, estimate.tau_ext, estimate.qd, estimate.qdd, out)
         self._started = links
-        tool, arm_side, elbow, forearm = out.tolist()
-        estimate.signals = (
-            Signal._make(tool) if pair else None,
-            Signal._make(arm_side) if pair and use.flange else None,
-            Signal._make(elbow) if links else None,
-            Signal._make(forearm) if links else None,
-        )
+        estimate.signals = Signals(out.copy(), (pair, pair and use.flange, links, links))
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

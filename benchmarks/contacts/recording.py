@@ -39,7 +39,7 @@ class Recording:
         assert isinstance(estimate, Estimate)
         time = (simulation.plant.tick - 1) * TICK
         self.time.append(time)
-        self.signals.append(estimate.signals)
+        self.signals.append(estimate.signals.each())
         self.momentum.append(momentum(simulation, estimate))
         self.q.append(estimate.q.tolist())
         x, y, z = estimate.tcp.tolist()[:3]

@@ -10,7 +10,7 @@ from pendant.estimate import Estimate
 from pendant.history import SUMMED
 from pendant.modes import Mode
 from pendant.settings import ContactUse
-from pendant.signal import Signal
+from pendant.signal import Signal, Signals
 from tests.pendant.contacts import USE, ramp, signals
 from tests.pendant.estimates import estimate
 
@@ -24,7 +24,8 @@ def estimates(source: int, stream: list[Signal | None]) -> list[Estimate]:
         now = estimate(tick=k)
         now.R_BF, now.q = QUARTER, np.full(6, 0.001 * k)
         now.tcp = np.array([0.0002 * k, 0.0, 0.5, 0.0, 0.0, 0.0])
-        now.signals = tuple(signal if index == source else None for index in range(len(SOURCES)))
+        valid = tuple(index == source and signal is not None for index in range(len(SOURCES)))
+        now.signals = Signals(np.tile(signal or Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (len(SOURCES), 1)), valid)
         result.append(now)
     return result
 

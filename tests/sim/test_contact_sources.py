@@ -29,7 +29,7 @@ def mean(sim: Simulation, source: int, ticks: int, wishes: Wishes = IDLE) -> np.
     rows = []
     for _ in range(ticks):
         sim.tick(wishes)
-        signal = sim.snapshot().estimate.signals[source]
+        signal = sim.snapshot().estimate.signals.each()[source]
         assert signal is not None
         rows.append(signal[:9])
     return np.mean(rows, axis=0).reshape(3, 3)
@@ -40,7 +40,7 @@ def test_at_rest_force_is_mass_times_acceleration_in_the_flange() -> None:
     for source in (0, 1):
         mean(sim, source, 20)
         force, acceleration, gravity = mean(sim, source, 200)
-        signal = sim.snapshot().estimate.signals[source]
+        signal = sim.snapshot().estimate.signals.each()[source]
         assert isinstance(signal, Signal)
         assert signal.mass == pytest.approx(TOOL.mass + 2.0 + 0.13)  # the sensor's own plate is carried too
         assert force == pytest.approx(signal.mass * acceleration, abs=0.3)
@@ -88,7 +88,7 @@ def test_the_tool_centre_point_is_where_it_is() -> None:
 def test_the_effective_mass_is_that_of_the_links_at_the_flange() -> None:
     sim = simulation()
     sim.tick(IDLE)
-    signal = sim.snapshot().estimate.signals[0]
+    signal = sim.snapshot().estimate.signals.each()[0]
     assert signal is not None
     bare = Simulation(ARM, Scenario(mismatch="nominal"), Settings())
     J = bare.dynamics.update(bare.plant.q)[2][:3]
@@ -100,13 +100,13 @@ def test_the_effective_mass_is_that_of_the_links_at_the_flange() -> None:
 def test_what_is_off_or_not_valid_gives_nothing() -> None:
     sim = simulation(links=False)
     sim.tick(IDLE)
-    assert [signal is not None for signal in sim.snapshot().estimate.signals] == [True, False, False, False]
+    assert [signal is not None for signal in sim.snapshot().estimate.signals.each()] == [True, False, False, False]
     sim = simulation(flange=True)
     fault = SensorFault(sensor="accelerometer", outage=True)
     sim.tick(Wishes(NOTHING, (), (fault,)))
     sim.tick(IDLE)
     sim.tick(IDLE)
-    assert [signal is not None for signal in sim.snapshot().estimate.signals] == [False, False, True, True]
+    assert [signal is not None for signal in sim.snapshot().estimate.signals.each()] == [False, False, True, True]
 
 
 def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
@@ -115,7 +115,7 @@ def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
     sim.tick(Wishes(Inputs(load=Load(mass=1.0), settings={"tools.ramp": 0.0}), (), ()))
     for _ in range(600):
         sim.tick(IDLE)
-    signal = sim.snapshot().estimate.signals[0]
+    signal = sim.snapshot().estimate.signals.each()[0]
     assert signal is not None
     assert signal.mass == pytest.approx(TOOL.mass + 1.0 + 0.13)
 
@@ -123,9 +123,9 @@ def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
 def test_a_force_at_the_end_of_the_sensors_range_is_marked() -> None:
     sim = simulation(flange=True)
     sim.tick(IDLE)
-    assert not any(signal.saturated for signal in sim.snapshot().estimate.signals if signal is not None)
+    assert not any(signal.saturated for signal in sim.snapshot().estimate.signals.each() if signal is not None)
     mean(sim, 0, 5, Wishes(NOTHING, (Push("tool", (0.0, 0.0, 0.1), (0.0, 300.0, 0.0)),), ()))
-    tool, flange, elbow, _ = sim.snapshot().estimate.signals
+    tool, flange, elbow, _ = sim.snapshot().estimate.signals.each()
     assert tool is not None
     assert flange is not None
     assert elbow is not None

@@ -50,7 +50,7 @@ def test_a_tool_takes_its_point_and_its_load_from_the_next_tick_on() -> None:
     seen = device.estimate
     assert seen.load_mass == pytest.approx(0.13 + 0.3)
     assert seen.tcp[:3] == pytest.approx(seen.p_BF + seen.R_BF @ [0.0, 0.0, 0.05], abs=1e-9)
-    signal = seen.signals[0]
+    signal = seen.signals.each()[0]
     assert signal is not None
     assert signal.mass == pytest.approx(0.13 + 0.3)
     assert device.simulation.dynamics.load.inertia[0, 0] > 1e-3, "the inertia that the table says"
