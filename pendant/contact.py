@@ -1,8 +1,10 @@
 """What a contact detector reports: a change in contact, as a value (CD-13, CD-14, CD-16)."""
 
+import math
 from enum import StrEnum
 from typing import NamedTuple
 
+from pendant.events import Event, Kind, posture_text
 from pendant.pose import Rotation, Vector
 
 
@@ -36,3 +38,40 @@ class Contact(NamedTuple):
     ratio: float  # of the changes of force and acceleration; free motion has plus the payload's mass [kg]
     steps: int  # ticks from the first suspicious sample to the decision (CD-14)
     pose: ArmPose  # at the first suspicious sample
+
+
+TOLD = {
+    Change.GAINED: Kind.CONTACT_GAINED,
+    Change.LOST: Kind.CONTACT_LOST,
+    Change.RESISTANCE: Kind.CONTACT_RESISTANCE,
+    Change.CLAMPING: Kind.CONTACT_CLAMPING,
+}
+
+
+def told(contact: Contact, tick: int, action: str) -> Event:
+    """The event of a contact, with the `action` that a program takes (CD-16)."""
+    (fx, fy, fz), (ax, ay, az), (x, y, z) = contact.force, contact.acceleration, contact.pose.p_BT
+    return Event(
+        TOLD[contact.change],
+        tick,
+        {
+            "part": contact.part,
+            "source": contact.source,
+            "rule": contact.rule,
+            "force": math.hypot(fx, fy, fz),
+            "fx": fx,
+            "fy": fy,
+            "fz": fz,
+            "acceleration": math.hypot(ax, ay, az),
+            "ax": ax,
+            "ay": ay,
+            "az": az,
+            "ratio": contact.ratio,
+            "steps": contact.steps,
+            "x": x,
+            "y": y,
+            "z": z,
+            "posture": posture_text(contact.pose.q),
+            "action": action,
+        },
+    )

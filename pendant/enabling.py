@@ -14,6 +14,11 @@ class Grip(StrEnum):
     PRESSED = "fully pressed"
 
 
+def enables(grip: Grip | None) -> bool:
+    """The arm may move, held like this; None: no device is needed."""
+    return grip is None or grip is Grip.MIDDLE
+
+
 class EnablingDevice:
     """Each position is a keep-alive (FD-23); the device falls silent as if it were released.
 

@@ -1,17 +1,14 @@
-"""Programs: a list of moves, and the sequencer that runs them in mode RUN."""
+"""Programs: their steps, with what each of them may say (CD-15)."""
 
 import math
-from collections.abc import Callable
 from enum import StrEnum
 from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
-from pendant.contact import ArmPose, Contact
-from pendant.pose import UNTURNED, Vector
-from pendant.reaction import REACTION_SPEED, Until, goal
-from pendant.settings import ticks
+from pendant.pose import Vector
+from pendant.reaction import Until
 
 UNFELT: Vector = (0.0, 0.0, 0.0)
 
@@ -123,178 +120,6 @@ def misfit(program: Program, n_joints: int) -> str | None:
         if isinstance(step, JointMove) and len(step.q) != n_joints:
             return f"step {number} has {len(step.q)} joint angles, the arm has {n_joints} joints"
     return None
-
-
-class Sequencer:
-    """Runs the loaded program step by step. A step paused half-way is begun again, with a new id, when resumed."""
-
-    __slots__ = (
-        "R_FT",
-        "_begun",
-        "_from",
-        "_left",
-        "_untouched",
-        "contact",
-        "guided",
-        "index",
-        "move",
-        "program",
-        "state",
-        "tool_on",
-    )
-
-    def __init__(self) -> None:
-        self.program: Program | None = None
-        self.state = ProgramState.NONE
-        self.index = 0
-        self.move: Move | None = None  # the step being done, None unless RUNNING
-        self._begun = 0  # how many moves were begun so far: the last id
-        self._left = 0  # ticks left of a wait
-        self._from: ArmPose | None = None  # where the present move began
-        self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
-        self.guided = False  # the arm was guided by hand, until it has come to rest
-        self._untouched: Vector = UNFELT  # F_user when the arm last began to move [N]
-        self.tool_on = False
-        self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
-
-    def load(self, program: Program) -> None:
-        """Take a program; allowed unless one is RUNNING or PAUSED."""
-        self.program = program
-        self.stop()
-
-    def start(self, felt: Vector = UNFELT) -> None:
-        """Begin the first step; `felt` is the force of F_user now [N]."""
-        self.index = 0
-        self._left = 0
-        self._untouched = felt
-        self.resume()
-
-    def pause(self) -> None:
-        """Give up the present step for now; what is left of a wait is kept."""
-        self.state = ProgramState.PAUSED
-        self._drop()
-
-    def resume(self) -> None:
-        """Begin the present step again."""
-        self.state = ProgramState.RUNNING
-        self._begin()
-
-    def stop(self) -> None:
-        """Give the program up, and keep it loaded."""
-        self.state = ProgramState.NONE if self.program is None else ProgramState.STOPPED
-        self.index = 0
-        self._left = 0
-        self._drop()
-
-    @property
-    def until(self) -> Until | None:
-        """The contact that the present step waits for."""
-        return getattr(self.move, "until", None)
-
-    def missed(self, move_done: int) -> bool:
-        """The present move has ended without the contact that it should have gone on until."""
-        move = self.move
-        return isinstance(move, JointMove | LinearMove) and move.until is not None and move.id == move_done
-
-    def touch(self, contact: Contact) -> bool:
-        """A contact changes while a step runs: True when it ends the step, so that the arm has to come to rest."""
-        until = self.until
-        if until is None or not until.meets(contact):
-            return False
-        self.contact, self.move = contact, None
-        return True
-
-    @property
-    def guiding(self) -> bool:
-        """The present step has the arm guided by hand."""
-        return isinstance(self.move, HandGuide)
-
-    def let_go(self) -> None:
-        """Guiding by hand has ended."""
-        self.guided, self.move = True, None
-
-    @property
-    def braked(self) -> bool:
-        """The present step goes on when the arm has come to rest."""
-        return self.guided or self.contact is not None
-
-    def rest(self, now: ArmPose) -> bool:
-        """The arm has come to rest after `touch` or `let_go`: do what the step asks for. Returns as `step`."""
-        assert self.program is not None
-        if self.guided:
-            return self._next()
-        contact, self.contact = self.contact, None
-        until: Until | None = getattr(self.program.steps[self.index], "until", None)
-        assert contact is not None
-        assert until is not None
-        there = goal(until, contact, self._from or now, now, self.R_FT)
-        if there is None:
-            return self._next()
-        self._begun += 1
-        if there.position is None:
-            self.move = JointMove(id=self._begun, q=there.q)
-        else:
-            self.move = LinearMove(id=self._begun, position=there.position, quaternion=there.quaternion, speed=REACTION_SPEED)
-        return False
-
-    def step(
-        self, move_done: int, where: Callable[[], ArmPose | None] = lambda: None, felt: Callable[[], Vector] = lambda: UNFELT
-    ) -> bool:
-        """One tick of a RUNNING program.
-
-        Args:
-            move_done: id of the last move that the FOLLOW law finished.
-            where: tells where the arm is.
-            felt: tells the mean force of F_user [N].
-
-        Returns:
-            True when this tick ended the program.
-        """
-        if self._from is None:
-            self._from = where()
-            if isinstance(self.move, JointMove | LinearMove):
-                self._untouched = felt()
-        if isinstance(self.move, WaitForContact | HandGuide):
-            return False
-        if isinstance(self.move, SwitchTool):
-            self.tool_on = self.move.on
-        elif isinstance(self.move, Wait):
-            self._left -= 1
-            if self._left > 0:
-                return False
-            self._left = 0
-        elif self.move is None or move_done != self.move.id:
-            return False
-        return self._next()
-
-    def _next(self) -> bool:
-        self.index += 1
-        if self.program is None or self.index == len(self.program.steps):
-            self.stop()
-            return True
-        self._begin()
-        return False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of the sequencer's state, to compare."""
-        own = (self.program, self.state, self.index, self.move, self._begun, self._left)
-        return (*own, self._from, self.contact, self.guided, self._untouched, self.tool_on)
-
-    def _drop(self) -> None:
-        self.move, self.contact, self.guided = None, None, False
-
-    def _begin(self) -> None:
-        assert self.program is not None
-        self._drop()
-        self._begun += 1
-        self._from = None
-        step = self.program.steps[self.index]
-        self.move = msgspec.structs.replace(step, id=self._begun)
-        if isinstance(self.move, ApplyForce):
-            self.move = msgspec.structs.replace(self.move, untouched=self._untouched)
-        if isinstance(step, Wait) and self._left == 0:
-            self._left = ticks(step.duration)
 
 
 def _finite(values: tuple[float, ...]) -> None:

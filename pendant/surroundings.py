@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from pendant.enabling import Grip
+from pendant.enabling import Grip, enables
 from pendant.estimate import Estimate
 from pendant.modes import Mode
 from pendant.watch import Stillness, WrenchMean
@@ -26,4 +26,4 @@ class Surroundings(NamedTuple):
     @property
     def enabled(self) -> bool:
         """No enabling device forbids motion."""
-        return self.grip is None or self.grip is Grip.MIDDLE
+        return enables(self.grip)

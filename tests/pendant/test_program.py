@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.program import JointMove, LinearMove, Move, Program, ProgramState, Sequencer, Wait, misfit
+from pendant.program import JointMove, LinearMove, Move, Program, ProgramState, Wait, misfit
+from pendant.sequencer import Sequencer
 
 HOME = (0.0,) * 6
 IDENTITY = (1.0, 0.0, 0.0, 0.0)

@@ -1,0 +1,168 @@
+"""A program in the running robot: loading it, its commands, and its tick in mode RUN."""
+
+from pendant.contact_monitor import ContactMonitor
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind, Values
+from pendant.inputs import Command, Inputs
+from pendant.modes import Mode, Phase, way_out
+from pendant.pose import Vector
+from pendant.program import Program, ProgramState, misfit
+from pendant.robot import Robot
+from pendant.sequence import JOINTS_SENSED
+from pendant.settings import Settings
+from pendant.watch import WrenchMean, joints_ok, motion_ok
+
+PROGRAM_COMMANDS = frozenset({Command.START_PROGRAM, Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM})
+
+
+class ProgramRun:
+    """Steers the robot's sequencer."""
+
+    __slots__ = ("_mean", "_n", "_origin", "_robot")
+
+    def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int) -> None:
+        """
+        Args:
+            robot: that it steers.
+            mean: of F_user.
+            n_joints: of the arm.
+        """
+        self._robot, self._mean, self._n = robot, mean, n_joints
+        self._origin = Mode.TEACH  # where the program was started from
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; the robot's is compared elsewhere."""
+        return (self._origin,)
+
+    def step(
+        self,
+        estimate: Estimate,
+        inputs: Inputs,
+        monitor: ContactMonitor,
+        changing: bool,
+        settings: Settings,
+        events: list[Event],
+    ) -> None:
+        """One tick.
+
+        Args:
+            estimate: of this tick.
+            inputs: of this tick.
+            monitor: knows where the arm is.
+            changing: the configured payload is being changed.
+            settings: as they are now.
+            events: of this tick; more are added.
+        """
+        robot = self._robot
+        sequencer = robot.sequencer
+        if inputs.program is not None:
+            self._load(inputs.program, estimate.tick, events)
+        move = sequencer.move
+        for command in inputs.commands:
+            if command in PROGRAM_COMMANDS:
+                why_not = self._why_not(command, estimate, changing)
+                if why_not:
+                    robot.refuse(command, estimate, why_not, events)
+                else:
+                    self._steer(command, estimate.tick, events)
+        braked = sequencer.braked
+        if robot.mode is Mode.FREE_DRIVE or (not braked and (move is None or sequencer.move is not move)):
+            return
+        tool_on = sequencer.tool_on
+        if not motion_ok(estimate):
+            event = Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED})
+            robot.happen(event, settings, events)
+        elif braked:
+            if robot.static and sequencer.rest(monitor.now()):
+                self._finish(estimate.tick, events)
+        elif not robot.enabled:
+            events.append(Event(Kind.RUN_ENABLING, estimate.tick, {"grip": robot.grip or ""}))
+            robot.begin_stop(Kind.RUN_ENABLING)
+            robot.pause_program(estimate.tick, events)
+        elif estimate.move_refused:
+            self.fail(estimate.move_refused, estimate.tick, events)
+        elif sequencer.missed(estimate.move_done):
+            self.fail("it ended without a contact", estimate.tick, events)
+        elif sequencer.step(estimate.move_done, monitor.now, self._felt):
+            self._finish(estimate.tick, events)
+        if sequencer.tool_on is not tool_on:
+            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+
+    def fail(self, reason: str, tick: int, events: list[Event]) -> None:
+        """The program cannot go on."""
+        robot = self._robot
+        values: Values = {"name": robot.program_name, "step": robot.sequencer.index + 1, "reason": reason}
+        events.append(Event(Kind.PROGRAM_FAILED, tick, values))
+        self._end()
+
+    def _felt(self) -> Vector:
+        """Mean force of F_user [N]."""
+        x, y, z = self._mean.mean()[:3]
+        return x, y, z
+
+    def _finish(self, tick: int, events: list[Event]) -> None:
+        self._robot.mode = self._origin
+        events.append(Event(Kind.PROGRAM_FINISHED, tick, {"name": self._robot.program_name}))
+
+    def _end(self) -> None:
+        robot = self._robot
+        robot.sequencer.stop()
+        robot.mode = self._origin
+        robot.braking = True
+
+    def _load(self, program: Program, tick: int, events: list[Event]) -> None:
+        reason, mode = misfit(program, self._n), self._robot.mode
+        if mode in (Mode.RUN, Mode.FREE_DRIVE):
+            reason = way_out(mode)
+        if reason is not None:
+            events.append(Event(Kind.PROGRAM_REFUSED, tick, {"name": program.name, "reason": reason}))
+            return
+        self._robot.sequencer.load(program)
+        events.append(Event(Kind.PROGRAM_LOADED, tick, {"name": program.name, "steps": len(program.steps)}))
+
+    def _why_not(self, command: Command, estimate: Estimate, changing: bool) -> str | None:
+        """Why a program command is not possible now, or None."""
+        robot = self._robot
+        state = robot.sequencer.state
+        if command is Command.START_PROGRAM:
+            if robot.mode not in (Mode.NORMAL, Mode.TEACH):
+                return way_out(robot.mode)
+            if state is ProgramState.NONE:
+                return "no program is loaded"
+        elif robot.mode is not Mode.RUN:
+            return "no program is running"
+        if command is Command.PAUSE_PROGRAM:
+            return "it is paused already" if state is ProgramState.PAUSED else None
+        if command is Command.STOP_PROGRAM:
+            return None
+        if command is Command.RESUME_PROGRAM and state is ProgramState.RUNNING:
+            return "it is running already"
+        if robot.free.phase is Phase.SEQUENCE:
+            return "free-drive is being tried"
+        if not robot.enabled:
+            return f"enabling device {robot.grip}: hold it in its middle position"
+        if not joints_ok(estimate):
+            return f"check {JOINTS_SENSED}"
+        if changing:
+            return "the payload is being changed"
+        return None if robot.static else "the arm still moves"
+
+    def _steer(self, command: Command, tick: int, events: list[Event]) -> None:
+        """Carry out a program command that is possible."""
+        robot = self._robot
+        sequencer = robot.sequencer
+        values: Values = {"name": robot.program_name, "step": sequencer.index + 1}
+        if command is Command.START_PROGRAM:
+            self._origin = robot.mode
+            robot.mode = Mode.RUN
+            sequencer.start(self._felt())
+            events.append(Event(Kind.PROGRAM_STARTED, tick, {"name": robot.program_name}))
+        elif command is Command.PAUSE_PROGRAM:
+            robot.pause_program(tick, events)
+        elif command is Command.RESUME_PROGRAM:
+            sequencer.resume()
+            events.append(Event(Kind.PROGRAM_RESUMED, tick, values))
+        else:
+            self._end()
+            events.append(Event(Kind.PROGRAM_STOPPED, tick, values))
