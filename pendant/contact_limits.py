@@ -16,6 +16,7 @@ class ContactLimits(NamedTuple):
 
     noise_force_sq: float  # difference of two samples: below, it is noise (CD-0) [N²]
     noise_acceleration_sq: float  # [m²/s⁴]
+    deviation_sq: float  # one deviation of the difference of two samples of the force [N²]
     opposite: bool  # directions must be opposite (CD-0)
     cosine_sq: float  # of the angle limit
     force_sq: float  # difference rule (CD-4) [N²]
@@ -62,6 +63,7 @@ def limits(use: ContactUse, mass: float, effective_mass: float, speed: float, mo
     return ContactLimits(
         (noisy * noise_f) ** 2,
         (noisy * noise_a) ** 2,
+        (pair * noise_f) ** 2,
         use.opposite,
         use.angle**2,
         (hard * noise_f + mismatch) ** 2,

@@ -54,22 +54,24 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
     """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `age` ticks.
 
     Clear is a change of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an
-    acceleration that free motion never changes so fast in the opposite direction.
+    acceleration that free motion never changes so fast in the opposite direction. A hard contact is felt by the accelerometer
+    before the force has come to its sensor: for what is clear a change of F that is noise may lie along A by one deviation.
     """
     if history.count <= age:
         return NOTHING
     new, old = history.sample(0), history.sample(age)
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
-    dot = fx * ax + fy * ay + fz * az
-    if dot >= 0.0 and limit.opposite:
-        return NOTHING
-    ff = fx * fx + fy * fy + fz * fz
     aa = ax * ax + ay * ay + az * az
     if aa < limit.noise_acceleration_sq:
         return NOTHING
+    dot = fx * ax + fy * ay + fz * az
+    ff = fx * fx + fy * fy + fz * fz
+    along = dot >= 0.0 and limit.opposite
+    if along and (ff > limit.noise_force_sq or dot * dot > limit.deviation_sq * aa):
+        return NOTHING
     clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit)
-    if ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
+    if along or ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
         return Hard(clear, False, clear)
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
     return Hard(difference or clear, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa, clear)
@@ -78,6 +80,8 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
 def _clear(ff: float, aa: float, dot: float, limit: ContactLimits) -> bool:
     mass = limit.mass
     against = dot - mass * aa  # F - m·A along A
+    if against >= 0.0 and limit.opposite:
+        return False
     square = ff - 2.0 * mass * dot + mass * mass * aa
     size = limit.clear_force + limit.payload_margin * aa**0.5
     return square > size * size and against * against > limit.cosine_sq * square * aa

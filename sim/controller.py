@@ -46,7 +46,9 @@ class Controller:
         self.motor = MotorController(arm, calibration)
         self._dynamics = dynamics
         self._law: Law | None = None
+        self._everywhere = np.ones(arm.n, dtype=np.bool_)
         self._nothing = np.zeros(arm.n)
+        self._followed = False  # a motion was followed before the arm was told to brake
         self._blind = False  # some joint had no motor angle in the last tick
         self._fed_back = False  # the torque feedback was on in the last tick
 
@@ -87,6 +89,8 @@ class Controller:
         if blind:
             self._let_blind_joints_rest(estimate, torque)
         self._law = decision.law
+        if decision.law is not Law.BRAKE:
+            self._followed = decision.law is Law.FOLLOW
         return self.motor.current(torque, estimate.theta_d)
 
     def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
@@ -121,5 +125,8 @@ class Controller:
             self.torque_feedback.add(measured, desired, torque)
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
-        self.feedback.add(reference, desired, estimate, use, self.motor.limited, torque, start, sticking, stiffer)
+        # What stands in the way of a motion that is stopped must not be pushed on: to take that back would need seconds.
+        stopped = decision.law is Law.BRAKE and self._followed and estimate.touched
+        waits = self._everywhere if stopped else self.motor.limited
+        self.feedback.add(reference, desired, estimate, use, waits, torque, start, sticking, stiffer)
         return torque

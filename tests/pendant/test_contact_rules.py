@@ -60,6 +60,9 @@ def test_difference_and_ratio(
         ((-0.34, 0.0, 0.0), (1.6, 0.0, 0.0), True),
         ((0.0, 8.0, 0.0), (1.6, -0.1, 0.0), False),  # across
         ((3.0, 0.0, 0.0), (1.6, 0.0, 0.0), False),  # along it: free motion of a load that is too heavy
+        ((0.0, 0.0, 0.0), (-3.0, 0.0, 0.0), True),  # the accelerometer feels it first: F - m·A changes by 3 N, threshold 2.28 N
+        ((-0.20, 0.0, 0.0), (-3.0, 0.0, 0.0), True),  # and F may seem to lie along A by one deviation, 0.212 N
+        ((-0.22, 0.0, 0.0), (-3.0, 0.0, 0.0), False),
     ],
 )
 def test_a_difference_that_is_clear(df: tuple[float, float, float], da: tuple[float, float, float], clear: bool) -> None:
@@ -87,6 +90,14 @@ def test_the_angle_limit_of_what_is_clear(cosine: float, clear: bool) -> None:
     """Of F - m·A against A; without a load that is F."""
     sine = (1.0 - cosine**2) ** 0.5
     assert hard(stepped((3.0, 0.0, 0.0), (3.0 * cosine, 3.0 * sine, 0.0)), limit(mass=0.0)).clear is clear
+
+
+def test_without_an_angle_limit_what_is_clear_still_lies_against_the_acceleration() -> None:
+    use = msgspec.structs.replace(USE, angle=0.0)
+    across = stepped((0.1, 3.0, 0.0), (1.2, 0.0, 0.0))
+    assert not hard(across, limit(use, mass=0.0)).clear
+    assert hard(stepped((-0.1, 3.0, 0.0), (1.2, 0.0, 0.0)), limit(use, mass=0.0)).clear
+    assert hard(across, limit(msgspec.structs.replace(use, opposite=False), mass=0.0)).clear
 
 
 def test_the_ratio_follows_payload_and_posture() -> None:
