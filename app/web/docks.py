@@ -70,6 +70,8 @@ class Docks:
             self.tools.enter,
             self.tools.apply,
             self.tools.clear,
+            self.tools.editor.save,
+            self.tools.editor.load,
             self.contacts.export,
             self.teach.save,
             self.teach.load,

@@ -11,6 +11,7 @@ from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.scenarios import Scenarios
 from app.web.setup import Setup
+from app.web.wires import Wires
 from pendant.modes import TICK_RATE, Mode, Phase
 from sim.arm import Arm
 from sim.changes import AttachPayload, DropPayload, Friction, SensorFault, Temperature
@@ -36,6 +37,7 @@ class Lab:
         self.force = gui.add_slider("Hand [N]", min=FORCE[0], max=FORCE[2], step=5.0, initial_value=FORCE[1])
         self._payload()
         self._faults()
+        self.wires = Wires(gui, loop)
         self.setup = Setup(gui, loop, arm)
         self._connect()
 
@@ -58,6 +60,7 @@ class Lab:
             self._number = fitting.number
             self._tell(self.configured, min(fitting.mass, self._arm.payload))
         changed = [
+            self.wires.show(snapshot),
             self.rates.show(svg.facts(pairs)),
             self.loads.show(svg.loads(snapshot.truth_payload_mass, snapshot.configured_mass)),
             enable(self.configured, not locked),

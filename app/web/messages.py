@@ -30,7 +30,7 @@ class Update(Message, tag="GuiUpdateMessage"):
     """A control was used."""
 
     uuid: str
-    updates: dict[str, bool | int | float | str]
+    updates: dict[str, bool | int | float | str | Triple]
 
 
 class Hold(Message, tag="GuiButtonHoldMessage"):

@@ -11,7 +11,7 @@ from app.prepare import MOUNTINGS
 from app.session import World, bundled, folder
 from app.web.running import Running
 from sim.arm import Arm
-from sim.scenario import Scenario
+from sim.scenario import Scenario, Tool
 from sim.simulation import Simulation
 
 AS_IS = "as it is"
@@ -51,6 +51,7 @@ class Setup:
             now,
             mounting=[mounting[0], mounting[1] + tilt, mounting[2]],
             tool=now.tool if self.tool.value == AS_IS else load_tool(self.tool.value),
+            tools=[tool for tool in self._loop.tools if isinstance(tool, Tool)],  # as they were edited; the app has no others
             world=world,
             seed=int(self.seed.value),
             mismatch="on" if self.mismatch.value else "nominal",

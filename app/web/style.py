@@ -69,6 +69,9 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 .pd-fine{{margin:-2px 12px 8px;font-size:11px;line-height:1.3;opacity:.6}}
 [data-mantine-color-scheme="dark"] :is(.pd-light span,.pd-loads em,.pd-steps em){{
   color:color-mix(in srgb,var(--c,#1971c2) 55%,#fff)}}
+div:has(>.mantine-NumberInput-root:nth-child(3)) .mantine-NumberInput-section{{display:none}}
+div:has(>.mantine-NumberInput-root:nth-child(3)) input{{padding:0 5px!important}}
+.mantine-Notification-root[style*="orange"] .mantine-Notification-description{{display:none}}
 .pd-empty{{padding:10px 12px;margin:0;font-size:12.5px;opacity:.55}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 .mantine-Button-section{{margin-inline-end:8px!important}}

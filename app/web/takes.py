@@ -16,6 +16,9 @@ MAX_TEXT = 200
 LARGEST = 1e6
 """Largest number that is squared: the far plane of a camera and the pixels of a window are within it."""
 
+OPEN = (None, None, None)
+"""The ends of a range without ends, of each coordinate."""
+
 LARGEST_VALUE = 2.0**53
 """Largest number that a control may be asked to take; its own range says the rest."""
 
@@ -76,6 +79,8 @@ def _fits(control: Any, value: Any) -> bool:
         return type(value) in (int, float) and control.min <= value <= control.max
     if isinstance(control, viser.GuiNumberHandle):
         return type(value) in (int, float) and _between(control.min, value, control.max)
+    if isinstance(control, viser.GuiVector3Handle):
+        return isinstance(value, tuple) and all(map(_between, control.min or OPEN, value, control.max or OPEN))
     if isinstance(control, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
         return isinstance(value, str) and value in control.options
     if isinstance(control, viser.GuiTextHandle):

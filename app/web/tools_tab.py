@@ -1,4 +1,4 @@
-"""The tools tab: the table of tools, the payload beyond the tool, and the wizard that measures it."""
+"""The tools tab: the tool in use, the table and its editor, the payload beyond the tool, and the wizard that measures it."""
 
 from collections.abc import Callable, Sequence
 
@@ -8,14 +8,15 @@ from app.web import svg
 from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.svg import Colour
+from app.web.tool_editor import ToolEditor
 from pendant.inputs import Command
 from pendant.load import Load
 from pendant.modes import Mode, Phase
 from pendant.payload_fit import LEAST
 from pendant.payload_wizard import Progress
 from pendant.tooling import Fitting
+from pendant.tools import Tool
 from sim.arm import Arm
-from sim.scenario import Scenario, table
 from sim.snapshot import Snapshot
 
 FARTHEST = 300.0
@@ -27,13 +28,14 @@ class ToolsTab:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop = loop
-        self._scenario: Scenario | None = None
+        self._table: tuple[Tool, ...] = ()
         self._fitting: Fitting | None = None
         self.now = Html(gui)
-        names = tuple(tool.name for tool in table(loop.scenario))
+        names = tuple(tool.name for tool in loop.tools)
         self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
         self.about = Html(gui)
         self.use = gui.add_button("Use this tool", color="gray")
+        self.editor = ToolEditor(gui, loop, arm)
         with gui.add_folder("Payload wizard"):
             self.progress = Html(gui)
             self.measure = gui.add_button("Measure this posture", icon=viser.Icon.SCALE)
@@ -52,9 +54,8 @@ class ToolsTab:
         decision = snapshot.decision
         locked = decision.mode in (Mode.FREE_DRIVE, Mode.RUN) or decision.phase is Phase.SEQUENCE
         wizard = decision.wizard
-        if self._loop.scenario is not self._scenario:
-            self._scenario = self._loop.scenario
-            self.tool.options = tuple(tool.name for tool in table(self._scenario))
+        if self._loop.tools != self._table:
+            self._tabulate(self._loop.tools)
         if decision.fitting is not None and (self._fitting is None or decision.fitting.number != self._fitting.number):
             self._take(decision.fitting)
         self._fitting = decision.fitting
@@ -63,6 +64,7 @@ class ToolsTab:
             self.now.show(svg.facts(_facts(decision.fitting, locked))),
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
+            self.editor.show(self._chosen(), locked),
             enable(self.use, not locked),
             enable(self.enter, not locked),
             enable(self.measure, decision.phase is Phase.OFF and not measuring),
@@ -70,6 +72,18 @@ class ToolsTab:
             enable(self.clear, wizard.postures > 0 and not measuring),
         ]
         return any(changed)
+
+    def _tabulate(self, tools: tuple[Tool, ...]) -> None:
+        """Another table: offer it; what was just added or renamed is chosen, else what was."""
+        before, names = self.tool.value, tuple(tool.name for tool in tools)
+        wanted = next((name for name in (self.editor.wanted, before) if name in names), names[0])
+        self._table, self.editor.wanted = tools, ""
+        self.tool.options = names
+        if self.tool.value != wanted:
+            self.tool.value = wanted
+
+    def _chosen(self) -> Tool | None:
+        return next((tool for tool in self._loop.tools if tool.name == self.tool.value), None)
 
     def _take(self, fitting: Fitting) -> None:
         """Another tool or payload: the controls say what it is."""
@@ -82,7 +96,7 @@ class ToolsTab:
 
     def _about(self) -> str:
         """What the table says of the chosen tool, unless it is the one in use."""
-        tool = next((tool for tool in table(self._loop.scenario) if tool.name == self.tool.value), None)
+        tool = self._chosen()
         if tool is None or (self._fitting is not None and tool.name == self._fitting.tool.name):
             return ""
         pairs = [("Tool centre point", _point(tool.tcp)), ("Mass", f"{tool.mass:.3f} kg"), ("Centre of mass", _point(tool.com))]

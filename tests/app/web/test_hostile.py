@@ -1,6 +1,7 @@
 """Every control of the page, used by those who may not, or as nobody may."""
 
 import contextlib
+import math
 import socket
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -45,6 +46,8 @@ def other_value(control: Any) -> Any:
         return not control.value
     if isinstance(control, viser.GuiSliderHandle | viser.GuiNumberHandle):
         return control.min if control.value == control.max else control.max
+    if isinstance(control, viser.GuiVector3Handle):
+        return control.min if tuple(control.value) == control.max else control.max
     if isinstance(control, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
         return control.options[-1] if control.value == control.options[0] else control.options[0]
     return "x"
@@ -54,6 +57,9 @@ def bad_values(control: Any) -> list[Any]:
     """Values of the right and of other types that the control must not take."""
     if isinstance(control, viser.GuiButtonHandle | viser.GuiCheckboxHandle):
         return ["x", 1.0, 0 if isinstance(control, viser.GuiCheckboxHandle) else False]
+    if isinstance(control, viser.GuiVector3Handle):
+        x, y, z = control.max
+        return [(x, y, z + 1e-3), (-x - 1e-3, y, z), x, "x", True]
     if isinstance(control, viser.GuiSliderHandle | viser.GuiNumberHandle):
         beyond = 1e-9 + 1e-6 * abs(control.max - control.min)
         return [control.min - beyond, control.max + beyond, "x", True]
@@ -132,6 +138,13 @@ def test_no_control_takes_a_value_that_it_does_not_offer(served: Served, join: J
     assert reasons["value not allowed"] > 100
 
 
+@pytest.mark.parametrize("value", [[], [0.0] * 4, [0.0, 0.0, "x"], [0.0, True, 0.0], [0.0, [0.0], 0.0], [math.nan] * 3])
+def test_three_numbers_are_three_numbers(served: Served, join: Join, untouched: None, value: list[Any]) -> None:
+    client = join()
+    client.set(served.docks.tools.editor.com._impl.uuid, value=value)
+    assert set(refused(served, 1)) <= {"not understood", "number out of bounds"}
+
+
 def test_no_disabled_control_takes_anything(served: Served, join: Join, loop: FakeLoop, monkeypatch: pytest.MonkeyPatch) -> None:
     client = join()
     monkeypatch.setattr(served, "draw", lambda: True)  # which would enable them again
@@ -159,7 +172,7 @@ def test_a_watcher_can_use_nothing_but_the_stop(served: Served, join: Join, unto
         watcher.drag(phase)
     reasons = refused(served, 2 * len(others) + 2)
     assert set(reasons) == {"not the operator", "disabled control", "not a hold button", "value not allowed"}
-    assert reasons["value not allowed"] == 1  # the upload button has none
+    assert reasons["value not allowed"] == 2  # the upload buttons have none
 
 
 def test_a_text_of_a_user_stays_a_text(served: Served, join: Join) -> None:
