@@ -81,11 +81,11 @@ def _delays(report: Report, outcomes: list[Outcome]) -> None:
             for name in RULES:
                 value = percentile([o.rules[name.value] for o in mine], 0.5)
                 report.row(f"{where}: rule {name} alone, p50", value, "ms")
-            for key in ("payload", "angle"):
-                groups: dict[float, list[float]] = defaultdict(list)
+            for key in ("payload", "angle", "reach"):
+                groups: dict[float | str, list[float]] = defaultdict(list)
                 for o in mine:
-                    groups[getattr(o.case, key)].append(o.delay)
-                text = ", ".join(f"{value:g}: {percentile(group, 0.5):.1f}" for value, group in sorted(groups.items()))
+                    groups[o.reach if key == "reach" else getattr(o.case, key)].append(o.delay)
+                text = ", ".join(f"{value}: {percentile(group, 0.5):.1f}" for value, group in sorted(groups.items(), key=str))
                 report.row(f"{where}: p50 by {key}", text, "ms")
     barred = [o for o in outcomes if BARS[o.case.stiffness][o.case.speed] is not None]
     report.row("right kind", sum(o.kind_right for o in barred) / len(barred), "", at_least=0.98)

@@ -19,6 +19,9 @@ from pendant.modes import Mode
 from pendant.settings import ContactUse
 
 DIED_OUT = 0.3  # true change of acceleration with which a slow contact is rightly called clamping [m/s²]
+REACHES = {"beyond 0.6 m": 0.6, "0.4 to 0.6 m": 0.4, "below 0.4 m": 0.0}
+"""Classes of postures, by the least distance of the tool from the base's axis [m]."""
+
 RULES = {rule: {other.value: other is rule for other in Rule} for rule in Rule}
 
 
@@ -30,6 +33,7 @@ class Outcome(NamedTuple):
     force: float  # true, at detection [N]
     kind_right: bool
     pose: float  # way from the pose at contact to the true one, through the same encoders [mm]
+    reach: str  # of the posture: the tool's distance from the base's axis at the contact
     rules: dict[str, float]
     scores: dict[str, np.ndarray]
     onset_row: int
@@ -69,6 +73,8 @@ def score(case: Approach) -> Outcome:
     found = [(1000.0 * (at - recording.onset), contact) for at, contact in recording.contacts if contact.part == "tool"]
     delay = delay_of([at for at, _ in found])
     force, right, pose = math.nan, False, math.nan
+    x, y, _ = recording.tip[first - 1]
+    reach = next(name for name, least in REACHES.items() if math.hypot(x, y) >= least)
     if math.isfinite(delay):
         row = int(np.argmin(np.abs(times - delay)))
         contact = found[0][1]
@@ -83,6 +89,7 @@ def score(case: Approach) -> Outcome:
         force,
         right,
         pose,
+        reach,
         {rule.value: alone(recording, rule, times) for rule in Rule},
         baselines.scores(recording).by_name,
         first,
