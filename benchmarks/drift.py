@@ -11,10 +11,11 @@ from benchmarks.common import Report, main, spread
 from benchmarks.drop import enter
 from benchmarks.hold import IDLE, MOUNTINGS, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
+from pendant.event_row import LEAVING
 from pendant.events import Kind
 from pendant.modes import Mode
 from pendant.settings import apply
-from pendant.table import LEAVING, TABLE
+from pendant.table import TABLE
 from sim.changes import SensorFault
 from sim.desk import Wishes
 

@@ -13,12 +13,13 @@ import numpy as np
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
+from pendant.event_row import Effect
 from pendant.events import Event, Kind
 from pendant.inputs import Command, Inputs
 from pendant.modes import Mode
 from pendant.program import JointMove, Program
 from pendant.settings import Settings, apply
-from pendant.table import TABLE, Effect
+from pendant.table import TABLE
 from sim.desk import Wishes
 from sim.simulation import Simulation
 from sim.touch import ZERO, Push

@@ -11,10 +11,11 @@ import numpy as np
 from app.library import load_arm
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
+from pendant.event_row import Effect
 from pendant.events import Event, Kind
 from pendant.modes import Mode
 from pendant.settings import Settings, apply
-from pendant.table import TABLE, Effect, render
+from pendant.table import TABLE, render
 from sim.changes import SensorFault
 from sim.desk import Wishes
 from sim.dynamics import Dynamics

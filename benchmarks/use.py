@@ -11,10 +11,11 @@ import numpy as np
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
+from pendant.event_row import LEAVING
 from pendant.events import Event, Kind
 from pendant.modes import Mode
 from pendant.settings import Settings, apply
-from pendant.table import LEAVING, TABLE
+from pendant.table import TABLE
 from sim.desk import Wishes
 from sim.simulation import Simulation
 from sim.touch import Pull, Push, Touch

@@ -3,6 +3,7 @@
 from pendant.activation import Activation
 from pendant.containment import Containment
 from pendant.decision import Remaining, WallState
+from pendant.event_row import LEAVING, Effect
 from pendant.events import Event, Kind, posture_text
 from pendant.free_arm import FreeArm
 from pendant.gate import Gate
@@ -17,7 +18,7 @@ from pendant.settings import Settings, ticks
 from pendant.soft_limits import Damping
 from pendant.sources import Presence
 from pendant.surroundings import Surroundings
-from pendant.table import LEAVING, TABLE, Effect
+from pendant.table import TABLE
 from pendant.zeroing import Zero
 
 ASKED_FOR = frozenset({Kind.LEFT_PRESS, Kind.LEFT_RELEASE, Kind.DEACTIVATED})

@@ -2,6 +2,7 @@
 
 from pendant.enabling import Grip, enables
 from pendant.estimate import Estimate
+from pendant.event_row import Effect
 from pendant.events import Event, Kind, Values
 from pendant.freedrive import ASKED_FOR, FreeDrive
 from pendant.inputs import Command
@@ -10,7 +11,7 @@ from pendant.program import ProgramState
 from pendant.sequencer import Sequencer
 from pendant.settings import Settings
 from pendant.stopping import Stopping
-from pendant.table import TABLE, Effect
+from pendant.table import TABLE
 from pendant.watch import Stillness
 
 STOPPING = {

@@ -14,9 +14,10 @@ from app.checked import load
 from app.prepare import prepare
 from app.runner import run, simulate
 from app.session import Session, bundled, find
+from pendant.event_row import Effect
 from pendant.events import Event
 from pendant.modes import TICK
-from pendant.table import TABLE, Effect
+from pendant.table import TABLE
 
 FILE = Path(__file__).parent / "golden.json"
 GRACE = 0.05

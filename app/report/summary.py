@@ -14,11 +14,12 @@ from app.log.layout import WORDS
 from app.log.reader import Log
 from app.report.regions import regions
 from app.watch import Verdict
+from pendant.event_row import Effect, Severity
 from pendant.events import Kind
 from pendant.modes import TICK, TICK_RATE
 from pendant.parameters import PARAMETERS
 from pendant.settings import describe
-from pendant.table import TABLE, Effect, Severity
+from pendant.table import TABLE
 
 SLOW = 0.25
 """Speed of tcp and elbow that hand guiding is commonly held to [m/s]."""

@@ -12,13 +12,14 @@ from app.web.way_back import WayBack
 from app.web.words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
 from pendant.containment import TETHER
 from pendant.decision import Decision
+from pendant.event_row import Clears, Effect, Severity
 from pendant.events import Event, Kind
 from pendant.inputs import Button, Command
 from pendant.limits import Monitored
 from pendant.modes import TICK_RATE, Mode, Phase
 from pendant.program import ProgramState
 from pendant.settings import Settings, limits_checksum
-from pendant.table import TABLE, Clears, Effect, Severity, render
+from pendant.table import TABLE, render
 from sim.arm import Arm
 from sim.snapshot import Snapshot
 

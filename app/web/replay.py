@@ -17,7 +17,7 @@ from app.web.scene import Scene
 from app.web.site import Site
 from app.web.svg import Colour
 from app.web.words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
-from pendant.table import Severity
+from pendant.event_row import Severity
 from sim.snapshot import Snapshot
 
 POINTS = 600

@@ -9,11 +9,12 @@ from app.web import svg
 from app.web.ghost import Ghost
 from app.web.html import Html
 from app.web.svg import Colour
+from pendant.event_row import Effect, Severity
 from pendant.events import Event, Kind, posture_of
 from pendant.freedrive import ASKED_FOR
 from pendant.modes import Mode
 from pendant.operation import way_back
-from pendant.table import TABLE, Effect, Severity
+from pendant.table import TABLE
 from sim.arm import Arm
 from sim.frames import matrix_from_quaternion
 from sim.snapshot import Snapshot

@@ -1,8 +1,8 @@
 """The words and colours of the pendant's states."""
 
 from app.web.svg import Colour
+from pendant.event_row import Severity
 from pendant.modes import Mode, Phase, Safety
-from pendant.table import Severity
 
 WORDS = {
     Mode.NORMAL: ("Holding still", Colour.GREEN),

@@ -9,13 +9,14 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from pendant.decision import Decision
+from pendant.event_row import LEAVING, Effect
 from pendant.events import Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.program import JointMove, Program
 from pendant.settings import Settings, apply, ticks
 from pendant.supervisor import Supervisor
-from pendant.table import LEAVING, TABLE, Effect
+from pendant.table import TABLE
 from tests.pendant.estimates import estimate
 
 PROGRAM = Program(steps=(JointMove(q=(0.0,) * 6),))

@@ -4,8 +4,9 @@ import string
 
 import pytest
 
+from pendant.event_row import LEAVING, Clears, Effect, Row, Severity
 from pendant.events import Event, Kind, Values
-from pendant.table import LEAVING, TABLE, Clears, Effect, Row, Severity, render
+from pendant.table import TABLE, render
 
 EXAMPLE: Values = {
     **dict.fromkeys(
