@@ -30,12 +30,9 @@ class Signal(NamedTuple):
 class Signals(NamedTuple):
     """One tick of all sources. While nobody looks at them they stay the rows of numbers that they come as."""
 
-    rows: NDArray[np.float64]  # (sources, fields of `Signal`)
-    valid: tuple[bool, ...]  # of each source
+    rows: NDArray[np.float64] = np.zeros((0, len(Signal._fields)))  # a source each, with the fields of `Signal`
+    valid: tuple[bool, ...] = ()  # of each source
 
     def each(self) -> tuple[Signal | None, ...]:
         """The signal of each source, None where it is not valid."""
         return tuple(Signal._make(row) if valid else None for row, valid in zip(self.rows.tolist(), self.valid, strict=True))
-
-
-NO_SIGNALS = Signals(np.zeros((0, len(Signal._fields))), ())
