@@ -55,7 +55,7 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
 
     Clear is a change of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an
     acceleration that free motion never changes so fast in the opposite direction. A hard contact is felt by the accelerometer
-    before the force has come to its sensor: for what is clear a change of F that is noise may lie along A by one deviation.
+    before the force has come to its sensor: where a change of F is within twice its noise, it may lie along A by a deviation.
     """
     if history.count <= age:
         return NOTHING
@@ -68,7 +68,7 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
     dot = fx * ax + fy * ay + fz * az
     ff = fx * fx + fy * fy + fz * fz
     along = dot >= 0.0 and limit.opposite
-    if along and (ff > limit.noise_force_sq or dot * dot > limit.deviation_sq * aa):
+    if along and (ff > 4.0 * limit.noise_force_sq or dot * dot > limit.deviation_sq * aa):
         return NOTHING
     clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit)
     if along or ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:

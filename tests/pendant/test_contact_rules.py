@@ -63,6 +63,8 @@ def test_difference_and_ratio(
         ((0.0, 0.0, 0.0), (-3.0, 0.0, 0.0), True),  # the accelerometer feels it first: F - m·A changes by 3 N, threshold 2.28 N
         ((-0.20, 0.0, 0.0), (-3.0, 0.0, 0.0), True),  # and F may seem to lie along A by one deviation, 0.212 N
         ((-0.22, 0.0, 0.0), (-3.0, 0.0, 0.0), False),
+        ((0.0, 1.26, 0.0), (-3.0, 0.0, 0.0), True),  # and across A by twice its noise, 1.273 N
+        ((0.0, 1.29, 0.0), (-3.0, 0.0, 0.0), False),
     ],
 )
 def test_a_difference_that_is_clear(df: tuple[float, float, float], da: tuple[float, float, float], clear: bool) -> None:
@@ -93,10 +95,10 @@ def test_the_angle_limit_of_what_is_clear(cosine: float, clear: bool) -> None:
 
 
 def test_without_an_angle_limit_what_is_clear_still_lies_against_the_acceleration() -> None:
-    use = msgspec.structs.replace(USE, angle=0.0)
-    across = stepped((0.1, 3.0, 0.0), (1.2, 0.0, 0.0))
+    use = msgspec.structs.replace(USE, angle=0.0, noise_limit=6.0)
+    across = stepped((0.1, 1.5, 0.0), (1.2, 0.0, 0.0))
     assert not hard(across, limit(use, mass=0.0)).clear
-    assert hard(stepped((-0.1, 3.0, 0.0), (1.2, 0.0, 0.0)), limit(use, mass=0.0)).clear
+    assert hard(stepped((-0.1, 1.5, 0.0), (1.2, 0.0, 0.0)), limit(use, mass=0.0)).clear
     assert hard(across, limit(msgspec.structs.replace(use, opposite=False), mass=0.0)).clear
 
 
