@@ -1,6 +1,6 @@
 """Rows of the event table: activation and entry of free-drive (FD-7 to FD-12), and pushes (FD-6a)."""
 
-from pendant.event_row import WALL, Clears, Effect, Row, Severity, denied, info, refused
+from pendant.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, denied, info, protected, refused
 from pendant.events import Kind
 
 ENTRY: dict[Kind, Row] = {
@@ -65,12 +65,12 @@ ENTRY: dict[Kind, Row] = {
     Kind.ENTRY_PREVENTED: denied(
         "Beyond its limit: {parameter}",
         "{part}: {value:.3f} {unit}, limit {limit:.3f} {unit}, {time:.2f} s into the check.",
-        ("parameter", "part", "value", "limit", "unit", "time"),
+        (*EXCESS, "time"),
     ),
     Kind.REFUSED_LIMIT: refused(
         "Free-drive refused: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go; check the payload and mounting.",
-        ("parameter", "part", "value", "limit", "unit"),
+        EXCESS,
     ),
     Kind.REFUSED_PAYLOAD: refused(
         "Free-drive refused: wrong payload or a push",
@@ -82,14 +82,10 @@ ENTRY: dict[Kind, Row] = {
         "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
         WALL,
     ),
-    Kind.SEQUENCE_STOPPED: Row(
-        Effect.PROTECTIVE_STOP,
-        Severity.STOP,
+    Kind.SEQUENCE_STOPPED: protected(
         "Protective stop: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go, check the payload, then reset.",
-        ("parameter", "part", "value", "limit", "unit"),
-        Clears.RESET,
-        cool_down=True,
+        EXCESS,
     ),
     Kind.RESIDUAL_GONE: Row(
         Effect.INFO,

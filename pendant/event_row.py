@@ -3,6 +3,8 @@
 from enum import IntEnum, StrEnum
 from typing import NamedTuple
 
+from pendant.limits import Excess
+
 
 class Effect(StrEnum):
     """What an event does to the mode; all that state machines ask of an event."""
@@ -58,6 +60,10 @@ WALL = ("wall", "part", "distance", "way", "x", "y", "z", "px", "py", "pz")
 where it cannot be told), the part's place [m]; both in B."""
 
 
+EXCESS = Excess._fields
+"""Values of an event of a limit."""
+
+
 def info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
     """Told, and nothing else."""
     return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
@@ -76,6 +82,11 @@ def left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Sev
 def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
     """Free-drive ends in STOP."""
     return Row(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
+
+
+def protected(headline: str, guidance: str, keys: tuple[str, ...], category: int = 2) -> Row:
+    """A protective stop of this category."""
+    return Row(Effect.PROTECTIVE_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True, category=category)
 
 
 def denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:

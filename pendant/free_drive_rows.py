@@ -1,6 +1,6 @@
 """Rows of the event table: free-drive while it lasts, and its leaving (FD-8a, FD-12 to FD-23)."""
 
-from pendant.event_row import WALL, Clears, Effect, Row, Severity, info, left, refused, stopped
+from pendant.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, info, left, refused, stopped
 from pendant.events import Kind
 
 FREE_DRIVE: dict[Kind, Row] = {
@@ -8,7 +8,7 @@ FREE_DRIVE: dict[Kind, Row] = {
     Kind.MANIPULATION: info(
         "The arm is guided",
         "{parameter}, {part}: {value:.2f} {unit}, limit {limit:.2f} {unit}.",
-        ("parameter", "part", "value", "limit", "unit"),
+        EXCESS,
     ),
     Kind.WAYPOINT: info("Waypoint registered", "In free-drive this counts as guiding the arm."),
     Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
@@ -61,13 +61,13 @@ FREE_DRIVE: dict[Kind, Row] = {
     Kind.LEFT_LIMIT: left(
         "Free-drive ended: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Guide it more gently.",
-        ("parameter", "part", "value", "limit", "unit"),
+        EXCESS,
         Severity.WARNING,
     ),
     Kind.STOPPED_LIMIT: stopped(
         "Stopped: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. See what happened, then reset.",
-        ("parameter", "part", "value", "limit", "unit"),
+        EXCESS,
     ),
     Kind.STOPPED_MOTION: stopped(
         "Stopped: the arm moved and nobody moved it",

@@ -1,18 +1,14 @@
 """Rows of the event table: safety inputs, sensors, stops and resets (FD-1)."""
 
-from pendant.event_row import Clears, Effect, Row, Severity, denied, info
+from pendant.event_row import EXCESS, Clears, Effect, Row, Severity, denied, info, protected
 from pendant.events import Kind
 
 SAFETY: dict[Kind, Row] = {
     # Safety (FD-1)
-    Kind.RUN_SENSORS_LOST: Row(
-        Effect.PROTECTIVE_STOP,
-        Severity.STOP,
+    Kind.RUN_SENSORS_LOST: protected(
         "Protective stop: joint sensors not valid",
         "The program needs {sensor}. Check it, then reset.",
         ("sensor",),
-        Clears.RESET,
-        cool_down=True,
     ),
     Kind.JOINT_SENSOR_LOST: denied(
         "Lost: {sensor} of {joint}", "{left}. End the motion and check it; free-drive needs it.", ("sensor", "joint", "left")
@@ -44,14 +40,10 @@ SAFETY: dict[Kind, Row] = {
         ("tcp", "elbow", "joint_speed"),
     ),
     Kind.REDUCED_OFF: info("Reduced speed off"),
-    Kind.REDUCED_EXCEEDED: Row(
-        Effect.PROTECTIVE_STOP,
-        Severity.STOP,
+    Kind.REDUCED_EXCEEDED: protected(
         "Protective stop: {parameter} in REDUCED",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Move it more slowly, then reset.",
-        ("parameter", "part", "value", "limit", "unit"),
-        Clears.RESET,
-        cool_down=True,
+        EXCESS,
         category=0,
     ),
     Kind.STOPPED: info(

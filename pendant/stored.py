@@ -3,7 +3,7 @@
 from collections import deque
 
 from pendant.estimate import Estimate
-from pendant.parameters import Reference
+from pendant.parameters import Reference, reference
 from pendant.schema import ticks
 from pendant.watch import WrenchMean
 
@@ -37,10 +37,7 @@ class Stored:
         if wrench_ok is not self._wrench:
             self._states.clear()
             self._wrench = wrench_ok
-        state = Reference(
-            tuple(estimate.p_BF.tolist()), mean.mean(), tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist())
-        )
-        self._states.append((estimate.tick, state))
+        self._states.append((estimate.tick, reference(estimate, False)._replace(wrench=mean.mean())))
 
     def forget(self) -> None:
         """What was kept is of another load or posture, or a sensor was out."""
