@@ -27,6 +27,8 @@ RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
 CORRELATED = 100.0  # ticks over which the deflection's error stays alike
 CONTACT = 2.5  # deviations between two ways that count as a contact
 CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
+SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
+REMEMBERED = 1500  # ticks of motion over which it is remembered how much they differed; before so many it does not count
 SETTLE_TICKS = 100  # after a contact, before its end is believed
 
 
@@ -39,9 +41,15 @@ class TransmissionTorque:
     the friction estimate, and by the whole stiction while the joint stands. A contact is where the rigid model differs from
     the deflection, or without it from the motor's way, by more than both allow.
 
+    The model's errors change fast, with accelerations that it does not see in time; the deflection's slowly, with the angle.
+    So the deflection is trusted as far as the two have agreed lately, in the mean over a third of a second, the model as far as
+    the rest of their difference was small (innovation-based adaptive estimation: Mehra, 1970). That is for the fusion alone:
+    agreement at the angles of now says little of the next ones, and what tells a hand from an error must not count on it.
+
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
+        external_deviation: standard deviation of `external` (n,) as far as the deflection makes it.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
@@ -59,10 +67,12 @@ class TransmissionTorque:
         self.correction = np.zeros((2, n))
         self.stiffer, self.offset = self.correction
         self._covariance = np.zeros((n, 2, 2))
+        # Model from deflection, slowly [N·m]; mean squares of that, and of the rest; ticks over which they were compared.
+        self._differ = np.zeros((4, n))
         self.forget()
         self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.ways, self.deviations = np.zeros((2, 3, n))
-        self.fused, self.deviation, self.external = np.zeros((3, n))
+        self.fused, self.deviation, self.external, self.external_deviation = np.zeros((4, n))
         self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
         self.contact = False
         self._quiet = SETTLE_TICKS
@@ -73,6 +83,7 @@ class TransmissionTorque:
         self._covariance[:] = 0.0
         self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
         self._covariance[:, 1, 1] = self._constants[1] ** 2
+        self._differ[:] = 0.0
 
     def update(
         self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]
@@ -90,20 +101,23 @@ class TransmissionTorque:
             use: which of `WAYS` may be used, of which joint (3, n).
         """
         rubbing = (friction_deviation, stiction)
-        learned = (self.correction, self._covariance, self._walk)
+        learned = (self.correction, self._covariance, self._walk, self._differ)
         touched = _compare(
             self.ways, self.deviations, rubbing, acceleration, self._constants, self._swing, learned, use,
-            moving and self._quiet >= SETTLE_TICKS, self._model, self.external,
+            moving and self._quiet >= SETTLE_TICKS, self._model, self.external, self.external_deviation,
         )  # fmt: skip
         self._quiet = 0 if touched else self._quiet + 1
         self.contact = self._quiet < SETTLE_TICKS
-        _fuse(self.ways, self.deviations, self._model, self.external, self.contact, use, self.fused, self.deviation)
+        errors = (self._model, self._constants[0], self._differ)
+        _fuse(self.ways, self.deviations, errors, self.external, self.contact, use, self.fused, self.deviation)
 
 
 @numba.njit(cache=True)
-def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external) -> bool:
+def _compare(
+    ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
+) -> bool:  # fmt: skip
     """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
-    correction, covariance, walk = learned
+    correction, covariance, walk, differ = learned
     friction_deviation, stiction = rubbing
     n = external.size
     swing[0] *= LATELY
@@ -117,7 +131,11 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
         ways[1, i] += x * correction[0, i] + correction[1, i]
         model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
-        deviations[1, i] = np.sqrt(known + (RIPPLE_LEFT * ripple) ** 2 + (0.3 * floor) ** 2)
+        gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
+        external_deviation[i] = np.sqrt(gear + noise)
+        if use[0, i] and differ[3, i] == REMEMBERED:
+            gear = min(gear, differ[1, i])
+        deviations[1, i] = np.sqrt(gear + noise)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
         external[i] = 0.0
@@ -135,6 +153,10 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
             continue
         P, ripple = covariance[i], constants[1, i]
         x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
+        differ[3, i] = min(differ[3, i] + 1.0, REMEMBERED)
+        differ[0, i] += SLOWLY * (external[i] - differ[0, i])
+        differ[1, i] += (differ[0, i] ** 2 - differ[1, i]) / differ[3, i]
+        differ[2, i] += ((external[i] - differ[0, i]) ** 2 - differ[2, i]) / differ[3, i]
         P[0, 0] += walk[i, 0]
         P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
@@ -151,10 +173,15 @@ def _compare(ways, deviations, rubbing, acceleration, constants, swing, learned,
 
 
 @numba.njit(cache=True)
-def _fuse(ways, deviations, model, external, contact, use, fused, deviation) -> None:
+def _fuse(ways, deviations, errors, external, contact, use, fused, deviation) -> None:
+    model, floor, differ = errors
     for i in range(fused.size):
         outside = external[i] if contact else 0.0
-        deviations[0, i] = np.sqrt(model[i] ** 2 + outside**2)
+        variance = model[i] ** 2
+        if use[1, i] and differ[3, i] == REMEMBERED:
+            # Without an output angle, though, the model's acceleration is made of this torque itself.
+            variance = min(variance, (LINK_MASS * ways[0, i]) ** 2 + floor[i] ** 2 + differ[2, i])
+        deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = 0.0, 0.0
         for k in range(3):
             if use[k, i]:

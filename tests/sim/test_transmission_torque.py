@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pendant.modes import TICK
 from sim.transmission_torque import SETTLE_TICKS, TransmissionTorque
 from tests.sim.arms import UR5E
 
@@ -103,6 +104,41 @@ def test_a_wrong_stiffness_is_learned_while_moving_and_not_at_rest() -> None:
         errors.append(np.abs(module.ways[1] - 10.0).max())
     assert errors[0] < 0.3
     assert errors[1] > 1.0
+
+
+def test_the_deflection_is_trusted_as_far_as_it_has_slowly_agreed_with_the_model() -> None:
+    """The model's errors are fast, 0.8 % of the rated torque at 10 Hz; a slow one in the deflection counts against that."""
+    rated = np.array(UR5E.limits.torque)
+    deviations, hands = {}, {}
+    for slow in (0.0, 0.003):
+        gears = Gears()
+        for k in range(10000):
+            fast = 0.008 * rated * np.sin(2.0 * np.pi * 10.0 * TICK * k)
+            wrong = slow * rated * np.sin(2.0 * np.pi * 0.3 * TICK * k)
+            gears.tick(fast, wrong, 0.0, friction_deviation=9.0, acceleration=20.0, moving=True)
+        deviations[slow] = gears.module.deviations[1] / rated
+        hands[slow] = gears.module.external_deviation / rated
+    first = Gears().tick(0.0, 0.0, 0.0).deviations[1] / rated
+    assert (deviations[0.0] < 0.5 * first).all()
+    assert (deviations[0.0] > 0.001).all(), "its noise stays"
+    assert (deviations[0.003] > 1.5 * deviations[0.0]).all()
+    assert (deviations[0.003] <= first * 1.01).all(), "and never less than was believed at first"
+    np.testing.assert_allclose(hands[0.003], hands[0.0], rtol=0.01)
+    assert (hands[0.0] > deviations[0.0]).all(), "that they agreed makes no hand of a smaller torque"
+
+
+def test_the_model_is_trusted_as_far_as_it_has_quickly_agreed_with_the_deflection() -> None:
+    """Accelerations that shake the arm count against it only as far as they were seen to make it wrong."""
+    deviations = {}
+    for wrong in (0.0, 0.01):
+        gears = Gears()
+        for k in range(5000):
+            fast = wrong * np.array(UR5E.limits.torque) * np.sin(2.0 * np.pi * 10.0 * TICK * k)
+            gears.tick(fast, 0.0, 0.0, friction_deviation=9.0, acceleration=20.0, moving=True)
+        deviations[wrong] = gears.module.deviations[0].copy()
+    assert (deviations[0.0] < 0.8 * deviations[0.01])[:5].all(), "a bare wrist has nothing to accelerate"
+    alone = gears.tick(0.0, 0.0, 0.0, friction_deviation=9.0, acceleration=20.0, use=only(0, 2)).deviations[0]
+    assert (alone[:3] > 1.5 * deviations[0.0][:3]).all(), "without an output angle it is made of this torque itself"
 
 
 def test_a_sudden_external_torque_is_a_contact_until_it_has_been_gone_for_a_while() -> None:
