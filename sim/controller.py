@@ -46,7 +46,6 @@ class Controller:
         self.motor = MotorController(arm, calibration)
         self._dynamics = dynamics
         self._law: Law | None = None
-        self._everywhere = np.ones(arm.n, dtype=np.bool_)
         self._nothing = np.zeros(arm.n)
         self._followed = False  # a motion was followed before the arm was told to brake
         self._blind = False  # some joint had no motor angle in the last tick
@@ -126,7 +125,6 @@ class Controller:
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
         # What stands in the way of a motion that is stopped must not be pushed on: to take that back would need seconds.
-        stopped = decision.law is Law.BRAKE and self._followed and estimate.touched
-        waits = self._everywhere if stopped else self.motor.limited
-        self.feedback.add(reference, desired, estimate, use, waits, torque, start, sticking, stiffer)
+        waits = decision.law is Law.BRAKE and self._followed and estimate.touched
+        self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
         return torque

@@ -27,6 +27,7 @@ bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and 
 PRESLIDING = 0.4e-3
 """Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
 
+BACK = 0.02  # of the torque beyond the motor's limits, a tick: as fast as the integral itself
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 # The optional terms are gentle: they show their effect without touching the loop's margins.
 OUTPUT_SPEED = 0.05  # of the motor-speed gain
@@ -41,8 +42,9 @@ OPTIONAL = ("theta_acceleration", "q_speed", "q_acceleration", "motor_torque", "
 class Feedback:
     """Motor torque from the errors of theta, q, their speeds and accelerations, motor torque, and the tool centre point.
 
-    The integral acts on the output angle: where the arm shall be. It waits inside the dead band, and where the motor's limits
-    are reached (AF-6).
+    The integral acts on the output angle: where the arm shall be. It waits inside the dead band and while it is told
+    to. Where the motor's limits are reached it goes back until no more is asked than they allow (AF-6; back-calculation: Fertik, Ross, 1967): an integral that
+    merely waited would wind up in every tick in which the limit is just not reached, and not unwind in the others.
 
     At rest a joint's friction may hold anything up to its breakaway torque, and the integral grows against it. That part is let
     go while the joint slides its first tenths of a milliradian, for there the friction that is fed forward takes its place.
@@ -71,7 +73,8 @@ class Feedback:
         desired: Array,
         estimate: Estimate,
         use: JointControl,
-        limited: NDArray[np.bool_],
+        excess: Array,
+        waits: bool,
         torque: Array,
         start: Array | None,
         sticking: Array,
@@ -84,7 +87,8 @@ class Feedback:
             desired: transmission torque (n,) [N·m] that it needs; it bends the spring.
             estimate: of this tick.
             use: which terms are on.
-            limited: (n,) where the motor gave less than it was asked for, so that the integral waits.
+            excess: (n,) [N·m] what was asked of the motor beyond what it gave, 0 where it gave all.
+            waits: whether the integral shall keep its value, but for what goes back.
             torque: (n,) what the other controllers ask for.
             start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
                 would do at once, so that taking over moves nothing by itself.
@@ -107,7 +111,7 @@ class Feedback:
         begin = torque if start is None else start
         _correct(
             then.q, then.qd, load, reference.qd, sticking, stiffer, theta, theta_d, q, self._gains, self._on, self._dead,
-            limited, start is not None, begin, self._memory, torque,
+            excess, waits, start is not None, begin, self._memory, torque,
         )  # fmt: skip
 
     def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
@@ -136,7 +140,8 @@ class Feedback:
 
 @numba.njit(cache=True)
 def _correct(
-    q_ref, qd_ref, load, qd_now, sticking, stiffer, theta, theta_d, q, gains, on, dead_band, limited, fresh, begin, memory, torque
+    q_ref, qd_ref, load, qd_now, sticking, stiffer, theta, theta_d, q, gains, on, dead_band, excess, waits, fresh, begin, memory,
+    torque,
 ) -> None:  # fmt: skip
     with_theta, with_speed, with_integral = on
     for i in range(torque.size):
@@ -152,7 +157,9 @@ def _correct(
             if fresh:
                 memory[0, i], memory[1, i] = begin[i] - total, 0.0
             error = q_ref[i] - q[i]
-            step = gains[3, i] * error if abs(error) > dead_band and not limited[i] else 0.0
+            step = -BACK * excess[i]
+            if not waits and excess[i] * error <= 0.0 and abs(error) > dead_band:
+                step += gains[3, i] * error
             if qd_now[i] == 0.0:
                 memory[1, i] += step
             else:

@@ -18,7 +18,7 @@ class MotorController:
 
     Attributes:
         command: motor torque that the last current gives, as believed (n,) [N·m].
-        limited: where the last command was cut (n,), so that nothing winds up behind it.
+        excess: what was asked beyond the last command (n,) [N·m], 0 where nothing was cut: it lets nothing wind up behind it.
     """
 
     def __init__(self, arm: Arm, calibration: Calibration) -> None:
@@ -29,17 +29,17 @@ class MotorController:
         largest = np.minimum(np.array(motors.current) / per_torque, np.array(arm.limits.torque) + friction)
         self._limits = np.stack([per_torque, largest, np.array(arm.limits.speed)])
         self.command = np.zeros(arm.n)
-        self.limited = np.zeros(arm.n, dtype=np.bool_)
+        self.excess = np.zeros(arm.n)
 
     def current(self, torque: Array, speed: Array) -> Array:
         """Motor currents (n,) [A] for a wanted motor torque (n,) [N·m] at motor speeds (n,) [rad/s]."""
         current = np.empty_like(torque)
-        _limit(torque, speed, self._limits, self.command, self.limited, current)
+        _limit(torque, speed, self._limits, self.command, self.excess, current)
         return current
 
 
 @numba.njit(cache=True)
-def _limit(torque, speed, limits, command, limited, current) -> None:
+def _limit(torque, speed, limits, command, excess, current) -> None:
     for i in range(torque.size):
         per_torque, largest, fastest = limits[0, i], limits[1, i], limits[2, i]
         low, high = -largest, largest
@@ -51,6 +51,6 @@ def _limit(torque, speed, limits, command, limited, current) -> None:
             else:
                 low *= fade
         value = min(max(torque[i], low), high)
-        limited[i] = value != torque[i]
+        excess[i] = torque[i] - value
         command[i] = value
         current[i] = value * per_torque

@@ -14,7 +14,7 @@ from sim.references import DELAY
 from tests.sim.arms import UR5E
 from tests.sim.control import EXACT, N, dynamics, estimate
 
-FREE = np.zeros(N, dtype=bool)
+FREE = np.zeros(N)
 ZERO = np.zeros(N)
 TERMS = ("theta", "theta_speed", "theta_acceleration", "q", "q_speed", "q_acceleration", "motor_torque", "tcp_pose", "tcp_speed")
 TCP = np.array([0.0, 0.0, 0.1])
@@ -39,7 +39,7 @@ STANDING = resting(ZERO)
 def correction(use: JointControl, seen: Estimate, reference: Reference = STANDING, load: np.ndarray = ZERO) -> np.ndarray:
     """What a fresh feedback adds to nothing."""
     torque = np.zeros(N)
-    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, torque, None, ZERO, ZERO)
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, False, torque, None, ZERO, ZERO)
     return torque
 
 
@@ -67,7 +67,7 @@ def test_a_spring_learned_to_be_stiffer_bends_less() -> None:
     bent = load * COMPLIANCE / (1.0 + stiffer)
     torque = np.zeros(N)
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    module.add(STANDING, load, estimate(theta=bent), only("theta"), FREE, torque, None, ZERO, stiffer)
+    module.add(STANDING, load, estimate(theta=bent), only("theta"), FREE, False, torque, None, ZERO, stiffer)
     np.testing.assert_allclose(torque, 0.0, atol=1e-12)
 
 
@@ -81,7 +81,8 @@ def test_output_speed_and_acceleration() -> None:
 def test_motor_torque_against_what_was_asked_for() -> None:
     torque = np.full(N, 5.0)
     seen = estimate(tau_m=np.linspace(0.0, 10.0, N))
-    Feedback(UR5E, EXACT, dynamics(), TCP).add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, torque, None, ZERO, ZERO)
+    module = Feedback(UR5E, EXACT, dynamics(), TCP)
+    module.add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, False, torque, None, ZERO, ZERO)
     np.testing.assert_allclose(torque, 5.0 + 0.1 * (5.0 - np.linspace(0.0, 10.0, N)))
 
 
@@ -107,7 +108,7 @@ def test_each_measurement_is_compared_with_its_own_reference() -> None:
         late = max(k - DELAY, 0)
         torque = np.zeros(N)
         seen = estimate(theta=np.full(N, 0.01 * late), q=np.full(N, 0.01 * late))
-        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, torque, None, ZERO, ZERO)
+        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, False, torque, None, ZERO, ZERO)
         assert np.abs(torque).max() < 1e-9
 
 
@@ -117,10 +118,21 @@ def test_the_integral_grows_with_the_output_error_and_waits_in_the_dead_band() -
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     for _ in range(10):
         torque = np.zeros(N)
-        module.add(resting(error), ZERO, estimate(), only("q"), FREE, torque, None, ZERO, ZERO)
+        module.add(resting(error), ZERO, estimate(), only("q"), FREE, False, torque, None, ZERO, ZERO)
     expected = 10 * 0.002 * ROTOR * OMEGA**2 / 0.1 * error
     expected[:3] = 0.0
     np.testing.assert_allclose(torque, expected)
+
+
+def test_the_integral_keeps_its_value_while_it_is_told_to_wait() -> None:
+    """What stands in the way of a motion that is stopped is not pushed on."""
+    module, pushes = Feedback(UR5E, EXACT, dynamics(), TCP), []
+    for waits in (False, True, True, False):
+        torque = np.zeros(N)
+        module.add(resting(np.full(N, 0.01)), ZERO, estimate(), only("q"), FREE, waits, torque, None, ZERO, ZERO)
+        pushes.append(torque)
+    step = 0.002 * ROTOR * OMEGA**2 / 0.1 * 0.01
+    np.testing.assert_allclose(pushes, np.outer([1, 1, 1, 2], step))
 
 
 def moving(q: np.ndarray, speed: float) -> Reference:
@@ -133,33 +145,38 @@ def test_what_the_integral_won_against_stiction_goes_over_to_the_friction_fed_fo
     torque = np.zeros(N)
     while torque.min() < 5.0:
         torque = np.zeros(N)
-        module.add(resting(np.full(N, 0.002)), ZERO, estimate(), only("q"), FREE, torque, None, sticking, ZERO)
+        module.add(resting(np.full(N, 0.002)), ZERO, estimate(), only("q"), FREE, False, torque, None, sticking, ZERO)
     won = torque.copy()
     there = estimate(q=np.full(N, 0.002))
     for _ in range(50):
         torque = np.zeros(N)
-        module.add(moving(np.full(N, 0.002), 0.02), ZERO, there, only("q"), FREE, torque, None, sticking, ZERO)
+        module.add(moving(np.full(N, 0.002), 0.02), ZERO, there, only("q"), FREE, False, torque, None, sticking, ZERO)
     np.testing.assert_allclose(torque, won - 2.0, atol=0.05)
 
 
 def test_a_load_that_comes_bends_the_spring_at_a_speed() -> None:
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    module.add(resting(ZERO), ZERO, estimate(), only("theta_speed"), FREE, np.zeros(N), ZERO, ZERO, ZERO)
+    module.add(resting(ZERO), ZERO, estimate(), only("theta_speed"), FREE, False, np.zeros(N), ZERO, ZERO, ZERO)
     for load in (10.0, 20.0, 30.0, 40.0):
         torque = np.zeros(N)
-        module.add(resting(ZERO), np.full(N, load), estimate(), only("theta_speed"), FREE, torque, None, ZERO, ZERO)
+        module.add(resting(ZERO), np.full(N, load), estimate(), only("theta_speed"), FREE, False, torque, None, ZERO, ZERO)
     np.testing.assert_allclose(torque, 2 * 1.25 * ROTOR * OMEGA * COMPLIANCE * 10.0 / 0.002)
 
 
-def test_the_integral_waits_where_the_motor_is_at_its_limit() -> None:
-    """AF-6: no wind-up."""
-    limited = np.array([True, False, True, False, True, False])
-    module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    for _ in range(100):
-        torque = np.zeros(N)
-        module.add(resting(np.full(N, 0.1)), ZERO, estimate(), only("q"), limited, torque, None, ZERO, ZERO)
-    assert (torque[limited] == 0.0).all()
-    assert (torque[~limited] > 1.0).all()
+def test_the_integral_goes_back_where_more_is_asked_than_the_motor_gives() -> None:
+    """AF-6: a limit of 5 N·m. What is asked settles there instead of winding up, and leaves it as the error does."""
+    limit = np.array([5.0, 1e9, 5.0, 1e9, 5.0, 1e9])
+    module, excess, torque = Feedback(UR5E, EXACT, dynamics(), TCP), np.zeros(N), np.zeros(N)
+    step = 0.1 * 0.002 / 0.1 * ROTOR * OMEGA**2  # of the integral in a tick
+    for error, ticks in ((0.1, 100), (-0.02, 100)):
+        for _ in range(ticks):
+            torque = np.zeros(N)
+            module.add(resting(np.full(N, error)), ZERO, estimate(), only("q"), excess, False, torque, None, ZERO, ZERO)
+            excess = np.where(torque > limit, torque - limit, 0.0)
+        if error > 0.0:
+            assert (torque[limit < 1e9] < 5.0 + 1.01 * step[limit < 1e9]).all()
+            assert (torque[limit > 1e9 - 1.0] > 50.0 * step[limit > 1e9 - 1.0]).all()
+    assert (torque[limit < 1e9] < 5.0 - 10.0 * 0.1 * step[limit < 1e9]).all()
 
 
 def test_taking_over_asks_for_the_feed_forward_alone() -> None:
@@ -167,7 +184,7 @@ def test_taking_over_asks_for_the_feed_forward_alone() -> None:
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     seen = estimate(theta=np.linspace(-0.01, 0.01, N), theta_d=np.full(N, 0.3))
     torque, fed = np.linspace(1.0, 9.0, N), np.linspace(2.0, -4.0, N)
-    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, torque, fed, ZERO, ZERO)
+    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, False, torque, fed, ZERO, ZERO)
     np.testing.assert_allclose(torque, fed)
 
 
@@ -177,7 +194,7 @@ def test_switches_may_change_from_tick_to_tick() -> None:
     sums = []
     for use in (only("theta"), only(), only("theta")):
         torque = np.zeros(N)
-        module.add(resting(ZERO), ZERO, seen, use, FREE, torque, None, ZERO, ZERO)
+        module.add(resting(ZERO), ZERO, seen, use, FREE, False, torque, None, ZERO, ZERO)
         sums.append(float(torque.sum()))
     assert sums[0] == sums[2] > 0.0
     assert sums[1] == 0.0

@@ -18,14 +18,14 @@ def test_small_torques_pass_as_they_are() -> None:
     wanted = np.array([10.0, -20.0, 5.0, -3.0, 2.0, 1.0])
     np.testing.assert_allclose(module.current(wanted, REST) * PER_AMPERE, wanted)
     np.testing.assert_allclose(module.command, wanted)
-    assert not module.limited.any()
+    assert (module.excess == 0.0).all()
 
 
 def test_the_torque_limit_leaves_room_for_friction() -> None:
     module = MotorController(UR5E, EXACT)
     sign = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
     np.testing.assert_allclose(module.current(1000.0 * sign, REST) * PER_AMPERE, USEFUL * sign)
-    assert module.limited.all()
+    np.testing.assert_allclose(module.excess, (1000.0 - USEFUL) * sign)
 
 
 def test_a_smaller_current_limit_comes_first() -> None:
