@@ -49,7 +49,7 @@ class TransmissionTorque:
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
-        external_deviation: standard deviation of `external` (n,) as far as the deflection makes it.
+        external_deviation: standard deviation of `external` at rest (n,): errors of the deflection and of the model's masses.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
@@ -129,10 +129,11 @@ def _compare(
         floor, ripple, least, inertia = constants[0, i], constants[1, i], constants[2, i], constants[3, i]
         P, x, dynamics = covariance[i], ways[1, i], ways[0, i]
         ways[1, i] += x * correction[0, i] + correction[1, i]
-        model[i] = np.sqrt((LINK_MASS * dynamics) ** 2 + floor**2 + (shaking * inertia) ** 2)
+        rigid = (LINK_MASS * dynamics) ** 2 + floor**2
+        model[i] = np.sqrt(rigid + (shaking * inertia) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
         gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
-        external_deviation[i] = np.sqrt(gear + noise)
+        external_deviation[i] = np.sqrt(gear + noise + rigid)
         if use[0, i] and differ[3, i] == REMEMBERED:
             gear = min(gear, differ[1, i])
         deviations[1, i] = np.sqrt(gear + noise)

@@ -127,6 +127,14 @@ def test_the_deflection_is_trusted_as_far_as_it_has_slowly_agreed_with_the_model
     assert (hands[0.0] > deviations[0.0]).all(), "that they agreed makes no hand of a smaller torque"
 
 
+def test_a_heavy_load_may_hide_a_small_external_torque() -> None:
+    """Masses are known to 2 %: of 100 N·m that the links weigh, 2 N·m may be nobody's, however well the gear is known."""
+    light, heavy = (Gears().tick(load, load, load) for load in (0.0, 100.0))
+    gear = np.sqrt(np.maximum(heavy.deviations[1] ** 2 - light.deviations[1] ** 2, 0.0))
+    more = np.sqrt(heavy.external_deviation**2 - light.external_deviation**2)
+    np.testing.assert_allclose(more, np.hypot(gear, 0.02 * 100.0))
+
+
 def test_the_model_is_trusted_as_far_as_it_has_quickly_agreed_with_the_deflection() -> None:
     """Accelerations that shake the arm count against it only as far as they were seen to make it wrong."""
     deviations = {}
