@@ -42,9 +42,10 @@ OPTIONAL = ("theta_acceleration", "q_speed", "q_acceleration", "motor_torque", "
 class Feedback:
     """Motor torque from the errors of theta, q, their speeds and accelerations, motor torque, and the tool centre point.
 
-    The integral acts on the output angle: where the arm shall be. It waits inside the dead band and while it is told
-    to. Where the motor's limits are reached it goes back until no more is asked than they allow (AF-6; back-calculation: Fertik, Ross, 1967): an integral that
-    merely waited would wind up in every tick in which the limit is just not reached, and not unwind in the others.
+    The integral acts on the output angle: where the arm shall be. It waits inside the dead band, and while it is told to. Where
+    the motor's limits are reached it goes back until no more is asked than they allow (AF-6; back-calculation: Fertik, Ross,
+    1967): an integral that merely waited would wind up in every tick in which the limit is just not reached, and not unwind in
+    the others.
 
     At rest a joint's friction may hold anything up to its breakaway torque, and the integral grows against it. That part is let
     go while the joint slides its first tenths of a milliradian, for there the friction that is fed forward takes its place.
