@@ -57,7 +57,7 @@ class Panel:
         self._settings: Settings | None = None
         self._digest = ""
         gui = server.gui
-        gui.set_panel_label(f"pendant · {arm.title}")
+        gui.set_panel_label(arm.title)  # more does not fit
         self.light = Html(gui)
         self.free_drive = gui.add_button(HOLD, color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
         self.rings = Html(gui)

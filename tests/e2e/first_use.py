@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, Page
 
 from pendant.events import Event, Kind
 from pendant.modes import Mode
-from tests.e2e.cell import Cell
+from tests.e2e.cell import Array, Cell
 from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_free_drive, hold_until
 
 WEIGHT = 2.0
@@ -63,18 +63,29 @@ class FirstUse:
         """Free-drive on, two moves, and a waypoint before, between and after them."""
         cell, page = self.cell, self.page
         self.register(1)
-        enter_free_drive(page, cell)
         for number, way in ((2, (20.0, -90.0)), (3, (70.0, 20.0))):
             before = cell.position("wrist_3")
-            self.drag(way, lambda before=before: float(np.linalg.norm(cell.position("wrist_3") - before)) > 0.05, "it follows")
+            self.drag(way, lambda before=before: self.away(before) > 0.05, "it follows", self.be_free)
             if number == 2:
                 self.see("guided")
             self.let_go()
             cell.pass_time(0.3)
             self.register(number)
+        self.be_free()
         page.get_by_role("button", name="Leave free-drive").click()
         cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left")
         self.see("registered")
+
+    def be_free(self) -> None:
+        """Have free-drive on. A page that stalls lets go of a moving arm, which may end it with a stop (FD-19): begin again."""
+        cell = self.cell
+        if cell.loop.latest().decision.mode is Mode.FREE_DRIVE:
+            return
+        if cell.loop.latest().decision.mode is Mode.STOP:
+            self.page.get_by_role("button", name="Reset").click()
+            cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
+        cell.pass_time(COOL_DOWN)
+        enter_free_drive(self.page, cell)
 
     def run_program(self) -> None:
         """The waypoints, one after the other."""
@@ -142,13 +153,16 @@ class FirstUse:
         assert float(row["force"]) == float(event.values["force"])
         return text
 
-    def drag(self, by: tuple[float, float], true: Callable[[], bool], what: str) -> None:
-        """Drag the wrist by so many pixels until something is true.
+    def drag(
+        self, by: tuple[float, float], true: Callable[[], bool], what: str, ready: Callable[[], None] = lambda: None
+    ) -> None:
+        """Drag the wrist by so many pixels until something is true. `ready` is called before each attempt.
 
         A page that is drawn late may still show the arm where it was, and one that stalls lets go (FD-23): take hold again then.
         """
         cell = self.cell
         for _ in range(5):
+            ready()
             cell.drag(self.page, 0, cell.position("wrist_3"), by)
             start, held = cell.loop.latest().tick, False
             while True:
@@ -162,6 +176,10 @@ class FirstUse:
                 self.page.wait_for_timeout(20)
             self.page.mouse.up()
         pytest.fail(f"dragged in vain: {what}; {cell.told()}")
+
+    def away(self, before: Array) -> float:
+        """How far the wrist is from a point of W [m]."""
+        return float(np.linalg.norm(self.cell.position("wrist_3") - before))
 
     def strongest(self) -> float:
         """The largest force of a hand [N]."""
