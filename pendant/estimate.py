@@ -109,3 +109,11 @@ class Estimate:
             self.load_mass,
             self.singularity,
         )
+
+
+def acceleration_felt(estimate: Estimate) -> tuple[float, float, float]:
+    """What the flange's accelerometer feels beyond gravity, axes of B [m/s²]."""
+    x, y, z = estimate.a_F.tolist()
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
+    gx, gy, gz = estimate.g_B.tolist()
+    return xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz

@@ -57,14 +57,15 @@ class Gauge:
         self._allowed = allowed
         self._beyond = 0  # ticks in a row beyond
 
-    def judge(self, value: float, part: str) -> bool:
-        """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed."""
+    def judge(self, value: float, part: str, patience: float = 1.0) -> bool:
+        """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed, of which `patience` is
+        the share that is left (FD-12b)."""
         self.value, self.part = value, part
         if self.low <= value <= self.high:
             self._beyond = 0
             return False
         self._beyond += 1
-        return self._beyond > self._allowed
+        return self._beyond > self._allowed * patience
 
     @property
     def limit(self) -> float:

@@ -80,6 +80,7 @@ class Operation:
         "_since",
         "_soft",
         "_stepped",
+        "_twist",
         "suspect",
     )
 
@@ -103,7 +104,8 @@ class Operation:
         self._joints, self._rated = joints, rated
         self._since: Reference = reference(estimate, False)
         self._offset = turned_back(flat(estimate.R_BF), (baseline[0], baseline[1], baseline[2]))
-        self._soft = SoftLimits(settings)
+        self._soft = SoftLimits(settings, estimate)
+        self._twist = turned_back(flat(estimate.R_BF), (baseline[3], baseline[4], baseline[5]))
         self._on = settings.unexplained
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
@@ -128,6 +130,7 @@ class Operation:
             self._followed,
             self.suspect,
             self._offset,
+            self._twist,
             self._since,
         )
         return (*own, self._monitor.memory, self._soft.memory)
@@ -153,13 +156,23 @@ class Operation:
         else:
             self._stepped, self._followed, self.suspect = 0, NOTHING_FOLLOWS, False
         soft = self._soft
-        soft.step(estimate)
+        if soft.pushed:
+            soft.step(estimate, norm(hand.user), self._torque(estimate) if use_wrench else 0.0)
+        else:
+            soft.step(estimate)
         parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.share))
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
         return self._moved(estimate, hand, driven) if self._on.motion else None
+
+    def _torque(self, estimate: Estimate) -> float:
+        """The hand's torque: its change since before entry, with an offset that turns with the flange [N·m]."""
+        x, y, z = estimate.F_user.tolist()[3:]
+        ox, oy, oz = self._twist
+        x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
+        return norm((x - ox, y - oy, z - oz))
 
     def _moved(self, estimate: Estimate, hand: Hand, driven: bool) -> Ending | None:
         """Motion that nobody causes."""

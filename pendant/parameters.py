@@ -4,7 +4,8 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from pendant.estimate import Estimate
+from pendant.dynamic_limits import WHOLE, Shares
+from pendant.estimate import Estimate, acceleration_felt
 from pendant.limits import Gauge, Monitored
 from pendant.residual import Split
 from pendant.settings import Limit, Section, ticks
@@ -30,56 +31,65 @@ class View(NamedTuple):
     joints: tuple[str, ...]
     scale: tuple[float, ...]  # of the joint torque limits, for each joint
     share: float  # of a joint's load torque by which its limit rises
-    speed_share: float = 1.0  # of the limits on speed that is left (FD-12b)
+    shares: Shares = WHOLE  # of the limits that are left (FD-12b)
     heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
 
 
 Reader = Callable[[View, Gauge], tuple[float, str]]
 
 
-def _flange_displacement(view: View, _: Gauge) -> tuple[float, str]:
+def _flange_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.p_BF.tolist()
     x0, y0, z0 = view.since.position
-    return math.hypot(x - x0, y - y0, z - z0), "flange"
+    x, y, z = x - x0, y - y0, z - z0
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.way * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange"
 
 
-def _flange_speed(view: View, _: Gauge) -> tuple[float, str]:
+def _flange_speed(view: View, gauge: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.v_F.tolist()[:3]
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(x, y, z)
     return math.hypot(x, y, z), "flange"
 
 
 def beyond_gravity(estimate: Estimate) -> float:
     """What the flange's accelerometer feels beyond gravity [m/s²]."""
-    x, y, z = estimate.a_F.tolist()
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
-    gx, gy, gz = estimate.g_B.tolist()
-    return math.hypot(xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz)
+    return math.hypot(*acceleration_felt(estimate))
 
 
-def _flange_acceleration(view: View, _: Gauge) -> tuple[float, str]:
-    return beyond_gravity(view.estimate), "flange"
+def _flange_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+    x, y, z = acceleration_felt(view.estimate)
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.linear * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange"
 
 
 def _tcp_speed(view: View, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.speed_share
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.tcp.tolist()[3:])
     return view.estimate.v_tcp, "tcp"
 
 
 def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.speed_share
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.elbow.tolist()[3:])
     return view.estimate.v_elbow, "elbow"
 
 
-def _joint_displacement(view: View, _: Gauge) -> tuple[float, str]:
+def _joint_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.shares.way
     return _largest([now - then for now, then in zip(view.estimate.q.tolist(), view.since.angles, strict=True)], view)
 
 
 def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.speed_share
+    gauge.high = gauge.base * view.shares.turning
     return _largest(view.estimate.qd.tolist(), view)
 
 
-def _joint_acceleration(view: View, _: Gauge) -> tuple[float, str]:
+def _joint_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.shares.angular
     return _largest(view.estimate.qdd.tolist(), view)
 
 
@@ -193,11 +203,12 @@ class Monitor:
         beyond: list[Gauge] = []
         no_wrench = view.split is None
         no_acceleration = not view.estimate.acceleration_valid
+        way = view.shares.way
         for read, wrench, acceleration, gauge in self._gauges:
             if (no_wrench and wrench) or (no_acceleration and acceleration):
                 continue
             value, part = read(view, gauge)
-            if gauge.judge(value, part):
+            if gauge.judge(value, part, way):
                 beyond.append(gauge)
         return beyond
 

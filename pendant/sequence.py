@@ -1,10 +1,14 @@
 """The activation sequence (FD-9 to FD-12): the arm is freed for a while, to see whether it stays and nothing pulls at it."""
 
+import math
+
+from pendant.dynamic_limits import DynamicLimits, Shares, in_activation
+from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.limits import Gauge, Monitored
 from pendant.modes import TICK
 from pendant.parameters import ZEROS, Monitor, Reference, View
-from pendant.residual import Vector, mass_error, split, upward
+from pendant.residual import Split, Vector, mass_error, split, upward
 from pendant.settings import Settings
 from pendant.surroundings import Surroundings
 from pendant.watch import joints_ok
@@ -39,6 +43,7 @@ class Sequence:
     __slots__ = (
         "_acceleration",
         "_changes",
+        "_dynamic",
         "_joints",
         "_monitor",
         "_scale",
@@ -81,12 +86,13 @@ class Sequence:
         self._acceleration = estimate.acceleration_valid
         self._up: Vector = upward(estimate.g_B.tolist())
         self._start = estimate.tick
+        self._dynamic = DynamicLimits(in_activation(settings), estimate)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
         own = (self._since, self._stored, self._wrench, self._acceleration, self._up, self._start, self._share)
-        return (*own, self._monitor.memory, None if self._changes is None else self._changes.memory)
+        return (*own, self._monitor.memory, None if self._changes is None else self._changes.memory, self._dynamic.memory)
 
     def missing(self, around: Surroundings) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
@@ -101,13 +107,21 @@ class Sequence:
     def check(self, around: Surroundings) -> list[Gauge]:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
         parts = split(around.mean.mean(), self._up) if self._wrench else None
-        beyond = self._monitor.step(View(around.estimate, self._since, parts, self._joints, self._scale, self._share))
+        shares = self._shares(around.estimate, parts)
+        beyond = self._monitor.step(View(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares))
         changes, stored = self._changes, self._stored
         if changes is None or stored is None:
             return beyond
         if self._wrench:
             parts = split([now - then for now, then in zip(around.mean.mean(), stored.wrench, strict=True)], self._up)
-        return beyond + changes.step(View(around.estimate, stored, parts, self._joints, self._scale, self._share))
+        return beyond + changes.step(View(around.estimate, stored, parts, self._joints, self._scale, self._share, shares))
+
+    def _shares(self, estimate: Estimate, parts: Split | None) -> Shares:
+        """What is left of the limits (FD-12b). Without a sensor no force lowers them."""
+        if parts is None or not self._dynamic.pushed:
+            return self._dynamic.step(estimate)
+        force = math.hypot(parts.payload_force, parts.user_force)
+        return self._dynamic.step(estimate, force, math.hypot(parts.payload_torque, parts.user_torque))
 
     def monitored(self) -> tuple[Monitored, ...]:
         """What was checked last."""

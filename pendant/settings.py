@@ -42,6 +42,16 @@ class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     sum_presences: Annotated[bool, _switch("FD-7", "presences add up; a gap up to 1 s does not begin afresh")] = False
 
 
+class SequenceDynamic(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What lowers the limits of the activation sequence, by the shares of `Soft`."""
+
+    acceleration: Annotated[bool, _switch("FD-12b", "its displacements and allowed times fall with acceleration")] = False
+    payload: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the configured payload")] = False
+    drift: Annotated[bool, _switch("FD-12b", "its speeds fall for what creeps on about the same way")] = False
+    pushed: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the user's force and torque")] = False
+    vertical: Annotated[bool, _switch("FD-12b", "its displacements, speeds and accelerations are less along gravity")] = False
+
+
 class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The activation sequence, in which the arm is freed to see whether it stays."""
 
@@ -51,6 +61,7 @@ class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     age: Annotated[float, _number(0.5, 15.0, "s", "FD-9", "how old the state is that it is compared with")] = 2.0
     amplified: Annotated[bool, _switch("FD-9", "the user's force is amplified in it already")] = False
     protective_stop: Annotated[bool, _switch("FD-10", "a limit exceeded in it is a protective stop")] = False
+    dynamic: SequenceDynamic = SequenceDynamic()
 
 
 class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -158,6 +169,9 @@ class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=
         max=0.8, time=0.05, stop=True
     )
     user_force: Annotated[Operation, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = Operation(max=90.0, time=0.1)
+    flange_displacement: Annotated[Operation, _limit(0.005, 2.0, "m", "FD-18", "way of the flange since entry")] = Operation(
+        max=0.5, on=False
+    )
 
 
 class Limits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -180,7 +194,18 @@ class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     drift: Annotated[bool, _switch("FD-12b", "the limits fall for what moves on about the same way")] = True
     drift_time: Annotated[float, _number(0.2, 30.0, "s", "FD-12b", "for so long it may")] = 2.0
     drift_share: Annotated[float, _number(0.1, 1.0, "", "FD-12b", "share of the limits that is left then")] = 0.5
-    hard: Annotated[bool, _switch("FD-12b", "payload and drift lower the limits that end free-drive, too")] = False
+    acceleration: Annotated[bool, _switch("FD-12b", "way and time that are allowed fall with acceleration")] = False
+    acceleration_share: Annotated[float, _number(0.0, 2.0, "s²/m", "FD-12b", "they are divided by 1 plus this for each m/s²")] = (
+        0.25
+    )
+    pushed: Annotated[bool, _switch("FD-12b", "the limits fall with the user's force, angular ones with the torque")] = False
+    force_share: Annotated[float, _number(0.0, 0.2, "1/N", "FD-12b", "a limit is divided by 1 plus this for each newton")] = 0.02
+    torque_share: Annotated[
+        float, _number(0.0, 2.0, "1/(N·m)", "FD-12b", "an angular one by 1 plus this for each newton metre")
+    ] = 0.1
+    vertical: Annotated[bool, _switch("FD-12b", "the limits of motion are tighter along gravity")] = False
+    vertical_share: Annotated[float, _number(0.1, 1.0, "", "FD-12b", "share of the limits that is left along it")] = 0.5
+    hard: Annotated[bool, _switch("FD-12b", "all this lowers the limits that end free-drive, too")] = False
 
 
 class Axes(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -3,14 +3,12 @@
 import math
 from typing import NamedTuple
 
+from pendant.dynamic_limits import WHOLE, DynamicLimits, Shares, in_operation
 from pendant.estimate import Estimate
-from pendant.settings import OperationLimits, Settings, ticks
+from pendant.settings import OperationLimits, Settings
 
-DRIFTING = 0.02
-"""Speed of the flange from which on it has a direction [m/s]."""
-
-ABOUT = math.cos(math.radians(45.0))
-"""Cosine of the angle up to which a direction is about the same."""
+CRAWL = 0.1
+"""Share of the speed limits that is left at the end of the way from entry: nobody is held there."""
 
 
 class Damping(NamedTuple):
@@ -25,64 +23,78 @@ class Damping(NamedTuple):
 
 
 class SoftLimits:
-    """The limits of one free-drive. They fall with the configured payload, and for what moves on and on the same way.
+    """The limits of one free-drive. They fall with load, acceleration, hand and direction, and on a long way.
 
     Attributes:
         damping: for the control law, None while soft limits are switched off.
-        share: of the hard limits on speed that is left.
+        shares: of the hard limits that are left.
+        pushed: the hand's force and torque are looked at.
     """
 
-    __slots__ = ("_after", "_damping", "_heading", "_operation", "_same", "_soft", "damping", "share")
+    __slots__ = ("_damping", "_dynamic", "_hard", "_origin", "_shares", "_soft", "_way", "damping", "pushed", "shares")
 
-    def __init__(self, settings: Settings) -> None:
-        self._soft, self._operation = settings.soft, settings.limits.operation
-        self._after = ticks(self._soft.drift_time)
-        self._heading = (0.0, 0.0, 0.0)  # direction in which the motion began, axes of B
-        self._same = 0  # ticks for which it has been about the same
-        self._damping: dict[float, Damping] = {}  # by share
+    def __init__(self, settings: Settings, estimate: Estimate) -> None:
+        """
+        Args:
+            settings: as they are now.
+            estimate: of the tick of entry; its joint values are finite.
+        """
+        self._soft = settings.soft
+        self._hard = hard(settings.limits.operation)
+        way = settings.limits.operation.flange_displacement
+        self._way = way.max if way.on else math.inf  # of the flange from entry [m]
+        self._origin = tuple(estimate.p_BF.tolist())
+        self._dynamic = DynamicLimits(in_operation(settings), estimate)
+        self._shares = (0.0, 0.0, 0.0)  # of tcp, elbow and joints, to which `_damping` belongs
+        self._damping: Damping | None = None
         self.damping: Damping | None = None
-        self.share = 1.0
+        self.shares = WHOLE
+        self.pushed = self._dynamic.pushed
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._heading, self._same, self.damping, self.share)
+        return (self._origin, self._dynamic.memory, self.damping, self.shares)
 
-    def step(self, estimate: Estimate) -> None:
-        """One tick; its joint values are finite."""
-        soft = self._soft
-        share = 1.0
-        if soft.payload:
-            share /= 1.0 + soft.payload_share * estimate.load_mass
-        if soft.drift and self._drifts(estimate):
-            share *= soft.drift_share
-        self.share = share if soft.hard else 1.0
-        if soft.on:
-            self.damping = self._at(share)
+    def step(self, estimate: Estimate, force: float = 0.0, torque: float = 0.0) -> None:
+        """One tick; its joint values are finite.
 
-    def _drifts(self, estimate: Estimate) -> bool:
-        """The flange has moved in about the same direction for long."""
-        x, y, z = estimate.v_F.tolist()[:3]
-        speed = math.sqrt(x * x + y * y + z * z)
-        if speed < DRIFTING:
-            self._same = 0
-            return False
-        hx, hy, hz = self._heading
-        if self._same and x * hx + y * hy + z * hz >= ABOUT * speed:
-            self._same += 1
-        else:
-            self._heading, self._same = (x / speed, y / speed, z / speed), 1
-        return self._same > self._after
+        Args:
+            estimate: of this tick.
+            force: the hand's [N]; matters only where it is `pushed`.
+            torque: the hand's [N·m].
+        """
+        shares = self._dynamic.step(estimate, force, torque)
+        if self._soft.hard:
+            self.shares = shares
+        if self._soft.on:
+            tcp = elbow = shares.speed
+            joint = shares.turning
+            if shares.vertical != 1.0:
+                tcp *= shares.along(*estimate.tcp.tolist()[3:])
+                elbow *= shares.along(*estimate.elbow.tolist()[3:])
+            if self._way < math.inf:
+                rest = self._rest(estimate, shares)
+                tcp, elbow, joint = rest * tcp, rest * elbow, rest * joint
+            self.damping = self._at((tcp, elbow, joint))
 
-    def _at(self, share: float) -> Damping:
-        """The same object for the same share: two or three of them are in use."""
-        known = self._damping.get(share)
-        if known is None:
-            soft = self._soft
-            tcp, elbow, joint = hard(self._operation)
-            known = Damping(share * tcp, share * elbow, share * joint, soft.onset, soft.force, soft.torque)
-            self._damping[share] = known
-        return known
+    def _rest(self, estimate: Estimate, shares: Shares) -> float:
+        """Share of the speed limits that is left so far on the way out; the way back is free."""
+        (x, y, z), (x0, y0, z0) = estimate.p_BF.tolist(), self._origin
+        x, y, z = x - x0, y - y0, z - z0
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        if x * vx + y * vy + z * vz <= 0.0:
+            return 1.0
+        gone = math.sqrt(x * x + y * y + z * z) / (self._way * shares.way * shares.along(x, y, z))
+        return min(max((1.0 - gone) / (1.0 - self._soft.onset), CRAWL), 1.0)
+
+    def _at(self, shares: tuple[float, float, float]) -> Damping:
+        """The same object as long as the shares are the same."""
+        if self._damping is None or shares != self._shares:
+            soft, (tcp, elbow, joint) = self._soft, self._hard
+            self._shares = shares
+            self._damping = Damping(shares[0] * tcp, shares[1] * elbow, shares[2] * joint, soft.onset, soft.force, soft.torque)
+        return self._damping
 
 
 def hard(limits: OperationLimits) -> tuple[float, float, float]:

@@ -16,6 +16,11 @@ EXPECTED = {
     "sequence.age": (2.0, 0.5, 15.0, "s", "FD-9", True),
     "sequence.amplified": (False, None, None, "", "FD-9", True),
     "sequence.protective_stop": (False, None, None, "", "FD-10", True),
+    "sequence.dynamic.acceleration": (False, None, None, "", "FD-12b", True),
+    "sequence.dynamic.payload": (False, None, None, "", "FD-12b", True),
+    "sequence.dynamic.drift": (False, None, None, "", "FD-12b", True),
+    "sequence.dynamic.pushed": (False, None, None, "", "FD-12b", True),
+    "sequence.dynamic.vertical": (False, None, None, "", "FD-12b", True),
     "free_drive.allowed_from.normal": (False, None, None, "", "FD-1", True),
     "free_drive.allowed_from.teach": (True, None, None, "", "FD-1", True),
     "free_drive.allowed_from.run": (False, None, None, "", "FD-1", True),
@@ -45,6 +50,13 @@ EXPECTED = {
     "soft.drift": (True, None, None, "", "FD-12b", True),
     "soft.drift_time": (2.0, 0.2, 30.0, "s", "FD-12b", True),
     "soft.drift_share": (0.5, 0.1, 1.0, "", "FD-12b", True),
+    "soft.acceleration": (False, None, None, "", "FD-12b", True),
+    "soft.acceleration_share": (0.25, 0.0, 2.0, "s²/m", "FD-12b", True),
+    "soft.pushed": (False, None, None, "", "FD-12b", True),
+    "soft.force_share": (0.02, 0.0, 0.2, "1/N", "FD-12b", True),
+    "soft.torque_share": (0.1, 0.0, 2.0, "1/(N·m)", "FD-12b", True),
+    "soft.vertical": (False, None, None, "", "FD-12b", True),
+    "soft.vertical_share": (0.5, 0.1, 1.0, "", "FD-12b", True),
     "soft.hard": (False, None, None, "", "FD-12b", True),
     "axes.on": (True, None, None, "", "FD-4", False),
     "axes.x": (True, None, None, "", "FD-4", False),
@@ -188,12 +200,18 @@ LIMITS = {
         "flange_acceleration": (40.0, 1.0, 78.0, "m/s²", "FD-18"),
         "joint_torque": (0.8, 0.01, 2.0, "of rated", "FD-18"),
         "user_force": (90.0, 5.0, 100.0, "N", "FD-18"),
+        "flange_displacement": (0.5, 0.005, 2.0, "m", "FD-18"),
     },
 }
 """Stage, parameter: default, low, high, unit, requirement."""
 
 TIMES = {"operation.user_force": 0.1, "operation.joint_torque": 0.05}
-OFF = {"activation.joint_displacement", "activation.joint_acceleration", "activation.motor_torque"}
+OFF = {
+    "activation.joint_displacement",
+    "activation.joint_acceleration",
+    "activation.motor_torque",
+    "operation.flange_displacement",
+}
 STOPS = {"operation.flange_acceleration", "operation.joint_torque"}
 
 for stage, parameters in LIMITS.items():

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pendant.dynamic_limits import WHOLE
 from pendant.events import Kind
 from pendant.hand import Hand
 from pendant.operation import Ending, Operation
@@ -18,7 +19,7 @@ STILL = estimate()
 
 
 def soft(**changes: float | bool) -> SoftLimits:
-    return SoftLimits(apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()}))
+    return SoftLimits(apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()}), STILL)
 
 
 def limits(module: SoftLimits) -> tuple[float, float, float]:
@@ -32,7 +33,7 @@ def test_they_lie_at_the_operation_limits() -> None:
     assert limits(module) == (1.5, 1.5, 3.0)
     assert module.damping is not None
     assert module.damping[3:] == (0.5, 120.0, 0.7)
-    assert module.share == 1.0
+    assert module.shares is WHOLE
 
 
 def test_switched_off_nothing_is_resisted() -> None:
@@ -119,3 +120,45 @@ def test_memory_tells_states_apart() -> None:
     one.step(STILL)
     other.step(estimate(speed=0.2))
     assert one.memory != other.memory
+
+
+def test_up_and_down_tool_and_elbow_have_lower_limits() -> None:
+    """FD-12b (v): the tool goes up, the elbow sideways; turning joints have no direction."""
+    module = soft(soft__vertical=True, soft__vertical_share=0.4)
+    module.step(estimate(tcp=[0.0] * 5 + [0.3], elbow=[0.0, 0.0, 0.0, 0.2, 0.0, 0.0]))
+    assert limits(module) == pytest.approx((0.6, 1.5, 3.0))
+
+
+def test_they_fall_with_the_hands_force_and_torque() -> None:
+    """FD-12b (iv)."""
+    module = soft(soft__pushed=True, soft__force_share=0.05, soft__torque_share=0.5)
+    module.step(STILL, 20.0, 2.0)
+    assert limits(module) == pytest.approx((0.75, 0.75, 1.5))
+    module.step(STILL, 0.0, 6.0)
+    assert limits(module) == pytest.approx((1.5, 1.5, 0.75))
+
+
+@pytest.mark.parametrize(("way", "share"), [(0.1, 1.0), (0.25, 1.0), (0.375, 0.5), (0.475, 0.1), (0.6, 0.1)])
+def test_far_out_they_fall_but_not_on_the_way_back(way: float, share: float) -> None:
+    """FD-12b (i): of a way of 0.5 m the first half is free; never less than a tenth is left."""
+    module = soft(limits__operation__flange_displacement__on=True)
+    module.step(estimate(position=way, speed=0.01))
+    assert limits(module) == pytest.approx((1.5 * share, 1.5 * share, 3.0 * share))
+    module.step(estimate(position=way, speed=-0.01))
+    assert limits(module)[0] == 1.5
+
+
+def test_the_more_it_accelerates_the_shorter_the_free_way() -> None:
+    module = soft(limits__operation__flange_displacement__on=True, soft__acceleration=True, soft__acceleration_share=0.5)
+    module.step(estimate(position=0.1875, speed=0.01))
+    assert limits(module)[0] == 1.5
+    module.step(estimate(position=0.1875, speed=0.01, acceleration=[0.0, 2.0, 0.0]))
+    assert limits(module)[0] == pytest.approx(0.75)
+
+
+def test_as_long_as_nothing_changes_it_is_the_same_object() -> None:
+    module = soft()
+    module.step(STILL)
+    first = module.damping
+    module.step(estimate(acceleration=3.0, load_mass=0.0))
+    assert module.damping is first
