@@ -46,10 +46,10 @@ class SequenceDynamic(Section, frozen=True, forbid_unknown_fields=True, kw_only=
     """What lowers the limits of the activation sequence, by the shares of `Soft`."""
 
     acceleration: Annotated[bool, _switch("FD-12b", "its displacements and allowed times fall with acceleration")] = False
-    payload: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the configured payload")] = False
+    payload: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the payload")] = False
     drift: Annotated[bool, _switch("FD-12b", "its speeds fall for what creeps on about the same way")] = False
-    pushed: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the user's force and torque")] = False
-    vertical: Annotated[bool, _switch("FD-12b", "its displacements, speeds and accelerations are less along gravity")] = False
+    pushed: Annotated[bool, _switch("FD-12b", "its speeds, accelerations fall with the user's force, torque")] = False
+    vertical: Annotated[bool, _switch("FD-12b", "its ways, speeds and accelerations are less along gravity")] = False
 
 
 class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -198,7 +198,7 @@ class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     acceleration_share: Annotated[float, _number(0.0, 2.0, "s²/m", "FD-12b", "they are divided by 1 plus this for each m/s²")] = (
         0.25
     )
-    pushed: Annotated[bool, _switch("FD-12b", "the limits fall with the user's force, angular ones with the torque")] = False
+    pushed: Annotated[bool, _switch("FD-12b", "limits fall with the user's force, angular ones with torque")] = False
     force_share: Annotated[float, _number(0.0, 0.2, "1/N", "FD-12b", "a limit is divided by 1 plus this for each newton")] = 0.02
     torque_share: Annotated[
         float, _number(0.0, 2.0, "1/(N·m)", "FD-12b", "an angular one by 1 plus this for each newton metre")
