@@ -17,7 +17,7 @@ from app.session import Session, Setup, World, bundled, folder
 from pendant.containment import PARTS, TETHER
 from pendant.program import Program as Steps
 from pendant.program import misfit
-from pendant.settings import Limit, MaintainLimits, OperationLimits, SettingError, Settings, apply, describe
+from pendant.settings import Limit, MaintainLimits, OperationLimits, SequenceDynamic, SettingError, Settings, apply, describe
 from pendant.walls import AnyBorder, problem
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
@@ -32,6 +32,9 @@ MOUNTINGS: dict[str, list[float]] = {
 
 LIMITED = [name for name in MaintainLimits.__struct_fields__ if isinstance(getattr(MaintainLimits(), name), Limit)]
 """Parameters that manipulation is told by."""
+
+RULES = SequenceDynamic.__struct_fields__
+"""What lowers limits, by the same names in free-drive and in its activation sequence."""
 
 FEATURES: dict[str, dict[str, float | bool]] = {
     "FD-3": {"free_drive.gain": 0.0},
@@ -56,6 +59,10 @@ FEATURES: dict[str, dict[str, float | bool]] = {
     "FD-8": {"handshake.on": False},
     "FD-8a": {"let_go.on": False},
     "FD-9": {"sequence.on": False},
+    "FD-12b": dict.fromkeys(
+        [f"soft.{rule}" for rule in RULES] + [f"sequence.dynamic.{rule}" for rule in RULES],
+        False,
+    ),
     "FD-13": dict.fromkeys([f"limits.maintain.{name}.on" for name in LIMITED], False),
     "FD-14": {"free_drive.period": 30.0},  # longer than a session: nothing ends by itself
     "FD-15": {"free_drive.restart_period": 30.0},
