@@ -33,7 +33,7 @@ class FlangeForces:
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
         self.F_user, self.F_joints = np.zeros(6), np.zeros(3)
-        self._gyro, self._turn = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
+        self._turns = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         self.set_load(dynamics.load)
 
@@ -41,7 +41,7 @@ class FlangeForces:
         """Take `load` (in F) as everything beyond the flange."""
         turned = skew(load.com)
         about_flange = load.inertia - load.mass * turned @ turned
-        self._load = (load.mass, np.array(load.com), about_flange)
+        self._mass, self._load = load.mass, np.vstack([load.com, about_flange])  # centre of mass, inertia about the flange (4, 3)
 
     def update(self, sample: Sample, q: Array, motion: Array, tau_ext: Array) -> None:
         """One tick.
@@ -52,20 +52,29 @@ class FlangeForces:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tau_ext: external torques of the joints (n,) [N·m].
         """
-        rigid = self._dynamics.recursion
-        _felt_by_joints(rigid.jacobian, tau_ext, self.F_joints)
-        if sample.acceleration_valid:
-            _differentiate(sample.gyro_tool, self._gyro, self._turn, self._smoothing)
-        if not sample.wrench_valid:
-            self.F_user[:] = 0.0
-            return
-        if sample.acceleration_valid:
-            force = sample.acceleration_tool
-        else:
+        rigid, turns, differentiated = self._dynamics.recursion, self._turns, sample.acceleration_valid
+        force = sample.acceleration_tool
+        if sample.wrench_valid and not differentiated:
             # The model stands in; its values stay for the differentiation to go on from.
-            force, self._turn[:] = self._dynamics.specific_force(q, motion[1], motion[2])
-            self._gyro[:] = rigid.R.T @ rigid.v_F[3:]
-        _user_wrench(sample.wrench, force, self._gyro, self._turn, *self._load, rigid.R, self.F_user)
+            force, turns[1] = self._dynamics.specific_force(q, motion[1], motion[2])
+            turns[0] = rigid.R.T @ rigid.v_F[3:]
+        _update(
+            rigid.jacobian, tau_ext, rigid.R, sample.wrench, force, sample.gyro_tool, turns, self._mass, self._load,
+            self._smoothing, sample.wrench_valid, differentiated, self.F_user, self.F_joints,
+        )  # fmt: skip
+
+
+@numba.njit(cache=True)
+def _update(
+    jacobian, tau_ext, R, wrench, force, gyro, turns, mass, load, smoothing, wrench_valid, differentiated, F_user, F_joints
+) -> None:  # fmt: skip
+    _felt_by_joints(jacobian, tau_ext, F_joints)
+    if differentiated:
+        _differentiate(gyro, turns[0], turns[1], smoothing)
+    if wrench_valid:
+        _user_wrench(wrench, force, turns[0], turns[1], mass, load[0], load[1:], R, F_user)
+    else:
+        F_user[:] = 0.0
 
 
 @numba.njit(cache=True)

@@ -48,7 +48,7 @@ class Sensors:
 
     def __init__(self, arm: Arm, calibration: Calibration, rng: np.random.Generator) -> None:
         n, sensors = arm.n, arm.sensors
-        self._n, self._rng, self._calibration = n, rng, calibration
+        self._n, self._rng = n, rng
         self._groups = {
             "motor_encoder": slice(0, n),
             "output_encoder": slice(n, 2 * n),
@@ -61,7 +61,11 @@ class Sensors:
         encoders, force_torque = sensors.encoders, sensors.force_torque
         motor = 2.0 * np.pi / encoders.motor_counts / np.array(arm.motors.gear)
         output = 2.0 * np.pi / encoders.output_counts
-        self._quantum, self._sigma, self._range = np.ones(size), np.zeros(size), np.full(size, np.inf)
+        # One block, for each array that is handed to a kernel costs as much as ten channels' arithmetic.
+        self._channels = np.zeros((5, size))
+        self._bias, self._drifts, self._gain, self._quantum, self._range = self._channels
+        self._gain[:], self._quantum[:], self._range[:] = 1.0, 1.0, np.inf
+        self._sigma = np.zeros(size)
         self._quantum[:n], self._sigma[:n] = motor, encoders.noise_counts * motor
         self._quantum[n : 2 * n], self._sigma[n : 2 * n] = output, encoders.noise_counts * output
         self._set("current", sensors.current)
@@ -71,9 +75,6 @@ class Sensors:
             for start, channels in ((3 * n, force_torque.force), (3 * n + 3, force_torque.torque)):
                 part = slice(start, start + 3)
                 self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
-        self._gain = np.ones(size)
-        self._bias = np.zeros(size)
-        self._drifts = np.zeros(size)
         self._bias[self._groups["force_torque"]] = calibration.wrench_offset
         self._drifts[self._groups["force_torque"]] = calibration.wrench_drift
         self._out = np.zeros(size, dtype=bool)
@@ -86,7 +87,7 @@ class Sensors:
         self._rows = [_sample(np.empty(size), n) for _ in range(LATENCY + 2)]  # on their way, and the last that arrived
         self._next = 0
         self._line: list[Sample] = []
-        self._ripple, self._ripple_phase = calibration.ripple, calibration.ripple_phase
+        self._distortion = (calibration.wrench_gain, calibration.ripple, calibration.ripple_phase)
         self._any_out = bool(self._out.any())
         self._suspect = 0  # samples yet to arrive that may hold what is not a number
 
@@ -129,9 +130,7 @@ class Sensors:
         sample = self._rows[self._next]
         value = sample.values
         truth = (plant.theta, plant.q, current, plant.flange)
-        distortion = (self._calibration.wrench_gain, self._ripple, self._ripple_phase)
-        channel = (self._bias, self._drifts, self._noise[row], self._gain, self._quantum, self._range)
-        _measure(*truth, *distortion, *channel, plant.step.tick, value)
+        _measure(*truth, *self._distortion, self._channels, self._noise, row, plant.step.tick, value)
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
@@ -182,10 +181,9 @@ def _sample(values: Array, n: int) -> Sample:
 
 
 @numba.njit(cache=True)
-def _measure(
-    theta, q, current, flange, wrench_gain, ripple, phase, bias, drift, noise, noise_gain, quantum, span, tick, out
-) -> None:
-    n = theta.size
+def _measure(theta, q, current, flange, wrench_gain, ripple, phase, channels, noises, row, tick, out) -> None:
+    bias, drift, noise_gain, quantum, span = channels[0], channels[1], channels[2], channels[3], channels[4]
+    n, noise = theta.size, noises[row]
     for i in range(n):
         out[i] = theta[i]
         out[n + i] = q[i] + ripple[i, 0] * np.sin(q[i] + phase[i, 0]) + ripple[i, 1] * np.sin(2.0 * q[i] + phase[i, 1])

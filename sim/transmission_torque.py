@@ -71,9 +71,11 @@ class TransmissionTorque:
         self._differ = np.zeros((4, n))
         self.forget()
         self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
-        self.ways, self.deviations = np.zeros((2, 3, n))
-        self.fused, self.deviation, self.external, self.external_deviation = np.zeros((4, n))
-        self._model = np.zeros(n)  # standard deviation of the rigid model where nothing is touched
+        # One block for all that a tick brings: each array that is handed to a kernel costs as much as a joint's arithmetic.
+        self._outcome = np.zeros((11, n))
+        self.ways, self.deviations = self._outcome[:3], self._outcome[3:6]
+        # And the standard deviation of the rigid model where nothing is touched.
+        self.fused, self.deviation, self.external, self.external_deviation, self._model = self._outcome[6:]
         self.contact = False
         self._quiet = SETTLE_TICKS
 
@@ -100,16 +102,28 @@ class TransmissionTorque:
             moving: some joint moves; at rest nothing is learned, for a wrong payload would pass for a soft spring.
             use: which of `WAYS` may be used, of which joint (3, n).
         """
-        rubbing = (friction_deviation, stiction)
-        learned = (self.correction, self._covariance, self._walk, self._differ)
-        touched = _compare(
-            self.ways, self.deviations, rubbing, acceleration, self._constants, self._swing, learned, use,
-            moving and self._quiet >= SETTLE_TICKS, self._model, self.external, self.external_deviation,
+        self._quiet = _update(
+            self._outcome, friction_deviation, stiction, acceleration, self._constants, self._swing, self.correction,
+            self._covariance, self._walk, self._differ, use, moving, self._quiet,
         )  # fmt: skip
-        self._quiet = 0 if touched else self._quiet + 1
         self.contact = self._quiet < SETTLE_TICKS
-        errors = (self._model, self._constants[0], self._differ)
-        _fuse(self.ways, self.deviations, errors, self.external, self.contact, use, self.fused, self.deviation)
+
+
+@numba.njit(cache=True)
+def _update(
+    outcome, friction_deviation, stiction, acceleration, constants, swing, correction, covariance, walk, differ, use, moving, quiet
+) -> int:  # fmt: skip
+    """Compare, then fuse. Returns for how many ticks nothing has been touched."""
+    rubbing, learned = (friction_deviation, stiction), (correction, covariance, walk, differ)
+    ways, deviations, model = outcome[:3], outcome[3:6], outcome[10]
+    fused, deviation, external, external_deviation = outcome[6], outcome[7], outcome[8], outcome[9]
+    touched = _compare(
+        ways, deviations, rubbing, acceleration, constants, swing, learned, use, moving and quiet >= SETTLE_TICKS, model, external,
+        external_deviation,
+    )  # fmt: skip
+    quiet = 0 if touched else quiet + 1
+    _fuse(ways, deviations, (model, constants[0], differ), external, quiet < SETTLE_TICKS, use, fused, deviation)
+    return quiet
 
 
 @numba.njit(cache=True)
