@@ -6,7 +6,8 @@ on it, or when it moved against the force of the payload-like residual, which no
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+
+import msgspec
 
 from pendant.pose import Vector, dot
 from pendant.walls import Policy, Wall
@@ -18,7 +19,7 @@ RESIDUAL = 2.0
 """A payload-like residual below this has no direction to speak of [N]."""
 
 
-class Stay(NamedTuple):
+class Stay(msgspec.Struct, frozen=True, gc=False):
     """A part at its wall in one tick."""
 
     local: Vector  # the part in the wall's reference [m]
@@ -41,11 +42,25 @@ class Anchor:
         averaging_ticks: averaging period.
     """
 
-    __slots__ = ("_away", "_clear", "_decide", "_left", "_length", "_next", "_sums", "_touched", "_track", "_wall", "local")
+    __slots__ = (
+        "_away",
+        "_clear",
+        "_decide",
+        "_least",
+        "_left",
+        "_length",
+        "_next",
+        "_sums",
+        "_touched",
+        "_track",
+        "_wall",
+        "local",
+    )
 
     def __init__(self, wall: Wall, local: Vector, averaging_ticks: int) -> None:
         self.local = local  # the anchor in the wall's reference [m]
         self._wall = wall
+        self._least = wall.push_back * wall.push_back  # square of the force that counts as a push [N²]
         self._clear = 0  # ticks in a row in which the wall was not exceeded
         self._left = 0  # stepwise: ticks to the end of the redefine period, 0 before the first; average: for which a hand counts
         self._touched = False  # stepwise: a user force acted in this redefine period
@@ -67,10 +82,10 @@ class Anchor:
             return False
         self._clear = 0 if stay.exceeded else self._clear + 1
         x, y, z = stay.user_force
-        least = self._wall.push_back
+        mx, my, mz = stay.moved
         # A hand drives a part or holds it; the inertia of a wrong payload that gathers speed looks like a force against it.
-        driving = dot(stay.user_force, stay.moved) >= 0.0
-        return self._decide(stay, driving and x * x + y * y + z * z >= least * least)
+        driving = x * mx + y * my + z * mz >= 0.0
+        return self._decide(stay, driving and x * x + y * y + z * z >= self._least)
 
     def _stepwise(self, stay: Stay, pushed: bool) -> bool:
         """VW-3: at the end of each redefine period, unless exceeded within the safety period before."""

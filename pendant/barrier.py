@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from enum import IntEnum
 from typing import NamedTuple
 
+import msgspec
+
 from pendant.anchors import Anchor, Stay
 from pendant.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, dot, finite, product, rotation, seen_from, turned, turned_back
 from pendant.resistance import Guard, closeness, resisting
@@ -34,14 +36,14 @@ class Consequence(IntEnum):
     REFUSE = 4  # do not enter (FD-10)
 
 
-class Part(NamedTuple):
+class Part(msgspec.Struct, frozen=True, gc=False):
     """A point of the arm in one tick."""
 
     p: Vector  # in B [m]
     v: Vector  # axes of B [m/s]
 
 
-class Around(NamedTuple):
+class Around(msgspec.Struct, frozen=True, gc=False):
     """What walls need to know of one tick. Everything in B."""
 
     parts: Mapping[str, Part]
@@ -51,7 +53,7 @@ class Around(NamedTuple):
     measures: Mapping[Measure, float]
 
 
-class Reading(NamedTuple):
+class Reading(msgspec.Struct, frozen=True, gc=False):
     """One wall in one tick."""
 
     border: AnyBorder
@@ -132,7 +134,7 @@ class Barrier:
         part, reference = around.parts.get(border.part), around.references.get(border.reference)
         if part is None or reference is None:
             return self._lost()
-        place, (vx, vy, vz) = part
+        place, (vx, vy, vz) = part.p, part.v
         px, py, pz = place
         total = px + py + pz + vx + vy + vz
         if total - total != 0.0 or not (reference is self._reference or finite(reference)):

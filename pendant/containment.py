@@ -109,9 +109,11 @@ class Containment:
     def states(self) -> tuple[WallState, ...]:
         """What the last step found, for the law and for pictures; without a wall that could not be told."""
         states: list[WallState] = []
-        for border, distance, outward, near, exceeded, _, force, _, p in self._reading:
+        for reading in self._reading:
+            border, distance = reading.border, reading.distance
             if distance < math.inf:
-                states.append(WallState(border.name, border.part, p, distance, outward, near, exceeded, force))
+                outward, near, force = reading.outward, reading.near, reading.force
+                states.append(WallState(border.name, border.part, reading.p, distance, outward, near, reading.exceeded, force))
         return tuple(states)
 
     def places(self) -> tuple[tuple[AnyBorder, Place], ...]:

@@ -1,6 +1,6 @@
 """What free-drive must know of the rest of the robot in one tick."""
 
-from typing import NamedTuple
+import msgspec
 
 from pendant.enabling import Grip, enables
 from pendant.estimate import Estimate
@@ -8,7 +8,7 @@ from pendant.modes import Mode
 from pendant.watch import Stillness, WrenchMean
 
 
-class Surroundings(NamedTuple):
+class Surroundings(msgspec.Struct, frozen=True, gc=False):
     """The estimate, and what is kept of those before; mode, hand and devices."""
 
     estimate: Estimate

@@ -111,16 +111,17 @@ class TransmissionTorque:
 
 @numba.njit(cache=True)
 def _update(
-    outcome, friction_deviation, stiction, acceleration, constants, swing, correction, covariance, walk, differ, use, moving, quiet
+    outcome, friction_deviation, stiction, acceleration, constants, swing, correction, covariance, walk, differ, use, moving,
+    quiet,
 ) -> int:  # fmt: skip
     """Compare, then fuse. Returns for how many ticks nothing has been touched."""
     rubbing, learned = (friction_deviation, stiction), (correction, covariance, walk, differ)
     ways, deviations, model = outcome[:3], outcome[3:6], outcome[10]
     fused, deviation, external, external_deviation = outcome[6], outcome[7], outcome[8], outcome[9]
+    learn = moving and quiet >= SETTLE_TICKS
     touched = _compare(
-        ways, deviations, rubbing, acceleration, constants, swing, learned, use, moving and quiet >= SETTLE_TICKS, model, external,
-        external_deviation,
-    )  # fmt: skip
+        ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
+    )
     quiet = 0 if touched else quiet + 1
     _fuse(ways, deviations, (model, constants[0], differ), external, quiet < SETTLE_TICKS, use, fused, deviation)
     return quiet

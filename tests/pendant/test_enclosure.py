@@ -147,8 +147,8 @@ def test_a_wall_moves_with_its_reference() -> None:
 def test_what_is_not_known_never_passes(spoilt: str, reaction: Reaction, expected: Consequence) -> None:
     good = around()
     bad = {
-        "part": good._replace(parts={}),
-        "reference": good._replace(references={}),
+        "part": msgspec.structs.replace(good, parts={}),
+        "reference": msgspec.structs.replace(good, references={}),
         "position": around((math.nan, 0.0, 0.0)),
         "speed": around(v=(0.0, math.inf, 0.0)),
         "pose": around(references={"base": Pose((0.0, 0.0, math.nan))}),
