@@ -10,7 +10,9 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet
+# Not compiled at once: most of what is installed is never imported, and what is, is compiled then.
+INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
+PIP := $(BIN)/python $(INSTALL)
 WORKERS ?= 2
 SEED ?= 1000
 BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
@@ -83,7 +85,7 @@ wheel: $(VENV)/dev.stamp
 	@rm -rf build/wheel && mkdir -p build/wheel/empty
 	$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	$(PYTHON) -m venv build/wheel/venv
-	build/wheel/venv/bin/python -m pip --disable-pip-version-check install --quiet build/wheel/*.whl
+	build/wheel/venv/bin/python $(INSTALL) build/wheel/*.whl
 	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
 	@rm -rf build/wheel
 
