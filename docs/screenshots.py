@@ -18,7 +18,6 @@ from pendant.events import Kind
 from pendant.inputs import Command
 from pendant.modes import Phase
 from pendant.program import JointMove, Program, Wait
-from pendant.settings import Settings, apply
 from pendant.shapes import Box, HalfSpace
 from pendant.walls import AnyBorder, Area, Policy, Wall
 from sim.changes import AttachPayload
@@ -26,7 +25,7 @@ from sim.loop import Loop
 from sim.scenario import Load, Scenario
 from sim.simulation import Simulation
 from sim.touch import Pull
-from tests.e2e.cell import Cell
+from tests.e2e.cell import SETTINGS, Cell
 from tests.e2e.conftest import FLAGS
 from tests.e2e.first_use import FirstUse
 from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_until
@@ -129,8 +128,8 @@ def shoot(page: Page, name: str) -> None:
 def cell_at(browser: Browser, picture: Picture) -> Iterator[tuple[Page, Cell]]:
     """An arm of its own, and its page."""
     scenario = Scenario(tools=[load_tool(name) for name in tools()], walls=list(picture.walls))
-    arm, settings = load_arm("ur5e"), apply(Settings(), {"free_drive.period": 30.0, "free_drive.restart_period": 30.0})
-    loop = Loop(lambda: Simulation(arm, scenario, settings))
+    arm = load_arm("ur5e")
+    loop = Loop(lambda: Simulation(arm, scenario, SETTINGS))
     loop.start()
     served = serve(loop, arm, scenario)
     page = browser.new_context(viewport=ViewportSize(width=picture.width, height=picture.height)).new_page()

@@ -12,10 +12,18 @@ from app.web.scene import frames_of
 from app.web.server import Served
 from pendant.events import Kind
 from pendant.modes import TICK_RATE
+from pendant.settings import Settings, apply
 from sim.frames import matrix_from_quaternion
 from sim.loop import Loop
 
 Array = NDArray[np.float64]
+
+SETTINGS = apply(
+    Settings(),
+    {"free_drive.period": 30.0, "free_drive.restart_period": 30.0, "free_drive.cool_down": 0.3, "hold.silence": 1.0},
+)
+"""Software rendering takes seconds for what a hand does at once: from the button to the arm within the shipped 3 s is luck, and a
+page that stalls for the shipped half second has let go of a button that is held (FD-23). The pause after a leaving is shorter."""
 
 
 class Cell:

@@ -8,11 +8,10 @@ from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.library import load_arm
 from app.web.server import Served, serve
-from pendant.settings import Settings, apply
 from sim.loop import Loop
 from sim.scenario import Scenario
 from sim.simulation import Simulation
-from tests.e2e.cell import Cell
+from tests.e2e.cell import SETTINGS, Cell
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
@@ -47,10 +46,7 @@ def browser() -> Iterator[Browser]:
 def loop() -> Iterator[Loop]:
     """The shipped UR5e in its default posture."""
     arm = load_arm("ur5e")
-    # Software rendering takes seconds for what a hand does at once: from the button to the arm within the shipped 3 s is luck,
-    # and a page that stalls for the shipped half second has let go of a button that is held (FD-23).
-    settings = apply(Settings(), {"free_drive.period": 30.0, "free_drive.restart_period": 30.0, "hold.silence": 1.0})
-    running = Loop(lambda: Simulation(arm, Scenario(), settings))
+    running = Loop(lambda: Simulation(arm, Scenario(), SETTINGS))
     running.start()
     yield running
     running.stop()

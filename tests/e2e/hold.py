@@ -12,8 +12,8 @@ from tests.e2e.cell import Cell
 IN_VAIN = frozenset({Kind.HOLD_SILENT, Kind.REFUSED_MOVING, Kind.ACTIVATION_CANCELLED, Kind.NOT_YET})
 """After these the button has to be pressed again."""
 
-COOL_DOWN = 2.2
-"""Longer than the shipped one [s]."""
+COOL_DOWN = 0.5
+"""Longer than that of the cell [s]."""
 
 
 def hold_until(page: Page, cell: Cell, true: Callable[[], bool], what: str) -> None:
