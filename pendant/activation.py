@@ -2,6 +2,7 @@
 
 from pendant.attempt import Attempt, Outcome
 from pendant.barrier import Reading
+from pendant.compensation import Balance, Compensation
 from pendant.containment import NOBODY, Containment, facts
 from pendant.decision import Remaining
 from pendant.events import Event, Kind, Values
@@ -37,6 +38,7 @@ class Activation:
 
     __slots__ = (
         "_attempt",
+        "_compensation",
         "_containment",
         "_joints",
         "_left",
@@ -63,14 +65,16 @@ class Activation:
         self._containment, self._zero = containment, zero
         self._attempt: Attempt | None = None
         self._sequence: Sequence | None = None
+        self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
         self._left = self._total = 0  # ticks of the sequence
         self._stored = Stored()  # for the sequence to compare with
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare; what it was given is compared elsewhere."""
-        parts = [None if part is None else part.memory for part in (self._attempt, self._sequence, self._stored)]
-        return (self.phase, self.posture, self._left, self._total, *parts)
+        parts = (self._attempt, self._sequence, self._compensation, self._stored)
+        memories = [None if part is None else part.memory for part in parts]
+        return (self.phase, self.posture, self._left, self._total, *memories)
 
     @property
     def remaining(self) -> Remaining | None:
@@ -78,12 +82,20 @@ class Activation:
         attempt = self._attempt
         if attempt is not None:
             return Remaining(NAMES[attempt.phase], attempt.left, attempt.total)
+        balancing = self._compensation
+        if balancing is not None:
+            return Remaining("compensation", balancing.left, balancing.total)
         return None if self._sequence is None else Remaining("sequence", self._left, self._total)
 
     @property
     def monitored(self) -> tuple[Monitored, ...]:
         """What the sequence checks, while it runs."""
         return () if self._sequence is None else self._sequence.monitored()
+
+    @property
+    def balance(self) -> Balance | None:
+        """For the control law, while a refused arm is balanced (FD-10)."""
+        return None if self._compensation is None else self._compensation.balance
 
     def keep(self, around: Surroundings, known: bool) -> None:
         """Keep the state of an arm that is held, before anybody tries to free it (FD-9); `known`: it is free already."""
@@ -105,6 +117,7 @@ class Activation:
         self.phase = Phase.OFF
         self._attempt = None
         self._sequence = None
+        self._compensation = None
 
     def step(self, around: Surroundings, settings: Settings, gate: Gate) -> list[Event]:
         """One tick with a signal, or of an attempt. Returns what happened, in order."""
@@ -173,11 +186,13 @@ class Activation:
 
     def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
         """The sequence runs; the button does not matter any more (FD-8a)."""
-        sequence = self._sequence
-        assert sequence is not None
-        self._left -= 1
+        sequence, balancing = self._sequence, self._compensation
         if not around.guided and not may_enter(around.mode, settings):
             return [_not_from(around.mode, around.estimate.tick, settings)]
+        if balancing is not None:
+            return self._balance(balancing, around, settings)
+        assert sequence is not None
+        self._left -= 1
         return self._judge(sequence, around, settings)
 
     def _judge(self, sequence: Sequence, around: Surroundings, settings: Settings) -> list[Event]:
@@ -188,11 +203,25 @@ class Activation:
             return [Event(Kind.REFUSED_SENSORS, tick, {"sensor": missing})]
         beyond = sequence.check(around)
         reading = self._containment.step(around.estimate, *NOBODY)
+        if not beyond and reading is None:
+            return [_entered(around, settings)] if self._left == 0 else []
         if beyond:
-            return sequence.reasons(beyond, around, settings)
-        if reading is not None:
-            return [_behind(reading, tick, settings)]
-        return [_entered(around, settings)] if self._left == 0 else []
+            events = sequence.reasons(beyond, around, settings)
+        else:
+            assert reading is not None
+            events = [_behind(reading, tick, settings)]
+        if settings.sequence.compensate and not settings.sequence.protective_stop:
+            balancing = self._compensation = Compensation(events.pop(), around)
+            self._sequence = None
+            events.append(balancing.begun(tick))
+        return events
+
+    def _balance(self, balancing: Compensation, around: Surroundings, settings: Settings) -> list[Event]:
+        """One tick after a limit of the sequence was exceeded: the arm is balanced (FD-10)."""
+        if not joints_ok(around.estimate):
+            return [Event(Kind.REFUSED_SENSORS, around.estimate.tick, {"sensor": JOINTS_SENSED})]
+        self._containment.step(around.estimate, *NOBODY)
+        return balancing.step(around, settings.static)
 
 
 def _started(attempt: Attempt, tick: int) -> Event:

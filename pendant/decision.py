@@ -5,6 +5,7 @@ from typing import NamedTuple
 import msgspec
 
 from pendant.axis_locks import AxisLocks
+from pendant.compensation import Balance
 from pendant.contact import Contact
 from pendant.enabling import Grip
 from pendant.events import Event
@@ -64,6 +65,7 @@ class Decision(msgspec.Struct, frozen=True):
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
+    balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)
     locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)

@@ -87,6 +87,28 @@ ENTRY: dict[Kind, Row] = {
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go, check the payload, then reset.",
         EXCESS,
     ),
+    Kind.COMPENSATING: info(
+        "Free-drive is refused: the arm is balanced", "Hands off. When it stands, within {period:.1f} s, it is held.", ("period",)
+    ),
+    Kind.COMPENSATED: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "The arm is balanced, and held",
+        "It moved by {moved:.1f} mm, within {time:.1f} s.",
+        ("moved", "time"),
+    ),
+    Kind.NOT_COMPENSATED: denied(
+        "The arm did not come to rest: it is held",
+        "It moved by {moved:.1f} mm within {time:.1f} s. Check the payload.",
+        ("moved", "time"),
+    ),
+    Kind.LOAD_FOUND: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "What the arm bears beyond its payload",
+        "{mass:+.2f} kg at the flange, or a steady {force:.0f} N push {way}.",
+        ("mass", "force", "way"),
+    ),
     Kind.RESIDUAL_GONE: Row(
         Effect.INFO,
         Severity.NOTICE,

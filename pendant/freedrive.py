@@ -1,6 +1,7 @@
 """Free-drive: activation, entry, staying in, and leaving with its cause and the way back (FD-7 to FD-17, FD-22)."""
 
 from pendant.activation import Activation
+from pendant.compensation import Balance
 from pendant.containment import Containment
 from pendant.decision import Remaining, WallState
 from pendant.event_row import LEAVING, Effect
@@ -93,6 +94,11 @@ class FreeDrive:
     def monitored(self) -> tuple[Monitored, ...]:
         """What the activation sequence checks, while it runs."""
         return self._activation.monitored
+
+    @property
+    def balance(self) -> Balance | None:
+        """For the control law, while an arm that was refused is balanced (FD-10)."""
+        return self._activation.balance
 
     def walls(self) -> tuple[WallState, ...]:
         """Walls and areas that hold."""

@@ -37,7 +37,7 @@ class Phase(Word):
 
     OFF = "OFF"
     ACTIVATION = "ACTIVATION"  # the signal is present, its period runs (FD-7)
-    SEQUENCE = "SEQUENCE"  # the arm is freed, to see whether it stays (FD-9)
+    SEQUENCE = "SEQUENCE"  # the arm is freed, to see whether it stays (FD-9); balanced where it did not (FD-10)
     HELD = "HELD"  # in free-drive, button held: the period is suspended (FD-8a)
     PERIOD = "PERIOD"  # in free-drive, free-drive period runs (FD-14)
     GUIDED = "GUIDED"  # in free-drive, the user moves the arm

@@ -52,12 +52,13 @@ class Publisher:
         locks = self._locks if robot.mode is Mode.FREE_DRIVE else None
         periods = free.periods() if not free.idle and use.free_drive.remainders else ()
         trying = free.phase is Phase.SEQUENCE
-        gain = use.free_drive.gain if free.helping and not (trying and not use.sequence.amplified) else 0.0
+        helping = free.helping and free.balance is None and not (trying and not use.sequence.amplified)
+        gain = use.free_drive.gain if helping else 0.0
         walls = () if free.phase is Phase.OFF else free.walls()
         key: tuple[object, ...] = ()
         if not (events or periods or walls):
             state = (robot.mode, robot.safety, free.phase, law, free.helping, robot.grip, speeds)
-            guided = (free.damping, free.zones, locks, free.singularity, shake)
+            guided = (free.balance, free.damping, free.zones, locks, free.singularity, shake)
             program = (sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
             key = (*state, *guided, *program, tooling.fitting, tooling.wizard.progress)
             if self._decision is not None and key == self._key:
@@ -84,6 +85,7 @@ class Publisher:
             speed_limits=speeds,
             damping=free.damping,
             zones=free.zones,
+            balance=free.balance,
             fitting=tooling.fitting,
             wizard=tooling.wizard.progress,
             locks=locks,

@@ -61,6 +61,7 @@ class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     age: Annotated[float, _number(0.5, 15.0, "s", "FD-9", "how old the state is that it is compared with")] = 2.0
     amplified: Annotated[bool, _switch("FD-9", "the user's force is amplified in it already")] = False
     protective_stop: Annotated[bool, _switch("FD-10", "a limit exceeded in it is a protective stop")] = False
+    compensate: Annotated[bool, _switch("FD-10", "beyond a limit the arm is balanced till it stands, then held")] = False
     dynamic: SequenceDynamic = SequenceDynamic()
 
 

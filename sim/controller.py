@@ -115,6 +115,8 @@ class Controller:
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None
+        if start is not None and self._law is Law.FREE:
+            start += self.free_drive.balancing
         # The deflection alone: the fused torque is noisier, and the rigid model's share in it knows nothing of a push.
         feeding_back = use.torque_feedback and use.from_deflection
         if feeding_back:

@@ -14,6 +14,7 @@ from sim.active_damping import ActiveDamping
 from sim.adaptive_friction import AdaptiveFriction
 from sim.arm import Arm
 from sim.axis_locks import AxisConstraint
+from sim.balancing import Balancing
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
 from sim.shaker import Shaker
@@ -57,6 +58,7 @@ class FreeDriveLaw:
         n = arm.n
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
+        self._balancing = Balancing(np.array(arm.limits.torque), rotor, arm.payload)
         self._constraint = AxisConstraint(arm, calibration, tcp, R_FT)
         self.singularity = Singularity(rotor)
         self._shaker = Shaker(rotor[-1], arm.limits.torque[-1])
@@ -70,12 +72,18 @@ class FreeDriveLaw:
         """How many joints move a part."""
         return self._elbow if part == "elbow" else self._hand.shape[1]
 
+    @property
+    def balancing(self) -> Array:
+        """Torque (n,) that balances a load nobody told of, as far as it was found since free-drive began [N·m] (FD-10)."""
+        return self._balancing.torque
+
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
         self._memory[:] = 0.0
         self._memory[2] = estimate.tau_ext
         self._turned[:] = estimate.R_BF
         self._damping.start()
+        self._balancing.start()
         self._constraint.release()
         self._shaker.stop()
 
@@ -98,6 +106,9 @@ class FreeDriveLaw:
                 _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
         if decision.zones:
             torque += decision.zones
+        if decision.balance is not None:
+            self._balancing.add(estimate, decision.balance, jacobian, torque)
+            return torque
         if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
             return torque
         self.singularity.update(jacobian)

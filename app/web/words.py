@@ -39,6 +39,7 @@ PERIOD_COLOURS = {
     "sequence": Colour.BLUE,
     "confirmation": Colour.AMBER,
     "let go": Colour.AMBER,
+    "compensation": Colour.AMBER,
     "feedback": Colour.GREY,
     "cool-down": Colour.GREY,
     "safety": Colour.GREY,

@@ -16,6 +16,7 @@ EXPECTED = {
     "sequence.age": (2.0, 0.5, 15.0, "s", "FD-9", True),
     "sequence.amplified": (False, None, None, "", "FD-9", True),
     "sequence.protective_stop": (False, None, None, "", "FD-10", True),
+    "sequence.compensate": (False, None, None, "", "FD-10", True),
     "sequence.dynamic.acceleration": (False, None, None, "", "FD-12b", True),
     "sequence.dynamic.payload": (False, None, None, "", "FD-12b", True),
     "sequence.dynamic.drift": (False, None, None, "", "FD-12b", True),

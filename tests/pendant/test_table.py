@@ -42,6 +42,7 @@ EXAMPLE: Values = {
     "limit": 10.0,
     "mass": -1.8,
     "mode": "FREE_DRIVE",
+    "moved": 12.3,
     "name": "free_drive.allowed_from.normal",
     "new": True,
     "old": False,
