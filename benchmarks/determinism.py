@@ -1,5 +1,6 @@
 """Whether a session and a seed give the same events, byte for byte: every bundled session twice, some of them in real time."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,7 +13,7 @@ REALTIME = ("activation-too-short", "contact-3c", "let-go-too-early")
 """Sessions that also keep the pace of the clock. In the full size all of them."""
 
 
-def differing(names: list[str], realtime: bool) -> tuple[list[str], int]:
+def differing(names: Sequence[str], realtime: bool) -> tuple[list[str], int]:
     """Run sessions twice, each in a process of its own.
 
     Args:

@@ -98,13 +98,14 @@ class Winding(Feedback):
         estimate: Estimate,
         use: JointControl,
         excess: Array,
+        waits: bool,
         torque: Array,
         start: Array | None,
         sticking: Array,
         stiffer: Array,
     ) -> None:
         """All corrections, as if the motors gave whatever is asked of them."""
-        super().add(reference, desired, estimate, use, np.zeros_like(excess), torque, start, sticking, stiffer)
+        super().add(reference, desired, estimate, use, np.zeros_like(excess), waits, torque, start, sticking, stiffer)
 
 
 def reach_limit(case: Case) -> Overshoot:

@@ -78,7 +78,7 @@ def connections(url: str, _: str, end: float) -> int:
     count = 0
     while time.monotonic() < end:
         with contextlib.ExitStack() as stack:
-            for _ in range(200):
+            for _number in range(200):
                 made = stack.enter_context(socket.create_connection((host, int(port))))
                 made.sendall(b"GET / HTTP/1.1\r\nHost: ")
                 count += 1

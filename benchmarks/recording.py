@@ -67,6 +67,7 @@ def measure(report: Report, ticks: int = 2000, turns: int = 5) -> None:
         session = load(find(name), Session)
         prepared = prepare(session, name)
         speeds: list[float] = []
+        size = 0
         for _ in range(turns):
             with TemporaryDirectory() as out:
                 begun = time.process_time()
