@@ -36,6 +36,7 @@ CHANGES = st.fixed_dictionaries(
         "sequence.on": st.booleans(),
         "sequence.amplified": st.booleans(),
         "sequence.protective_stop": st.booleans(),
+        "sequence.compensate": st.booleans(),
         "free_drive.cool_down": st.sampled_from([0.0, 0.1]),
         "free_drive.allowed_from.run": st.booleans(),
         "free_drive.allowed_from.normal": st.booleans(),
@@ -153,7 +154,8 @@ def test_invariants(changes: dict[str, float | bool], pieces: list[Piece]) -> No
         tried = now.phase is Phase.SEQUENCE
         assert free == (now.phase in (Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART))
         assert (free or tried) == (now.law is Law.FREE)
-        assert tried == bool(now.monitored)
+        assert (tried and now.balance is None) == bool(now.monitored)
+        assert now.balance is None or (tried and now.gain == 0.0)
         assert (now.law is Law.FOLLOW) == (now.move is not None)
         assert now.mode is Mode.RUN or now.move is None
         assert now.mode is not Mode.STOP or now.law in (Law.BRAKE, Law.OFF)
