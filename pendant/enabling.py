@@ -14,6 +14,9 @@ class Grip(StrEnum):
     PRESSED = "fully pressed"
 
 
+POSITIONS = frozenset({Button.ENABLING, Button.ENABLING_FULL})
+
+
 def enables(grip: Grip | None) -> bool:
     """The arm may move, held like this; None: no device is needed."""
     return grip is None or grip is Grip.MIDDLE
@@ -35,7 +38,7 @@ class EnablingDevice:
     def step(self, inputs: Inputs, silence: int) -> None:
         """One tick; `silence` [ticks] as in KeepAlive."""
         middle, full, held, released = self._middle, self._full, inputs.held, inputs.released
-        if not (held or released or middle.held or full.held):
+        if not (middle.held or full.held) and POSITIONS.isdisjoint(held):
             self._spent = False
             return
         middle.step(Button.ENABLING in held, Button.ENABLING in released, silence)

@@ -41,9 +41,12 @@ class SingularityWatch:
             axes: where the words change.
         """
         before = self.status
-        if before is Nearness.OK and value >= axes.near:
+        if before is _OK and value >= axes.near:
             return False
         near = axes.near * (1.0 if before is Nearness.OK else BACK)
         too_near = axes.too_near * (BACK if before is Nearness.TOO_NEAR else 1.0)
         self.status = Nearness.TOO_NEAR if value < too_near else Nearness.NEAR if value < near else Nearness.OK
         return self.status is not before
+
+
+_OK = Nearness.OK  # looked up in every tick

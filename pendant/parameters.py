@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+import msgspec
+
 from pendant.dynamic_limits import WHOLE, Shares
 from pendant.estimate import Estimate, acceleration_felt
 from pendant.limits import Gauge, Monitored
@@ -22,7 +24,7 @@ class Reference(NamedTuple):
     angles: tuple[float, ...]  # q [rad]
 
 
-class View(NamedTuple):
+class View(msgspec.Struct, frozen=True, gc=False):
     """What parameters are read from."""
 
     estimate: Estimate
@@ -113,11 +115,12 @@ def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
     worst, at, high, value = -1.0, 0, 0.0, 0.0
-    base, share, scale, before = gauge.base, view.share, view.scale, view.since.torques
-    loads = view.estimate.tau_J.tolist()
-    for joint, torque in enumerate(view.estimate.tau_ext.tolist()):
-        limit = base * scale[joint] + share * abs(loads[joint])
-        size = abs(torque - before[joint])
+    base, share, estimate = gauge.base, view.share, view.estimate
+    limits = [base * rated for rated in view.scale]
+    if share:
+        limits = [limit + share * abs(load) for limit, load in zip(limits, estimate.tau_J.tolist(), strict=True)]
+    for joint, (now, then, limit) in enumerate(zip(estimate.tau_ext.tolist(), view.since.torques, limits, strict=True)):
+        size = abs(now - then)
         if size > worst * limit:
             worst, at, high, value = size / limit, joint, limit, size
     gauge.high = high
@@ -201,12 +204,11 @@ class Monitor:
     def step(self, view: View) -> list[Gauge]:
         """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
         beyond: list[Gauge] = []
-        no_wrench = view.split is None
-        no_acceleration = not view.estimate.acceleration_valid
-        way = view.shares.way
-        for read, wrench, acceleration, gauge in self._gauges:
-            if (no_wrench and wrench) or (no_acceleration and acceleration):
-                continue
+        gauges, way = self._gauges, view.shares.way
+        no_wrench, no_acceleration = view.split is None, not view.estimate.acceleration_valid
+        if no_wrench or no_acceleration:
+            gauges = [each for each in gauges if not ((no_wrench and each[1]) or (no_acceleration and each[2]))]
+        for read, _, _, gauge in gauges:
             value, part = read(view, gauge)
             if gauge.judge(value, part, way):
                 beyond.append(gauge)

@@ -94,7 +94,7 @@ class Periods:
         """
         anew, registered = self._anew, self._registered
         self._anew = self._registered = False
-        if self.phase is Phase.HELD:
+        if self.phase is _HELD:
             return self._hold(around, settings, gate.ended, used)
         if gate.began:
             self.phase = Phase.HELD
@@ -169,3 +169,6 @@ class Periods:
         self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
         self._stirred = False
         self._maintained = Maintained(around.estimate, settings, used, self._joints)
+
+
+_HELD = Phase.HELD  # looked up in every tick

@@ -67,7 +67,7 @@ class ProgramRun:
                 else:
                     self._steer(command, estimate.tick, events)
         braked = sequencer.braked
-        if robot.mode is Mode.FREE_DRIVE or (not braked and (move is None or sequencer.move is not move)):
+        if robot.mode is _FREE_DRIVE or (not braked and (move is None or sequencer.move is not move)):
             return
         tool_on = sequencer.tool_on
         if not motion_ok(estimate):
@@ -166,3 +166,6 @@ class ProgramRun:
         else:
             self._end()
             events.append(Event(Kind.PROGRAM_STOPPED, tick, values))
+
+
+_FREE_DRIVE = Mode.FREE_DRIVE  # looked up in every tick

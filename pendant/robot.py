@@ -143,9 +143,9 @@ class Robot:
     def law(self) -> Law:
         """Of this tick, after everything that happens in it."""
         free, mode = self.free, self.mode
-        if mode is Mode.FREE_DRIVE or free.phase is Phase.SEQUENCE:
+        if mode is _FREE_DRIVE or free.phase is Phase.SEQUENCE:
             self._freed = True
-            return Law.HOLD if free.caught else Law.FREE
+            return Law.HOLD if free.caught else _FREE
         if self._freed:
             self._freed, self.braking = False, True
         if mode is Mode.STOP:
@@ -156,3 +156,6 @@ class Robot:
         if self.static:
             self.braking = False
         return Law.BRAKE if self.braking else Law.HOLD
+
+
+_FREE_DRIVE, _FREE = Mode.FREE_DRIVE, Law.FREE  # looked up in every tick

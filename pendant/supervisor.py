@@ -143,7 +143,7 @@ class Supervisor:
         self._free_drive(estimate, wrench_ok, events)
         self._equip(estimate, inputs, events)
         wanted = inputs.settings
-        if Command.DETECTION in commands:
+        if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
             trying = self._free.phase is Phase.SEQUENCE
@@ -154,7 +154,7 @@ class Supervisor:
 
     def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
         """What the tick brings, before anything is decided. Returns whether the user's wrench is valid."""
-        robot, button = self._robot, Button.FREE_DRIVE
+        robot, button = self._robot, _BUTTON
         if self._button.step(button in inputs.held, button in inputs.released, self._silence):
             values: Values = {"value": (self._silence + 1) * TICK, "limit": self._silence * TICK}
             events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
@@ -222,11 +222,11 @@ class Supervisor:
         around = Surroundings(
             estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, changing, guided, shaken
         )
-        trying = free.phase is not Phase.OFF
+        trying = free.phase is not _OFF
         for event in free.step(around, self.settings):
             robot.follow(event, events)
             trying = trying or event.kind not in STILL_OFF
-        if trying and free.phase is Phase.OFF and self._sequencer.guiding:
+        if trying and free.phase is _OFF and self._sequencer.guiding:
             self._run.fail("free-drive was not entered", estimate.tick, events)
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
@@ -255,7 +255,7 @@ class Supervisor:
         law, haptics = self._robot.law(), self._haptics
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
-        self._holding = law is Law.HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
+        self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
         speeds = self._safety.speed_limits(self.settings)
         return self._publisher.step(law, events, self._contacts, speeds, haptics.shake)
 
@@ -266,3 +266,6 @@ class Supervisor:
         left = next((period.ticks for period in free.periods() if period.name in ENDING), -1)
         feedback = ticks(self.settings.handshake.feedback)
         self._haptics.step(Moment(mode, law, free.phase, events, near, left, feedback), self.settings.haptics)
+
+
+_BUTTON, _OFF, _HOLD = Button.FREE_DRIVE, Phase.OFF, Law.HOLD  # looked up in every tick

@@ -74,22 +74,23 @@ class Controller:
         if self._blind and not blind:
             self.references.skip()  # the arm is not where the reference went on to
         self._blind = blind
-        if decision.law is Law.OFF:
+        law = decision.law
+        if law is _OFF:
             # No power: the brakes hold. Whatever comes after it begins anew, as after free-drive.
             self.references.skip()
             torque = self._nothing
-        elif decision.law is Law.FREE:
+        elif law is _FREE:
             self.references.skip()
-            if self._law is not Law.FREE:
+            if self._law is not _FREE:
                 self.free_drive.start(estimate)
             torque = self.free_drive.torque(estimate, decision, jacobian, friction, use.friction)
         else:
             torque = self._track(estimate, decision, friction, stiffer, use)
         if blind:
             self._let_blind_joints_rest(estimate, torque)
-        self._law = decision.law
-        if decision.law is not Law.BRAKE:
-            self._followed = decision.law is Law.FOLLOW
+        self._law = law
+        if law is not _BRAKE:
+            self._followed = law is _FOLLOW
         return self.motor.current(torque, estimate.theta_d)
 
     def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
@@ -130,3 +131,6 @@ class Controller:
         waits = decision.law is Law.BRAKE and self._followed and estimate.touched
         self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
         return torque
+
+
+_OFF, _FREE, _BRAKE, _FOLLOW = Law.OFF, Law.FREE, Law.BRAKE, Law.FOLLOW  # looked up in every tick

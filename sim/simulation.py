@@ -133,12 +133,12 @@ class Simulation:
         learned = msgspec.structs.replace(use, adaptive=False) if self._braked else use
         estimate = self.estimator.update(sample, references.move_done, references.refusal, learned, references.answered)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
-        if self._decision is not None and self._decision.law is Law.FREE:
+        if self._decision is not None and self._decision.law is _FREE:
             estimate.singularity = self.controller.free_drive.singularity.value
         decision = self.supervisor.step(estimate, wishes.inputs)
         friction, stiffer = self.estimator.friction, self.estimator.transmission.stiffer
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, friction, stiffer, use)
-        self._braked = decision.law is Law.OFF
+        self._braked = decision.law is _OFF
         self.plant.advance(self._current * self._motor, wishes.touches, self._braked)
         self._estimate, self._decision = estimate, decision
         return decision
@@ -223,3 +223,6 @@ class Simulation:
     def _reference(self) -> Array | None:
         now = self.controller.references.now
         return None if now is None or self._decision is None or self._decision.law is Law.FREE else now.q.copy()
+
+
+_FREE, _OFF = Law.FREE, Law.OFF  # looked up in every tick

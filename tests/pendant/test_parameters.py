@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -93,7 +94,7 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
     assert [item.name for item in monitor.monitored()] == names
     blind = Monitor(section)
     value = estimate(acceleration=90.0, force=95.0, torque=15.0, acceleration_valid=False)
-    assert blind.step(view(value)._replace(split=None)) == []
+    assert blind.step(msgspec.structs.replace(view(value), split=None)) == []
     sensed = {PARAMETERS[name].text for name in PARAMETERS if PARAMETERS[name].wrench or PARAMETERS[name].acceleration}
     assert [item.name for item in blind.monitored()] == [name for name in names if name not in sensed]
     seeing = Monitor(section)
