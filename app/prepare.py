@@ -15,9 +15,11 @@ from app.expectations import Displacement, Expectation, Value
 from app.library import load_arm, load_tool, tools
 from app.session import Session, Setup, World, bundled, folder
 from pendant.containment import PARTS, TETHER
+from pendant.free_drive_settings import SequenceDynamic
+from pendant.limit_settings import MaintainLimits, OperationLimits
 from pendant.program import Program as Steps
 from pendant.program import misfit
-from pendant.settings import Limit, MaintainLimits, OperationLimits, SequenceDynamic, SettingError, Settings, apply, describe
+from pendant.settings import Limit, SettingError, Settings, apply, describe
 from pendant.walls import AnyBorder, problem
 from sim.arm import Arm
 from sim.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature

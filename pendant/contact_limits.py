@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from pendant.contact_settings import ContactUse
 from pendant.modes import Mode
-from pendant.settings import ContactUse
 
 LIGHTEST = 0.3
 """Carried mass below which the ratio's threshold does not follow it: a bare flange has hardly any [kg] (CD-5)."""

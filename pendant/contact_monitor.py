@@ -8,12 +8,12 @@ import numpy as np
 
 from pendant.contact import ArmPose, Contact
 from pendant.contact_limits import ContactLimits, limits
+from pendant.contact_settings import ContactUse
 from pendant.detector import Detector, Finding
 from pendant.estimate import Array, Estimate
 from pendant.history import MASK, SIZE, SUMMED
 from pendant.modes import Mode
 from pendant.pose import flat, turned
-from pendant.settings import ContactUse
 from pendant.signal import Signal, Signals
 
 

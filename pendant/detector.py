@@ -7,9 +7,9 @@ from pendant.confirmation import Confirmation
 from pendant.contact import Change
 from pendant.contact_limits import ContactLimits
 from pendant.contact_rules import NEW, STEP, Rule, contact_force, hard, slow, statistical, values
+from pendant.contact_settings import ContactUse
 from pendant.history import History, Six
 from pendant.pose import Vector
-from pendant.settings import ContactUse
 from pendant.signal import Signal
 
 BEFORE = 10

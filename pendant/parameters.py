@@ -187,7 +187,7 @@ class Monitor:
     def __init__(self, limits: Section, names: Iterable[str] = PARAMETERS, suffix: str = "") -> None:
         """
         Args:
-            limits: a section of `pendant.settings.Limits`.
+            limits: a section of `pendant.limit_settings.Limits`.
             names: of the parameters that are looked at.
             suffix: of what they are called.
         """

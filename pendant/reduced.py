@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from pendant.estimate import Estimate
+from pendant.free_drive_settings import ReducedLimits
 from pendant.limits import Excess
-from pendant.settings import ReducedLimits, ticks
+from pendant.settings import ticks
 
 
 class SpeedLimits(NamedTuple):

@@ -6,9 +6,11 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 import msgspec
 from msgspec import Meta
 
+from pendant.contact_settings import ContactUse
+from pendant.free_drive_settings import Activation, ButtonUse, Enabling, FreeDrive, Hold, ReducedLimits, Sequence
 from pendant.haptics import HapticUse
+from pendant.limit_settings import Limits, Soft
 from pendant.schema import Limit, Row, Section, SettingError, Value, ticks
-from pendant.schema import limit as _limit
 from pendant.schema import number as _number
 from pendant.schema import switch as _switch
 from pendant.signal_settings import Handshake, LetGo, Signals
@@ -27,186 +29,6 @@ __all__ = [
     "ticks",
     "value_of",
 ]
-
-
-class Operation(Limit, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A limit while free-drive lasts, with its reaction."""
-
-    stop: Annotated[bool, _switch("FD-18", "beyond is STOP")] = False
-
-
-class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """From the signal to entry."""
-
-    period: Annotated[float, _number(0.0, 15.0, "s", "FD-7", "how long the signal must be present without a break")] = 1.0
-    sum_presences: Annotated[bool, _switch("FD-7", "presences add up; a gap up to 1 s does not begin afresh")] = False
-
-
-class SequenceDynamic(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What lowers the limits of the activation sequence, by the shares of `Soft`."""
-
-    acceleration: Annotated[bool, _switch("FD-12b", "its displacements and allowed times fall with acceleration")] = False
-    payload: Annotated[bool, _switch("FD-12b", "its speeds and accelerations fall with the payload")] = False
-    drift: Annotated[bool, _switch("FD-12b", "its speeds fall for what creeps on about the same way")] = False
-    pushed: Annotated[bool, _switch("FD-12b", "its speeds, accelerations fall with the user's force, torque")] = False
-    vertical: Annotated[bool, _switch("FD-12b", "its ways, speeds and accelerations are less along gravity")] = False
-
-
-class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The activation sequence, in which the arm is freed to see whether it stays."""
-
-    on: Annotated[bool, _switch("FD-24", "free-drive begins with an activation sequence")] = True
-    period: Annotated[float, _number(0.0, 5.0, "s", "FD-9", "how long the freed arm must stay within limits")] = 1.0
-    stored: Annotated[bool, _switch("FD-9", "it is also compared with its state of some time ago")] = False
-    age: Annotated[float, _number(0.5, 15.0, "s", "FD-9", "how old the state is that it is compared with")] = 2.0
-    amplified: Annotated[bool, _switch("FD-9", "the user's force is amplified in it already")] = False
-    protective_stop: Annotated[bool, _switch("FD-10", "a limit exceeded in it is a protective stop")] = False
-    compensate: Annotated[bool, _switch("FD-10", "beyond a limit the arm is balanced till it stands, then held")] = False
-    dynamic: SequenceDynamic = SequenceDynamic()
-
-
-class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Modes from which free-drive can be entered."""
-
-    normal: Annotated[bool, _switch("FD-1", "free-drive can be entered from NORMAL")] = False
-    teach: Annotated[bool, _switch("FD-1", "free-drive can be entered from TEACH")] = True
-    run: Annotated[bool, _switch("FD-1", "free-drive can be entered from RUN, which it pauses")] = False
-
-
-class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Free-drive itself."""
-
-    allowed_from: Origins = Origins()
-    period: Annotated[float, _number(0.5, 30.0, "s", "FD-14", "leave when nobody moves it for this long", locked=False)] = 3.0
-    restart_period: Annotated[
-        float, _number(0.5, 30.0, "s", "FD-15", "leave when a guided arm stands still for this long", locked=False)
-    ] = 3.0
-    restart_at_manipulation: Annotated[bool, _switch("FD-15", "the restart period begins with each manipulation")] = False
-    restart_after_force: Annotated[bool, _switch("FD-15", "it begins when the hand's force ends, moving or not")] = False
-    anew: Annotated[bool, _switch("FD-16", "a signal begins the running period anew")] = True
-    longest: Annotated[float, _number(0.5, 30.0, "s", "FD-16", "longest that the two periods may be")] = 30.0
-    maintained: Annotated[bool, _switch("FD-24", "free-drive ends when nobody moves the arm for its periods")] = True
-    remainders: Annotated[bool, _switch("FD-20", "what is left of every period is published")] = True
-    way_back: Annotated[bool, _switch("FD-22", "the way back to the posture at activation is told")] = True
-    cool_down: Annotated[float, _number(0.0, 30.0, "s", "FD-12c", "pause after a refusal or a leaving")] = 2.0
-    gain: Annotated[float, _number(0.0, 3.0, "", "FD-3", "factor on the user's force")] = 1.0
-    force_cap: Annotated[float, _number(5.0, 100.0, "N", "FD-3", "largest user force that is amplified")] = 50.0
-
-
-class Hold(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Held controls."""
-
-    silence: Annotated[float, _number(0.1, 1.0, "s", "FD-23", "a held control silent for longer counts as released")] = 0.5
-
-
-class Enabling(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The three-position enabling device."""
-
-    on: Annotated[bool, _switch("FD-23", "motion needs the enabling device in its middle position")] = False
-
-
-class ReducedLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Safety mode REDUCED."""
-
-    on: Annotated[bool, _switch("FD-1", "REDUCED slows the arm down, and stops a faster one")] = True
-    tcp_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", "speed of the tool centre point in REDUCED")] = 0.25
-    elbow_speed: Annotated[float, _number(0.05, 0.25, "m/s", "FD-1", "speed of the elbow in REDUCED")] = 0.25
-    joint_speed: Annotated[float, _number(0.1, 3.0, "rad/s", "FD-1", "speed of a joint in REDUCED")] = 1.0
-    transition: Annotated[float, _number(0.1, 1.0, "s", "FD-1", "time to slow down in when REDUCED begins")] = 0.5
-
-
-class ButtonUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The free-drive button."""
-
-    short_press: Annotated[float, _number(0.1, 2.0, "s", "FD-8a", "a press shorter than this leaves free-drive")] = 0.4
-    hold_to_run: Annotated[bool, _switch("FD-8a", "letting go of the button leaves free-drive")] = False
-
-
-class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What the freed arm must not do in the activation sequence."""
-
-    flange_displacement: Annotated[Limit, _limit(0.0005, 0.01, "m", "FD-9", "way of the flange")] = Limit(max=0.002)
-    flange_speed: Annotated[Limit, _limit(0.002, 0.1, "m/s", "FD-9", "speed of the flange")] = Limit(max=0.02)
-    flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-9", "acceleration of the flange")] = Limit(max=1.5)
-    joint_displacement: Annotated[Limit, _limit(0.0005, 0.1, "rad", "FD-9", "way of a joint")] = Limit(max=0.01, on=False)
-    joint_speed: Annotated[Limit, _limit(0.01, 0.5, "rad/s", "FD-9", "speed of a joint")] = Limit(max=0.05)
-    joint_acceleration: Annotated[Limit, _limit(0.5, 50.0, "rad/s²", "FD-9", "acceleration of a joint")] = Limit(
-        max=5.0, on=False
-    )
-    motor_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "torque of a motor")] = Limit(max=0.9, on=False)
-    joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "external torque of a joint")] = Limit(max=0.04)
-    payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force as of a wrong payload")] = Limit(max=5.3)
-    payload_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque as of a wrong payload")] = Limit(max=1.5)
-    user_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force that is none of a payload")] = Limit(max=12.0)
-    user_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque that is none of a payload")] = Limit(max=1.5)
-    load_share: Annotated[float, _number(0.0, 1.0, "", "FD-9", "joint torque limits rise by this share of its load")] = 0.25
-
-
-class MaintainLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What counts as moving the arm by hand. Forces and torques are changes since the period began."""
-
-    user_force: Annotated[Limit, _limit(1.0, 100.0, "N", "FD-13", "change of the user's force")] = Limit(max=8.0)
-    user_torque: Annotated[Limit, _limit(0.1, 20.0, "N·m", "FD-13", "change of the user's torque")] = Limit(max=1.5)
-    joint_torque: Annotated[Limit, _limit(0.5, 100.0, "N·m", "FD-13", "change of a joint's external torque")] = Limit(max=8.0)
-    joint_speed: Annotated[Limit, _limit(0.005, 1.0, "rad/s", "FD-13", "speed of a joint")] = Limit(max=0.05)
-    flange_speed: Annotated[Limit, _limit(0.002, 1.0, "m/s", "FD-13", "speed of the flange")] = Limit(max=0.02)
-    flange_acceleration: Annotated[Limit, _limit(0.5, 20.0, "m/s²", "FD-13", "acceleration of the flange")] = Limit(max=1.5)
-    flange_displacement: Annotated[Limit, _limit(0.001, 0.5, "m", "FD-13", "way of the flange in the period")] = Limit(max=0.01)
-    load_share: Annotated[
-        float, _number(0.0, 1.0, "", "FD-13", "force and joint torque limits rise by this share of the load")
-    ] = 0.0
-
-
-class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What ends free-drive while it lasts."""
-
-    tcp_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the tool centre point")] = Operation(max=1.5)
-    elbow_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the elbow")] = Operation(max=1.5)
-    joint_speed: Annotated[Operation, _limit(0.1, 6.0, "rad/s", "FD-18", "speed of a joint")] = Operation(max=3.0)
-    flange_acceleration: Annotated[Operation, _limit(1.0, 78.0, "m/s²", "FD-18", "acceleration of the flange")] = Operation(
-        max=40.0, stop=True
-    )
-    joint_torque: Annotated[Operation, _limit(0.01, 2.0, "of rated", "FD-18", "external torque of a joint")] = Operation(
-        max=0.8, time=0.05, stop=True
-    )
-    user_force: Annotated[Operation, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = Operation(max=90.0, time=0.1)
-    flange_displacement: Annotated[Operation, _limit(0.005, 2.0, "m", "FD-18", "way of the flange since entry")] = Operation(
-        max=0.5, on=False
-    )
-
-
-class Limits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Every limit: parameter x stage (FD-25)."""
-
-    activation: ActivationLimits = ActivationLimits()
-    maintain: MaintainLimits = MaintainLimits()
-    operation: OperationLimits = OperationLimits()
-
-
-class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Resistance in free-drive before the operation limits on speed."""
-
-    on: Annotated[bool, _switch("FD-12b", "motion is resisted before a limit on its speed")] = True
-    onset: Annotated[float, _number(0.1, 0.9, "", "FD-12b", "share of a limit from which on motion is resisted")] = 0.5
-    force: Annotated[float, _number(10.0, 300.0, "N", "FD-12b", "resistance of tool and elbow at their limits")] = 120.0
-    torque: Annotated[float, _number(0.05, 1.0, "of rated", "FD-12b", "resistance of a joint at its limit")] = 0.7
-    payload: Annotated[bool, _switch("FD-12b", "the limits fall with the configured payload and tool")] = True
-    payload_share: Annotated[float, _number(0.0, 0.5, "1/kg", "FD-12b", "a limit is divided by 1 plus this for each kg")] = 0.05
-    drift: Annotated[bool, _switch("FD-12b", "the limits fall for what moves on about the same way")] = True
-    drift_time: Annotated[float, _number(0.2, 30.0, "s", "FD-12b", "for so long it may")] = 2.0
-    drift_share: Annotated[float, _number(0.1, 1.0, "", "FD-12b", "share of the limits that is left then")] = 0.5
-    acceleration: Annotated[bool, _switch("FD-12b", "way and time that are allowed fall with acceleration")] = False
-    acceleration_share: Annotated[float, _number(0.0, 2.0, "s²/m", "FD-12b", "they are divided by 1 plus this for each m/s²")] = (
-        0.25
-    )
-    pushed: Annotated[bool, _switch("FD-12b", "limits fall with the user's force, angular ones with torque")] = False
-    force_share: Annotated[float, _number(0.0, 0.2, "1/N", "FD-12b", "a limit is divided by 1 plus this for each newton")] = 0.02
-    torque_share: Annotated[
-        float, _number(0.0, 2.0, "1/(N·m)", "FD-12b", "an angular one by 1 plus this for each newton metre")
-    ] = 0.1
-    vertical: Annotated[bool, _switch("FD-12b", "the limits of motion are tighter along gravity")] = False
-    vertical_share: Annotated[float, _number(0.1, 1.0, "", "FD-12b", "share of the limits that is left along it")] = 0.5
-    hard: Annotated[bool, _switch("FD-12b", "all this lowers the limits that end free-drive, too")] = False
 
 
 class Axes(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -263,53 +85,6 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     from_dynamics: Annotated[bool, _switch("AF-3", "transmission torque from output angle and model")] = True
     from_deflection: Annotated[bool, _switch("AF-3", "transmission torque from both angles")] = True
     from_motor: Annotated[bool, _switch("AF-3", "transmission torque from the motor angle and torque")] = True
-
-
-class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Detection of a change in contact."""
-
-    on: Annotated[bool, _switch("CD-1", "a change in contact is detected and logged, in every mode", locked=False)] = False
-    tool: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its tool side")] = True
-    flange: Annotated[bool, _switch("CD-2", "from the flange force and the acceleration on its arm side")] = False
-    links: Annotated[bool, _switch("CD-2", "on elbow and forearm, from the joints and the model")] = True
-    opposite: Annotated[bool, _switch("CD-0", "every rule but clamping asks for opposite directions")] = True
-    instant: Annotated[bool, _switch("CD-3", "rule: force and acceleration of now")] = True
-    difference: Annotated[bool, _switch("CD-4", "rule: differences of samples")] = True
-    ratio: Annotated[bool, _switch("CD-5", "rule: ratio of force and acceleration differences")] = True
-    ratio_of_values: Annotated[bool, _switch("CD-5", "the ratio rule looks at force and acceleration of now, too")] = True
-    statistical: Annotated[bool, _switch("CD-6", "rule: differences against the buffer's mean")] = True
-    slow: Annotated[bool, _switch("CD-7", "rule: differences of means, clamping")] = True
-    all_rules: Annotated[bool, _switch("CD-10", "every rule that is on must see it, instead of any")] = False
-    sensitivity: Annotated[float, _number(0.25, 4.0, "", "CD-12", "from clear contacts only to gentle touch", locked=False)] = 1.0
-    hard_count: Annotated[float, _number(1.0, 10.0, "", "CD-9", "confirmations of the first three rules")] = 2.0
-    soft_count: Annotated[float, _number(3.0, 10.0, "", "CD-9", "confirmations of the statistical rule")] = 4.0
-    slow_count: Annotated[float, _number(5.0, 50.0, "", "CD-9", "confirmations of the slow rule")] = 20.0
-    misses: Annotated[float, _number(0.0, 10.0, "", "CD-9", "ticks among the confirming ones that may not; 0: in a row")] = 0.0
-    look_back: Annotated[bool, _switch("CD-14", "the pose at contact is that of the first suspicious sample")] = True
-    retrospective: Annotated[bool, _switch("CD-9", "a clear difference is confirmed on older samples at once")] = True
-    clear_limit: Annotated[float, _number(4.0, 20.0, "", "CD-9", "clear difference: deviations of the contact force")] = 6.0
-    clear_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-9", "clear difference: acceleration")] = 1.0
-    angle: Annotated[float, _number(0.0, 0.95, "", "CD-0", "minus the cosine beyond which directions are opposite")] = 0.3
-    force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", "noise of the flange force, each axis")] = 0.15
-    acceleration_noise: Annotated[float, _number(0.01, 2.0, "m/s²", "CD-0", "noise of the acceleration, each axis")] = 0.1
-    link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", "noise of the force on a link")] = 3.0
-    link_acceleration_noise: Annotated[float, _number(0.02, 5.0, "m/s²", "CD-2", "noise of a link's acceleration")] = 0.2
-    link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", "slow rule: force on a link")] = 60.0
-    link_margin: Annotated[float, _number(0.0, 100.0, "kg", "CD-11", "force on a link that a wrong model may explain")] = 20.0
-    noise_limit: Annotated[float, _number(1.0, 6.0, "", "CD-0", "differences within so many deviations are noise")] = 3.0
-    hard_limit: Annotated[float, _number(2.0, 20.0, "", "CD-4", "difference rule: deviations of force, acceleration")] = 4.0
-    hard_payload: Annotated[float, _number(0.0, 5.0, "N/kg", "CD-11", "difference rule: force more for each kg carried")] = 0.9
-    ratio_share: Annotated[float, _number(0.05, 1.0, "", "CD-5", "ratio's threshold, a share of the payload")] = 0.5
-    ratio_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-5", "ratio rule: least acceleration difference")] = 1.0
-    value_force: Annotated[float, _number(1.0, 50.0, "N", "CD-3", "instant rule: force")] = 8.0
-    value_acceleration: Annotated[float, _number(0.1, 20.0, "m/s²", "CD-3", "instant rule: acceleration")] = 3.0
-    confidence: Annotated[float, _number(2.0, 10.0, "", "CD-6", "statistical rule: standard errors of a mean")] = 3.6
-    slow_force: Annotated[float, _number(0.2, 20.0, "N", "CD-7", "slow rule: force")] = 0.7
-    slow_payload: Annotated[float, _number(0.0, 5.0, "N/kg", "CD-11", "slow rule: force more for each kg carried")] = 0.1
-    clamping_ratio: Annotated[float, _number(1.0, 50.0, "kg", "CD-7", "force over acceleration, beyond is clamping")] = 4.0
-    payload_error: Annotated[float, _number(0.0, 1.0, "", "CD-11", "share by which the payload may be wrong")] = 0.25
-    speed_share: Annotated[float, _number(0.0, 2.0, "s/m", "CD-11", "thresholds rise with the speed")] = 0.0
-    free_drive_factor: Annotated[float, _number(1.0, 10.0, "", "CD-11", "thresholds in FREE_DRIVE, times")] = 3.0
 
 
 class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

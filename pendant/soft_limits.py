@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from pendant.dynamic_limits import WHOLE, DynamicLimits, Shares, in_operation
 from pendant.estimate import Estimate
-from pendant.settings import OperationLimits, Settings
+from pendant.limit_settings import OperationLimits
+from pendant.settings import Settings
 
 CRAWL = 0.1
 """Share of the speed limits that is left at the end of the way from entry: nobody is held there."""

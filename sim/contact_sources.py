@@ -6,9 +6,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
 from pendant.modes import TICK
-from pendant.settings import ContactUse
 from pendant.signal import Signals
 from sim.chain import Body
 from sim.cholesky import factor, solve

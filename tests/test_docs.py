@@ -18,7 +18,7 @@ from app.checked import BadInput, convert
 from app.library import load_arm
 from app.session import Session
 from docs import modules
-from pendant import contact_rules, parameters, settings, shapes, solids
+from pendant import contact_rules, contact_settings, limit_settings, parameters, shapes, solids
 from pendant.history import History
 from pendant.limits import Gauge
 from pendant.signal import Signal
@@ -99,7 +99,7 @@ def test_the_parameter_of_the_example_is_read() -> None:
     view = parameters.View(value, parameters.Reference((0.0,) * 3, (0.0,) * 6, (0.0,) * 6, (0.0,) * 6), None, (), (), 0.0)
     assert made["flange_turn"].read(view, Gauge("t", "")) == (3.0, "flange")
     assert set(made["flange_turn"]._fields) == set(parameters.Parameter._fields)
-    section = within(settings, f"class Made(Section, frozen=True):\n    {cell}")["Made"]()
+    section = within(limit_settings, f"class Made(Section, frozen=True):\n    {cell}")["Made"]()
     assert (section.flange_turn.max, section.flange_turn.on) == (4.0, True)
 
 
@@ -130,7 +130,7 @@ def test_the_rule_of_the_example_sees_a_large_force() -> None:
     for force, seen in ((39.0, False), (41.0, True)):
         history.push(Signal(force, 0.0, 0.0, 0.0, 0.0, 0.0))
         assert level(history, thresholds) is seen
-    made = within(settings, "class Made(Section, frozen=True):\n" + textwrap.indent(switches, "    "))["Made"]()
+    made = within(contact_settings, "class Made(Section, frozen=True):\n" + textwrap.indent(switches, "    "))["Made"]()
     assert (made.level, made.level_force) == (False, 40.0)
     for word in ("wanted", "counts", "hard_count", "misses", "seen", "NEW"):
         assert word in use

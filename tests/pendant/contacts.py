@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.contact_limits import ContactLimits, limits
+from pendant.contact_settings import ContactUse
 from pendant.detector import Detector, Finding
 from pendant.modes import Mode
-from pendant.settings import ContactUse
 from pendant.signal import Signal
 
 Array = NDArray[np.float64]

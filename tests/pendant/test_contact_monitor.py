@@ -6,10 +6,10 @@ import pytest
 
 from pendant.contact import Change, Contact
 from pendant.contact_monitor import SOURCES, ContactMonitor
+from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
 from pendant.history import SUMMED
 from pendant.modes import Mode
-from pendant.settings import ContactUse
 from pendant.signal import Signal, Signals
 from tests.pendant.contacts import USE, ramp, signals
 from tests.pendant.estimates import estimate

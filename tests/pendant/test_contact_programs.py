@@ -6,6 +6,7 @@ import pytest
 
 from pendant.contact import ArmPose, Change, Contact
 from pendant.contact_monitor import ContactMonitor
+from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
 from pendant.events import Kind
 from pendant.inputs import Command, Inputs
@@ -13,7 +14,6 @@ from pendant.modes import Law, Mode
 from pendant.pose import UNTURNED
 from pendant.program import AnyStep, JointMove, LinearMove, Program, ProgramState, SwitchTool, Wait, WaitForContact
 from pendant.reaction import Until
-from pendant.settings import ContactUse
 from pendant.table import render
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench

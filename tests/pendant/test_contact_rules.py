@@ -6,9 +6,9 @@ import pytest
 
 from pendant.contact_limits import limits
 from pendant.contact_rules import LAGS, MEAN, NEW, OLD, STEP, contact_force, hard, slow, statistical, values
+from pendant.contact_settings import ContactUse
 from pendant.history import History
 from pendant.modes import Mode
-from pendant.settings import ContactUse
 from pendant.signal import Signal
 from tests.pendant.contacts import USE, limit
 
