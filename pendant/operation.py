@@ -11,6 +11,7 @@ from typing import NamedTuple
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Kind, Values
 from pendant.hand import Hand
+from pendant.link_push import LinkPush
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
 from pendant.pose import flat, norm, turned_back
@@ -51,6 +52,9 @@ SWUNG = 10  # calm ticks that a swinging one undoes: the step of a payload itsel
 
 MUCH = 0.5  # of the load is missing at least, where the arm swings
 
+CARRIED = 4.0
+"""Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
+
 OLD = 50  # ticks after which such a run begins anew: slow changes are hands
 
 
@@ -71,6 +75,7 @@ class Operation:
         "_followed",
         "_joints",
         "_level",
+        "_link",
         "_monitor",
         "_motion",
         "_offset",
@@ -110,6 +115,7 @@ class Operation:
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
         self._motion = 0.0  # speed then [m/s]
+        self._link = LinkPush(self._since.torques, rated)
         self._shares = [0.0] * (STEP + 1)  # of the load that the sensor misses, in the last ticks
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
@@ -133,7 +139,7 @@ class Operation:
             self._twist,
             self._since,
         )
-        return (*own, self._monitor.memory, self._soft.memory)
+        return (*own, self._monitor.memory, self._soft.memory, self._link.memory)
 
     @property
     def damping(self) -> Damping | None:
@@ -165,7 +171,7 @@ class Operation:
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
-        return self._moved(estimate, hand, driven) if self._on.motion else None
+        return self._moved(estimate, hand, use_wrench, driven) if self._on.motion else None
 
     def _torque(self, estimate: Estimate) -> float:
         """The hand's torque: its change since before entry, with an offset that turns with the flange [N·m]."""
@@ -174,7 +180,7 @@ class Operation:
         x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
         return norm((x - ox, y - oy, z - oz))
 
-    def _moved(self, estimate: Estimate, hand: Hand, driven: bool) -> Ending | None:
+    def _moved(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
         """Motion that nobody causes."""
         vx, vy, vz = estimate.v_F.tolist()[:3]
         self._motion = norm((vx, vy, vz))
@@ -183,8 +189,15 @@ class Operation:
         if self._motion < self._on.speed or driven or x * x + y * y + z * z >= least * least:
             self._alone = 0
             return None
+        link = self._link
+        if self._alone == 0:
+            link.begin()
         self._alone += 1
+        link.step(estimate)
         if self._alone <= self._allowed:
+            return None
+        if use_wrench and norm(hand.change) < CARRIED and link.told(estimate):
+            self._alone = 0
             return None
         values: Values = {"value": self._motion, "limit": self._on.speed, "time": self._alone * TICK}
         return Ending(Kind.STOPPED_MOTION, values)

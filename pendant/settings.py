@@ -102,7 +102,7 @@ class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     band: Annotated[float, _number(0.0, 0.5, "m", "VW-7", "before the tether, where it resists")] = 0.005
     averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", "the tether lies round the flange's mean place")] = 0.02
     safety_period: Annotated[float, _number(0.1, 10.0, "s", "VW-3", "the tether follows a hand that was felt so long ago")] = 1.0
-    push_back: Annotated[float, _number(2.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 2.0
+    push_back: Annotated[float, _number(1.0, 50.0, "N", "VW-5", "smallest force that the tether takes for a hand's")] = 1.0
     leave: Annotated[bool, _switch("VW-6", "beyond the tether, free-drive is left")] = False
     stop: Annotated[bool, _switch("VW-6", "beyond the tether is STOP")] = False
 
@@ -114,7 +114,7 @@ class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True
     payload: Annotated[bool, _switch("FD-19", "a payload that drops or changes in free-drive is STOP")] = True
     speed: Annotated[float, _number(0.005, 0.25, "m/s", "FD-19", "of the flange, from which on it counts as moving")] = 0.02
     time: Annotated[float, _number(0.02, 2.0, "s", "FD-19", "that it may move alone")] = 0.3
-    force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", "a smaller force is nobody's")] = 1.5
+    force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", "a smaller force is nobody's")] = 1.0
     sensor: Annotated[bool, _switch("FD-19", "a flange sensor that drifts or steps drives no arm")] = True
 
 

@@ -2,7 +2,6 @@
 
 import math
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -88,6 +87,7 @@ class Simulation:
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
         self._braked = False  # by the last decision
+        self._learn = True  # what friction and gears are like, by the last decision
         self._estimate: Estimate | None = None
         self._glance = Glance(self)
 
@@ -129,9 +129,8 @@ class Simulation:
             self.fit(self.supervisor.fitting)
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
-        # Nothing is to be learned from joints that the brakes hold.
-        learned = msgspec.structs.replace(use, adaptive=False) if self._braked else use
-        estimate = self.estimator.update(sample, references.move_done, references.refusal, learned, references.answered)
+        done, refusal = references.move_done, references.refusal
+        estimate = self.estimator.update(sample, done, refusal, use, references.answered, self._learn)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
         if self._decision is not None and self._decision.law is _FREE:
             estimate.singularity = self.controller.free_drive.singularity.value
@@ -139,6 +138,8 @@ class Simulation:
         friction, stiffer = self.estimator.friction, self.estimator.transmission.stiffer
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, friction, stiffer, use)
         self._braked = decision.law is _OFF
+        # Nothing is to be learned from joints that the brakes hold, nor from a hand: on a link no sensor tells its force.
+        self._learn = not self._braked and decision.law is not _FREE
         self.plant.advance(self._current * self._motor, wishes.touches, self._braked)
         self._estimate, self._decision = estimate, decision
         return decision

@@ -34,6 +34,7 @@ def estimate(
     q: list[float] | None = None,
     theta: list[float] | None = None,
     theta_d: list[float] | None = None,
+    tau_ext_deviation: float = 0.0,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
@@ -56,6 +57,7 @@ def estimate(
         tau_m=np.zeros(n),
         tau_J=np.array(vector(tau_J, n)),
         tau_ext=np.array(vector(tau_ext, n)),
+        tau_ext_deviation=np.full(n, tau_ext_deviation),
         w_sensor=np.zeros(6) if needed is None else np.subtract(needed + [0.0] * 3, vector(force, 3) + [0.0] * 3),
         F_user=np.array(vector(force, 3) + vector(torque, 3)),
         a_F=np.add(vector(acceleration, 3), [0.0, 0.0, 9.81]),

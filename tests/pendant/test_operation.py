@@ -114,9 +114,56 @@ def test_a_hand_a_wall_or_rest_starts_its_time_afresh(pause: dict[str, float | b
 def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
     free = Free()
     free.until([estimate(force=10.0, speed=0.1)] * 500)
-    settle = math.ceil(SWING * math.log(10.0 / 1.5) / TICK)
+    settle = math.ceil(SWING * math.log(10.0 / 1.0) / TICK)
     assert free.until([estimate(speed=0.1)] * (150 + settle - 2)) is None
     assert free.until([estimate(speed=0.1)] * 4) is not None
+
+
+def elbow(felt: float, turns: float = 0.2, down: float = 0.0, deviation: float = 0.0) -> Estimate:
+    """Moving: what the elbow's joint feels [N·m], how fast it turns [rad/s], what pulls the flange down [N]."""
+    third, torques = [0.0, 0.0, turns, 0.0, 0.0, 0.0], [0.0, 0.0, felt, 0.0, 0.0, 0.0]
+    return estimate(speed=0.05, qd=third, tau_ext=torques, force=[0.0, 0.0, -down], tau_ext_deviation=deviation)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_hand_on_a_link_turns_its_joint_with_what_the_joint_feels(way: float) -> None:
+    """FD-19: 2 N·m on a joint of 150 N·m, for as long as it lasts; without it the arm is on its own again."""
+    free = Free()
+    assert free.until([elbow(way * 2.0, way * 0.2)] * 1000) is None
+    assert free.until([elbow(0.0, way * 0.2)] * 302) is not None
+
+
+def test_a_hand_on_a_link_that_swings_is_told_by_the_mean() -> None:
+    assert Free().until([elbow(22.0), elbow(-18.0)] * 500) is None
+    assert Free().until([elbow(21.0), elbow(-18.0)] * 500) is not None
+
+
+@pytest.mark.parametrize(
+    ("value", "use_wrench"),
+    [
+        (elbow(1.7), True),  # an error of the friction estimate is no hand
+        (elbow(-5.0), True),  # nor what brakes
+        (elbow(5.0, turns=0.01), True),  # nor what turns nothing
+        (elbow(2.9, deviation=6.0), True),  # nor what the gear's stiffness may hide
+        (elbow(5.0), False),  # without the sensor it may hang at the flange
+    ],
+    ids=["small", "against", "still", "unsure", "blind"],
+)
+def test_what_joints_feel_besides_is_no_hand(value: Estimate, use_wrench: bool) -> None:
+    assert Free().until([value] * 151, use_wrench=use_wrench) is not None
+
+
+def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
+    free = Free()
+    assert free.until([elbow(5.0, down=6.0)] * 5000) is not None
+    assert Free().until([elbow(5.0, down=3.0)] * 5000) is None
+
+
+def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
+    settings = Settings()
+    operation = Operation(elbow(5.0), settings, ZEROS, JOINTS, RATED)
+    hand = Hand(elbow(5.0), ZEROS)
+    assert any(operation.step(elbow(5.0), hand, True, False) for _ in range(151))
 
 
 def test_motion_can_be_switched_off() -> None:

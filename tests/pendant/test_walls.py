@@ -56,7 +56,7 @@ RANGES = [
     ("stiffness", 0.0, 20000.0),
     ("damping", 0.0, 1000.0),
     ("force", 1.0, 500.0),
-    ("push_back", 2.0, 50.0),
+    ("push_back", 1.0, 50.0),
     ("safety_period", 0.1, 10.0),
     ("redefine_period", 0.1, 10.0),
     ("averaging_period", 0.02, 10.0),

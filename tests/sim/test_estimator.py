@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pendant.inputs import Inputs
+from pendant.modes import Mode
 from sim import calibration
 from sim.chain import Body, chain
 from sim.changes import AttachPayload, SensorFault
@@ -13,6 +14,7 @@ from sim.estimator import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, Estimator, tracking
 from sim.frames import joint_frames, rotation_from_rpy
 from sim.scenario import Load, Scenario
 from sim.sensors import Sample
+from sim.touch import Pull
 from sim.transmission_torque import DEFLECTION
 from tests.sim.arms import PROBE, TWO_KG, UR5E
 from tests.sim.bench import CENTRE, Bench, push
@@ -344,3 +346,26 @@ def test_the_joints_tell_a_force_on_the_flange() -> None:
     expected = np.linalg.solve(jacobian @ jacobian.T + 0.01 * np.eye(3), jacobian @ seen.tau_ext)
     assert np.allclose(seen.F_joints, expected, atol=1e-9)
     assert np.linalg.norm(seen.F_joints - before - [20.0, -15.0, 25.0]) < 12.0
+
+
+def test_a_hand_on_the_elbow_is_never_learned() -> None:
+    """AF-2: no sensor tells its force, so it would pass for less friction and another gear, and stay when it has gone."""
+    load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
+    posture = [1.58, -1.13, 0.67, -2.17, 2.3, -1.33]
+    bench = Bench(Scenario(seed=1003, posture=posture, payload_true=load, payload_configured=load))
+    bench.enter()
+    estimator = bench.simulation.estimator
+    known = (estimator.friction.terms.copy(), estimator.transmission.correction.copy())
+    untouched = means(bench, 0.3)["tau_ext"]
+    body = bench.plant.model.body("elbow").id
+    target = bench.plant.data.xpos[body].copy()
+    forwards = np.array([0.0, -0.905, -0.425])
+    for k in range(500):
+        target += forwards * 0.1 * 0.002 * min(k / 100.0, 1.0)
+        bench.run(0.002, Pull("elbow", CENTRE, tuple(target), 300.0))
+    assert bench.estimate.q[1] > -1.0, "it goes along"
+    assert bench.mode is Mode.FREE_DRIVE, "who guides the arm by its elbow is somebody (FD-19)"
+    assert (estimator.friction.terms == known[0]).all()
+    assert (estimator.transmission.correction == known[1]).all()
+    bench.run(0.5)
+    assert np.abs(means(bench, 0.3)["tau_ext"] - untouched).max() < 4.0
