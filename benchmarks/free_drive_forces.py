@@ -222,7 +222,9 @@ def measure_case(case: Case) -> tuple[Result, int]:
         for k in range(6):
             note("turn", hand.turn(directions()[k]))
         for k in range(len(elbow_directions(hand))):
-            note("elbow", hand.lead(elbow_directions(hand)[k], "elbow"))
+            ways = elbow_directions(hand)
+            if k < len(ways):  # fewer, where the pushes before have brought the elbow near its axis
+                note("elbow", hand.lead(ways[k], "elbow"))
         for k in range(6):
             note("breakaway", hand.breakaway(directions()[k]))
     result = Result(hand.entered, forces["lead"], forces["turn"], forces["elbow"], forces["breakaway"])

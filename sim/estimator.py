@@ -23,7 +23,6 @@ Array = NDArray[np.float64]
 SHIPPED = JointControl()
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
-HAND = 5.0  # at the flange, which the sensor tells: beyond its offset, so that it is a hand that moves the arm [N]
 BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
 SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
 TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
@@ -89,11 +88,13 @@ class Estimator:
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
+        explained: Array | None = None,
     ) -> Estimate:
         """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
-        as known, and the gears are compared with the rigid model only where the flange sensor tells that hand's force.
+        as known, and the gears are compared with the rigid model only where `explained` says which joint torques (n,) [N·m]
+        that hand explains.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -119,7 +120,7 @@ class Estimator:
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        self._estimate_torques(sample, use, rigid.torque, learn)
+        self._estimate_torques(sample, use, rigid.torque, learn, explained)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known = self._known
         if known is None:
@@ -171,7 +172,7 @@ class Estimator:
             F_joints=self.forces.F_joints,
         )
 
-    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool) -> None:
+    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool, explained: Array | None) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
         surplus, stiction = self._surplus, self._stiction
@@ -188,10 +189,9 @@ class Estimator:
         ways = transmission.ways
         ways[DEFLECTION] = self._deflection
         moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
-        told = learn or (sample.wrench_valid and _told(self.forces.F_user, self.jacobian, transmission.explained))
-        if learn:
-            transmission.explained[:] = 0.0
-        transmission.update(friction.deviation, stiction, motor[2], moving and told, self._ways)
+        transmission.explained[:] = 0.0 if explained is None else explained
+        comparing = moving and (learn or explained is not None)
+        transmission.update(friction.deviation, stiction, motor[2], comparing, self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
 
@@ -232,16 +232,6 @@ def _surplus(tau_m, rotor, motor, tau_dyn, surplus) -> None:
     """What the motor spends beyond the rotor's inertia and the rigid model."""
     for i in range(surplus.size):
         surplus[i] = tau_m[i] - rotor[i] * motor[2, i] - tau_dyn[i]
-
-
-@numba.njit(cache=True)
-def _told(F_user, jacobian, explained) -> bool:
-    """Whether a hand at the flange moves the arm; what the joints feel of it."""
-    for i in range(explained.size):
-        explained[i] = 0.0
-        for k in range(6):
-            explained[i] += jacobian[k, i] * F_user[k]
-    return F_user[0] ** 2 + F_user[1] ** 2 + F_user[2] ** 2 > HAND**2
 
 
 @numba.njit(cache=True)

@@ -130,7 +130,8 @@ class Simulation:
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         done, refusal = references.move_done, references.refusal
-        estimate = self.estimator.update(sample, done, refusal, use, references.answered, self._learn)
+        explained = None if self._learn or self._braked else self.controller.free_drive.explained
+        estimate = self.estimator.update(sample, done, refusal, use, references.answered, self._learn, explained)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
         if self._decision is not None and self._decision.law is _FREE:
             estimate.singularity = self.controller.free_drive.singularity.value
