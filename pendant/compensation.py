@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from pendant.events import Event, Kind, Values
 from pendant.modes import TICK
-from pendant.residual import Vector, mass_error, split, upward
+from pendant.pose import Vector
+from pendant.residual import mass_error, split, upward
 from pendant.settings import Static, ticks
 from pendant.surroundings import Surroundings
 

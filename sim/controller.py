@@ -116,7 +116,7 @@ class Controller:
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None
-        if start is not None and self._law is Law.FREE:
+        if start is not None and self._law is _FREE:
             start += self.free_drive.balancing
         # The deflection alone: the fused torque is noisier, and the rigid model's share in it knows nothing of a push.
         feeding_back = use.torque_feedback and use.from_deflection
@@ -128,7 +128,7 @@ class Controller:
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
         # What stands in the way of a motion that is stopped must not be pushed on: to take that back would need seconds.
-        waits = decision.law is Law.BRAKE and self._followed and estimate.touched
+        waits = decision.law is _BRAKE and self._followed and estimate.touched
         self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
         return torque
 

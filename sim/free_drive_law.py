@@ -86,7 +86,6 @@ class FreeDriveLaw:
 
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
-        self._hand[:], self._force = 0.0, 0.0
         self._memory[:] = 0.0
         self._memory[2] = estimate.tau_ext
         self._turned[:] = estimate.R_BF
@@ -108,6 +107,7 @@ class FreeDriveLaw:
             friction: its estimate.
             with_friction: take friction off the hand.
         """
+        self._force = 0.0
         torque = self._dynamics.gravity(estimate.q)
         for wall in decision.walls:
             if wall.force != ORIGIN:
@@ -138,7 +138,7 @@ class FreeDriveLaw:
             if locks is not None:
                 constraint.project(hand[1], gain, torque)
         else:
-            hand[:], self._force = 0.0, 0.0
+            hand[:] = 0.0
         if with_friction:
             felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
             rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)

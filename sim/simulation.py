@@ -86,8 +86,6 @@ class Simulation:
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
-        self._braked = False  # by the last decision
-        self._learn = True  # what friction and gears are like, by the last decision
         self._estimate: Estimate | None = None
         self._glance = Glance(self)
 
@@ -130,18 +128,18 @@ class Simulation:
         sample = self.sensors.read(self.plant, self._current)
         use, references = self.supervisor.settings.joint_control, self.controller.references
         done, refusal = references.move_done, references.refusal
-        explained = None if self._learn or self._braked else self.controller.free_drive.explained
-        estimate = self.estimator.update(sample, done, refusal, use, references.answered, self._learn, explained)
+        before = None if self._decision is None else self._decision.law
+        # Nothing is to be learned from joints that the brakes hold, nor from a hand: on a link no sensor tells its force.
+        learn = before is not _OFF and before is not _FREE
+        explained = self.controller.free_drive.explained if before is _FREE else None
+        estimate = self.estimator.update(sample, done, refusal, use, references.answered, learn, explained)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
-        if self._decision is not None and self._decision.law is _FREE:
+        if before is _FREE:
             estimate.singularity = self.controller.free_drive.singularity.value
         decision = self.supervisor.step(estimate, wishes.inputs)
         friction, stiffer = self.estimator.friction, self.estimator.transmission.stiffer
         self._current = self.controller.update(estimate, decision, self.estimator.jacobian, friction, stiffer, use)
-        self._braked = decision.law is _OFF
-        # Nothing is to be learned from joints that the brakes hold, nor from a hand: on a link no sensor tells its force.
-        self._learn = not self._braked and decision.law is not _FREE
-        self.plant.advance(self._current * self._motor, wishes.touches, self._braked)
+        self.plant.advance(self._current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
         return decision
 
