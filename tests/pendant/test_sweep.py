@@ -17,14 +17,14 @@ SHORT = apply(
         "sequence.on": False,
         "activation.period": 0.02,
         "free_drive.period": 0.5,
-        "free_drive.restart_period": 0.6,
-        "free_drive.cool_down": 0.3,
+        "free_drive.restart_period": 0.52,
+        "free_drive.cool_down": 0.12,
         "hold.silence": 0.1,
         "button.short_press": 0.1,
         "static.time": 0.02,
     },
 )
-"""Periods in ticks: activation 10, free-drive 250, restart 300, cool-down 150, silence 50, short press 50, static 10."""
+"""Periods in ticks: activation 10, free-drive 250, restart 260, cool-down 60, silence 50, short press 50, static 10."""
 
 FROM_ANYWHERE = apply(SHORT, {"free_drive.allowed_from.run": True, "free_drive.allowed_from.normal": True})
 HOLD_TO_RUN = apply(SHORT, {"button.hold_to_run": True, "free_drive.cool_down": 0.0})
@@ -123,9 +123,9 @@ FOR_OPTIONS = {
 }
 
 AFTER = {
-    "rest": ticks_of(310),
-    "hold on": ticks_of(170, held=True) + ticks_of(60),
-    "press again later": ticks_of(160) + ticks_of(15, held=True) + ticks_of(2),
+    "rest": ticks_of(270),
+    "hold on": ticks_of(80, held=True) + ticks_of(55),
+    "press again later": ticks_of(70) + ticks_of(15, held=True) + ticks_of(2),
 }
 
 
