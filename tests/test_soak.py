@@ -9,12 +9,13 @@ from typing import Any
 
 import pytest
 
+from app.web.panel import CONFIRM, HOLD
 from app.web.server import serve
 from benchmarks.common import Options, Report
 from benchmarks.soak import served as soaked
 from benchmarks.soak.__main__ import judge
 from benchmarks.soak.served import BUILD, Pace, State
-from benchmarks.soak.user import User
+from benchmarks.soak.user import FREE_DRIVE, User
 from sim.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 
@@ -29,11 +30,17 @@ def test_a_user_uses_the_page_as_it_may_and_comes_back(monkeypatch: pytest.Monke
     user.run(time.monotonic() + 8.0)
     looker.run(time.monotonic() + 1.0)
     app.close()
+    assert user.stayed
+    assert looker.stayed
     assert user.done["come"] >= 2
     assert user.done["set"] >= 3
     assert set(looker.done) == {"come"}
     assert set(app.guard.refused) <= {"disabled control"}  # what was disabled while it was being pressed
     assert loop.desk.take().touches == ()
+
+
+def test_a_user_knows_the_free_drive_button_by_whatever_it_is_called() -> None:
+    assert (HOLD, CONFIRM) == FREE_DRIVE
 
 
 def states(**changes: Callable[[int], Any]) -> list[dict[str, Any]]:

@@ -44,6 +44,7 @@ def soak(report: Report, minutes: float, warm: float = WARM) -> None:
         app.stdin.close()
         reader.join()
         report.row("exit code of the app", app.wait(), at_most=0, at_least=0)
+        report.row("clients that stayed to the end", sum(user.stayed for user in users), at_least=len(users))
         errors.seek(0)
         log = errors.read()
     judge(report, states, log, 60.0 * warm)

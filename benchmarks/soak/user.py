@@ -18,6 +18,8 @@ from benchmarks.viewer import CAMERA, VERSION
 SPARED = ("Clock", "Speed", "Record", "Mounting", "Tilt [°]")
 """Not set at random: the clock is paused for a moment only, disks stay free, and the arm stands on the floor."""
 
+FREE_DRIVE = ("Hold for free-drive", "Press to confirm")  # one button: what it is called depends on what is asked for
+
 PACE = 0.7  # mean time between two things that the operator does [s]
 STAY = 60.0  # mean time for which a client stays [s]
 ARRIVE = 2.0  # until it has seen what there is [s]
@@ -36,6 +38,7 @@ class User:
 
     def __init__(self, url: str, seed: int, idle: bool = False) -> None:
         self.done: Counter[str] = Counter()
+        self.stayed = False  # to the end that was asked for
         self._url = url.replace("http", "ws", 1)
         self._random = random.Random(seed)
         self._idle = idle
@@ -52,6 +55,7 @@ class User:
                 self._socket.close()
             except ConnectionClosed:
                 self.done["thrown out"] += 1
+        self.stayed = True
 
     def _come(self) -> None:
         self.done["come"] += 1
@@ -118,7 +122,7 @@ class User:
 
     def _hold(self) -> None:
         """Hold the free-drive button, mostly for long enough."""
-        button = self._called("Hold for free-drive")
+        button = self._called(*FREE_DRIVE)
         for _ in range(round(HOLD_RATE * self._random.uniform(0.1, 3.5))):
             self._send({"type": "GuiButtonHoldMessage", "uuid": button, "frequency": 30.0})
             self._look(1.0 / HOLD_RATE)
@@ -146,8 +150,8 @@ class User:
         message |= {"start_position": start, "start_screen_pos": [0.5, 0.5], "button": "left", "modifier": modifier}
         self._send(message | {"end_position": here, "end_screen_pos": [0.6, 0.5]})
 
-    def _called(self, label: str) -> str:
-        return next(name for name, thing in self._things.items() if thing.get("label") == label)
+    def _called(self, *labels: str) -> str:
+        return next(name for name, thing in self._things.items() if thing.get("label") in labels)
 
     def _use(self, name: str) -> None:
         thing = self._things[name]
