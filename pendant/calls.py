@@ -64,7 +64,8 @@ class Calls:
         self.commands = ()
         self.signal = NONE
         if self.feeling:
-            self.signal = self._sources.step(estimate, wrench, joints_ok(estimate), holding, use)
+            running = state is ProgramState.RUNNING
+            self.signal = self._sources.step(estimate, wrench, joints_ok(estimate), holding, running, use)
             self.hand_off = self._sources.hand_off(settings.let_go, wrench)
             self.force = self._sources.force()
             push = self._sources.pushed()

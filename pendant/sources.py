@@ -14,7 +14,8 @@ from pendant.signal_settings import LetGo, Signals
 from pendant.untouched import Untouched
 
 ANOTHER_POSTURE = 0.05
-"""A joint that has moved by more, while the arm was not held, makes the untouched state another [rad]."""
+"""A joint that has moved by more, while the arm was not held, makes the untouched state another [rad]; of the joints also when
+it came back, for what is known of the gears' errors has changed on the way."""
 
 LEVER = 5.0
 """A torque at the flange is as good a sign of a hand as the force on a lever of 0.2 m [1/m]."""
@@ -44,6 +45,7 @@ class Sources:
     __slots__ = (
         "_held_at",
         "_joints",
+        "_moved",
         "_off",
         "_pattern",
         "_push",
@@ -67,6 +69,7 @@ class Sources:
         self._tap = TapSignal()
         self._turn = TurnSignal()
         self._held_at: list[float] = []  # joint angles when the arm was last held [rad]
+        self._moved = False  # since then a program has moved the arm, or it has been in another posture
         self._quiet = 0  # ticks for which it has been held
         self._off = 0  # ticks for which no hand is felt
         self._told = 0  # ticks of the push, for FD-6a
@@ -77,7 +80,7 @@ class Sources:
         values = [getattr(self, name) for name in self.__slots__]
         return tuple([tuple(value) if isinstance(value, list) else getattr(value, "memory", value) for value in values])
 
-    def step(self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, use: Signals) -> Presence:
+    def step(self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: Signals) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.
 
         Args:
@@ -85,11 +88,12 @@ class Sources:
             wrench_ok: the user's wrench is valid and finite.
             joints_ok: the joint values are valid and finite.
             holding: the arm is held in its posture; only then is a change a hand's for sure.
+            running: a program runs.
             use: settings.
         """
         self._quiet = self._quiet + 1 if holding else 0
         if joints_ok:
-            self._settle(estimate, holding)
+            self._settle(estimate, holding, running)
         found = NONE
         pushing = use.push.on or use.push.told or use.pattern.on
         if pushing or use.twist.on or use.force_step.on:
@@ -134,16 +138,22 @@ class Sources:
         x, y, z = self._wrench.change[:3]
         return math.sqrt(x * x + y * y + z * z)
 
-    def _settle(self, estimate: Estimate, holding: bool) -> None:
-        """After a motion, learn the untouched state of the new posture."""
+    def _settle(self, estimate: Estimate, holding: bool, running: bool) -> None:
+        """After a motion, learn the untouched state of the new posture; of the joints also where it is the old one."""
         if not holding:
-            return
-        if self._quiet == 1 or not self._held_at:
-            q = estimate.q.tolist()
-            if not self._held_at or max(map(abs, map(float.__sub__, q, self._held_at))) > ANOTHER_POSTURE:
+            self._moved = self._moved or running or self._elsewhere(estimate)
+        elif self._quiet == 1 or not self._held_at:
+            elsewhere = self._elsewhere(estimate)
+            if elsewhere:
                 self._wrench.restart()
+            if elsewhere or self._moved:
                 self._joints.restart()
-            self._held_at = q
+            self._held_at, self._moved = estimate.q.tolist(), False
+
+    def _elsewhere(self, estimate: Estimate) -> bool:
+        """The posture is not that in which the arm was last held."""
+        then = self._held_at
+        return not then or max(map(abs, map(float.__sub__, estimate.q.tolist(), then))) > ANOTHER_POSTURE
 
     def relearn(self) -> None:
         """Learn the untouched state afresh."""

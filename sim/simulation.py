@@ -129,8 +129,9 @@ class Simulation:
         use, references = self.supervisor.settings.joint_control, self.controller.references
         done, refusal = references.move_done, references.refusal
         before = None if self._decision is None else self._decision.law
-        # Nothing is to be learned from joints that the brakes hold, nor from a hand: on a link no sensor tells its force.
-        learn = before is not _OFF and before is not _FREE
+        # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
+        # sensor tells its force; what stops it may be one as well.
+        learn = before is _FOLLOW
         explained = self.controller.free_drive.explained if before is _FREE else None
         estimate = self.estimator.update(sample, done, refusal, use, references.answered, learn, explained)
         self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
@@ -225,4 +226,4 @@ class Simulation:
         return None if now is None or self._decision is None or self._decision.law is Law.FREE else now.q.copy()
 
 
-_FREE, _OFF = Law.FREE, Law.OFF  # looked up in every tick
+_FREE, _OFF, _FOLLOW = Law.FREE, Law.OFF, Law.FOLLOW  # looked up in every tick

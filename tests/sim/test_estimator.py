@@ -22,6 +22,7 @@ from tests.sim.bench import CENTRE, Bench, push
 G = 9.81
 FLOOR, WALL, TILTED = [0.0, 0.0, 0.0], [0.0, np.pi / 2, 0.0], [0.6, 0.4, 0.2]
 BENT = [0.3, -1.2, 1.5, -0.8, -1.2, 0.7]
+LEANING = [-2.2138, 1.4963, -1.8777, 0.5938, -0.5613, 0.2716]
 
 
 def sample(theta: np.ndarray, q: np.ndarray, *, joints: bool = True) -> Sample:
@@ -369,3 +370,24 @@ def test_a_hand_on_the_elbow_is_never_learned() -> None:
     assert (estimator.transmission.correction == known[1]).all()
     bench.run(0.5)
     assert np.abs(means(bench, 0.3)["tau_ext"] - untouched).max() < 4.0
+
+
+def pushed_and_left(bench: Bench) -> np.ndarray:
+    """Change (6,) of what the joints feel from before a push of 0.87 s at the flange to after it [N·m]."""
+    untouched = means(bench, 0.1)["tau_ext"]
+    bench.run(0.87, push("flange", (-16.3, 9.7, -17.1)))
+    bench.run(0.5)
+    return np.abs(means(bench, 0.1)["tau_ext"] - untouched)
+
+
+def test_an_arm_that_is_held_learns_nothing_from_a_push() -> None:
+    """AF-2, AF-3: what it swings by as the hand lets go is no motion of its own; nothing is left of the push (FD-5e)."""
+    load = Load(mass=4.643, com=[0.0, 0.0, 0.05])
+    bench = Bench(Scenario(seed=2303, mounting=TILTED, posture=LEANING, payload_true=load, payload_configured=load))
+    bench.run(0.5)
+    estimator = bench.simulation.estimator
+    known = (estimator.friction.terms.copy(), estimator.transmission.correction.copy())
+    for _ in range(3):
+        assert pushed_and_left(bench).max() < 2.0
+    assert (estimator.friction.terms == known[0]).all()
+    assert (estimator.transmission.correction == known[1]).all()
