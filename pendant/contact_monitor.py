@@ -52,7 +52,7 @@ class Poses:
     def __init__(self) -> None:
         self._at = 0  # where the newest stands
         self._q: Array | None = None  # (SIZE, n), once a tick has said how many joints there are
-        self._p, self._R = np.zeros((SIZE, 6)), np.zeros((SIZE, 9))
+        self._p, self._R = np.zeros((SIZE, 6)), np.zeros((SIZE, 3, 3))
 
     def push(self, estimate: Estimate) -> None:
         """Take one tick."""
@@ -61,7 +61,7 @@ class Poses:
         self._at = at = (self._at + 1) & MASK
         self._q[at] = estimate.q
         self._p[at] = estimate.tcp
-        self._R[at] = estimate.R_BF.reshape(9)
+        self._R[at] = estimate.R_BF
 
     def at(self, age: int) -> ArmPose:
         """The pose of `age` ticks ago, 0 <= age < SIZE; something was pushed that long ago."""

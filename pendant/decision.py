@@ -29,7 +29,7 @@ class Remaining(NamedTuple):
     total: int  # its whole length
 
 
-class WallState(NamedTuple):
+class WallState(msgspec.Struct, frozen=True, gc=False):
     """A wall or an area in one tick, everything in B; the law pushes the part with its force, pictures draw it (VW-7)."""
 
     name: str

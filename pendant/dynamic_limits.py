@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from pendant.estimate import Estimate, acceleration_felt
+from pendant.estimate import Estimate
 from pendant.pose import Vector
 from pendant.residual import upward
 from pendant.settings import Settings, ticks
@@ -135,7 +135,7 @@ class DynamicLimits:
         rules = self._rules
         acceleration = 0.0
         if rules.acceleration and estimate.acceleration_valid:
-            x, y, z = acceleration_felt(estimate)
+            x, y, z = estimate.a_felt.tolist()
             acceleration = math.sqrt(x * x + y * y + z * z)
         way = 1.0 / (1.0 + rules.acceleration * acceleration)
         drifts = rules.drift and self._drifts(estimate, rules, way)

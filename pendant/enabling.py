@@ -37,10 +37,11 @@ class EnablingDevice:
 
     def step(self, inputs: Inputs, silence: int) -> None:
         """One tick; `silence` [ticks] as in KeepAlive."""
-        middle, full, held, released = self._middle, self._full, inputs.held, inputs.released
+        middle, full, held = self._middle, self._full, inputs.held
         if not (middle.held or full.held) and POSITIONS.isdisjoint(held):
             self._spent = False
             return
+        released = inputs.released
         middle.step(Button.ENABLING in held, Button.ENABLING in released, silence)
         full.step(Button.ENABLING_FULL in held, Button.ENABLING_FULL in released, silence)
         self._spent = self._full.held or (self._spent and self._middle.held)

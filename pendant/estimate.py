@@ -45,6 +45,7 @@ class Estimate:
     w_sensor: Array  # (6,) wrench that the flange exerts on what it carries, in F at the flange origin
     F_user: Array  # (6,) the user's wrench on the flange: -(w_sensor - w_expected), axes of B, at the flange origin
     a_F: Array  # (3,) specific force at the flange accelerometer, in F [m/s²]
+    a_felt: Array  # (3,) what it feels beyond gravity, axes of B [m/s²]
     p_BF: Array  # (3,) flange position [m]
     R_BF: Array  # (3, 3) flange orientation
     v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
@@ -86,6 +87,7 @@ class Estimate:
             self.w_sensor.copy(),
             self.F_user.copy(),
             self.a_F.copy(),
+            self.a_felt.copy(),
             self.p_BF.copy(),
             self.R_BF.copy(),
             self.v_F.copy(),
@@ -109,11 +111,3 @@ class Estimate:
             self.load_mass,
             self.singularity,
         )
-
-
-def acceleration_felt(estimate: Estimate) -> tuple[float, float, float]:
-    """What the flange's accelerometer feels beyond gravity, axes of B [m/s²]."""
-    x, y, z = estimate.a_F.tolist()
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
-    gx, gy, gz = estimate.g_B.tolist()
-    return xx * x + xy * y + xz * z + gx, yx * x + yy * y + yz * z + gy, zx * x + zy * y + zz * z + gz

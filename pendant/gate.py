@@ -17,7 +17,7 @@ class Gate:
         total: its length [ticks].
     """
 
-    __slots__ = ("_absent", "_blocked", "appeared", "began", "ended", "held", "left", "signal", "total")
+    __slots__ = ("_absent", "_blocked", "_steady", "appeared", "began", "ended", "held", "left", "signal", "total")
 
     def __init__(self) -> None:
         self.held = self.began = self.ended = False
@@ -26,6 +26,7 @@ class Gate:
         self.left = self.total = 0
         self._blocked = False  # the signal was present at a refusal or a leaving
         self._absent = ABSENT  # ticks without the signal
+        self._steady = False  # another tick of the same changes nothing
 
     @property
     def memory(self) -> tuple[object, ...]:
@@ -39,6 +40,9 @@ class Gate:
 
     def sense(self, held: bool, signal: Presence) -> None:
         """One tick: the button, and the signal of activation."""
+        if self._steady and held is self.held and signal is self.signal:
+            return
+        changes = held is not self.held or signal is not self.signal
         self.appeared = bool(signal.source) and not self.signal.source
         self.signal = signal
         self.began = held and not self.held
@@ -51,8 +55,10 @@ class Gate:
             self._blocked = False
         elif signal.by_hand and self.left > 0:
             self._blocked = True
+        self._steady = not changes and self.left == 0 and (self._absent == 0 or self._absent == ABSENT)
 
     def close(self, cool_down: int) -> None:
         """Free-drive is left or refused; the cool-down takes so many ticks."""
         self._blocked = self.held or bool(self.signal.source)
         self.left = self.total = cool_down
+        self._steady = False

@@ -95,14 +95,15 @@ class Hand:
         by += _JOINTS * (y - residual * uy - by)
         bz += _JOINTS * (z - residual * uz - bz)
         self._by_joints = (bx, by, bz)
-        user, size = self._by_joints, math.sqrt(bx * bx + by * by + bz * bz)
+        user, size = self._by_joints, math.hypot(bx, by, bz)
         felt = size >= FELT_BY_JOINTS
         if use_wrench:
-            turn, (ox, oy, oz), payload = flat(estimate.R_BF), self._baseline, self._payload
+            (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
+            (ox, oy, oz), payload = self._baseline, self._payload
             x, y, z, _, _, _ = estimate.F_user.tolist()
-            x -= payload * ux + turn[0] * ox + turn[1] * oy + turn[2] * oz
-            y -= payload * uy + turn[3] * ox + turn[4] * oy + turn[5] * oz
-            z -= payload * uz + turn[6] * ox + turn[7] * oy + turn[8] * oz
+            x -= payload * ux + xx * ox + xy * oy + xz * oz
+            y -= payload * uy + yx * ox + yy * oy + yz * oz
+            z -= payload * uz + zx * ox + zy * oy + zz * oz
             self.change = (x, y, z)
             self._slow = slow = self._slow + _SLOW * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow
@@ -111,7 +112,7 @@ class Hand:
             sy += _SENSOR * (y - slow * uy - sy)
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
-            by_sensor = math.sqrt(sx * sx + sy * sy + sz * sz)
+            by_sensor = math.hypot(sx, sy, sz)
             if not felt or by_sensor >= FELT_BY_JOINTS:
                 user, size, felt = self._by_sensor, by_sensor, True
         self.user = user if felt and size >= self._doubt else ORIGIN

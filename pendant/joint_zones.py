@@ -5,6 +5,7 @@ with it on its way out (`pendant.resistance.Guard`), so that nothing kicks; the 
 """
 
 import math
+from operator import sub
 
 from pendant.estimate import Estimate
 from pendant.resistance import Guard, closeness, resisting
@@ -61,10 +62,7 @@ class JointZones:
         if settings is None:
             return
         angles = estimate.theta.tolist()
-        for angle, inner in zip(angles, self._inner, strict=True):
-            if angle > inner or -angle > inner:
-                break
-        else:
+        if max(map(sub, map(abs, angles), self._inner)) <= 0.0:
             if self.torque:
                 self._guards = [None] * len(angles)
                 self.torque, self.pushing = (), False

@@ -22,8 +22,14 @@ class Monitored(msgspec.Struct, frozen=True, gc=False):
     name: str
     part: str  # joint or part
     value: float
-    limit: float
+    low: float  # smallest value within
+    high: float  # largest value within
     unit: str
+
+    @property
+    def limit(self) -> float:
+        """The side that the value is nearer to exceed, or exceeds."""
+        return self.low if self.value - self.low < self.high - self.value else self.high
 
 
 class Gauge:
@@ -32,7 +38,7 @@ class Gauge:
     A value equal to its limit does not exceed it; what is not a number does.
     """
 
-    __slots__ = ("_allowed", "_beyond", "base", "high", "low", "name", "part", "stop", "unit", "value")
+    __slots__ = ("_allowed", "base", "beyond", "high", "low", "name", "part", "stop", "unit", "value")
 
     def __init__(
         self, name: str, unit: str, *, low: float = -math.inf, high: float = math.inf, allowed: int = 0, stop: bool = False
@@ -55,35 +61,29 @@ class Gauge:
         self.value = 0.0
         self.part = ""
         self._allowed = allowed
-        self._beyond = 0  # ticks in a row beyond
+        self.beyond = 0  # ticks in a row beyond
 
     def judge(self, value: float, part: str, patience: float = 1.0) -> bool:
         """Take the value of this tick, of `part`. Returns whether it was beyond for longer than allowed, of which `patience` is
         the share that is left (FD-12b)."""
         self.value, self.part = value, part
         if self.low <= value <= self.high:
-            self._beyond = 0
+            self.beyond = 0
             return False
-        self._beyond += 1
-        return self._beyond > self._allowed * patience
-
-    @property
-    def limit(self) -> float:
-        """The side that the value is nearer to exceed, or exceeds."""
-        return self.low if self.value - self.low < self.high - self.value else self.high
+        self.beyond += 1
+        return self.beyond > self._allowed * patience
 
     @property
     def excess(self) -> Excess:
         """The last value and its limit, as a fact."""
-        return Excess(self.name, self.part, self.value, self.limit, self.unit)
+        return Excess(self.name, self.part, self.value, self.monitored.limit, self.unit)
 
     @property
     def monitored(self) -> Monitored:
-        """The last value and its limit, to draw."""
-        value, low, high = self.value, self.low, self.high
-        return Monitored(self.name, self.part, value, low if value - low < high - value else high, self.unit)
+        """The last value and its limits, to draw."""
+        return Monitored(self.name, self.part, self.value, self.low, self.high, self.unit)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.name, self.low, self.high, self.stop, self.value, self.part, self._allowed, self._beyond)
+        return (self.name, self.low, self.high, self.stop, self.value, self.part, self._allowed, self.beyond)

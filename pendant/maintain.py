@@ -67,4 +67,5 @@ class Maintained:
         x, y, z = change[0] - along * ux, change[1] - along * uy, change[2] - along * uz
         rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
         parts = split(change, self._up)
-        return parts._replace(user_force=math.sqrt(x * x + y * y + z * z), user_torque=math.sqrt(rx * rx + ry * ry + rz * rz))
+        force, torque = math.sqrt(x * x + y * y + z * z), math.sqrt(rx * rx + ry * ry + rz * rz)
+        return Split(parts.payload_force, parts.payload_torque, force, torque)

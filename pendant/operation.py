@@ -77,7 +77,6 @@ class Operation:
         "_level",
         "_link",
         "_monitor",
-        "_motion",
         "_offset",
         "_on",
         "_rated",
@@ -114,7 +113,6 @@ class Operation:
         self._on = settings.unexplained
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
-        self._motion = 0.0  # speed then [m/s]
         self._link = LinkPush(self._since.torques, rated)
         self._shares = [0.0] * (STEP + 1)  # of the load that the sensor misses, in the last ticks
         self._calm = 0  # rises with every tick in which the arm does not swing
@@ -128,7 +126,6 @@ class Operation:
         """All of its state, to compare."""
         own = (
             self._alone,
-            self._motion,
             tuple(self._shares),
             self._calm,
             self._level,
@@ -182,11 +179,14 @@ class Operation:
 
     def _moved(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
         """Motion that nobody causes."""
-        vx, vy, vz = estimate.v_F.tolist()[:3]
-        self._motion = norm((vx, vy, vz))
         x, y, z = hand.user
         least = self._on.force
-        if self._motion < self._on.speed or driven or x * x + y * y + z * z >= least * least:
+        if driven or x * x + y * y + z * z >= least * least:
+            self._alone = 0
+            return None
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        motion = norm((vx, vy, vz))
+        if motion < self._on.speed:
             self._alone = 0
             return None
         link = self._link
@@ -199,7 +199,7 @@ class Operation:
         if use_wrench and norm(hand.change) < CARRIED and link.told(estimate):
             self._alone = 0
             return None
-        values: Values = {"value": self._motion, "limit": self._on.speed, "time": self._alone * TICK}
+        values: Values = {"value": motion, "limit": self._on.speed, "time": self._alone * TICK}
         return Ending(Kind.STOPPED_MOTION, values)
 
     def _lost(self, estimate: Estimate) -> Ending | None:

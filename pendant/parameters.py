@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Callable, Iterable
+from itertools import repeat
+from operator import add, mul, sub, truediv
 from typing import NamedTuple
 
 import msgspec
 
 from pendant.dynamic_limits import WHOLE, Shares
-from pendant.estimate import Estimate, acceleration_felt
+from pendant.estimate import Estimate
 from pendant.limits import Gauge, Monitored
 from pendant.residual import Split
 from pendant.settings import Limit, Section, ticks
@@ -58,11 +60,11 @@ def _flange_speed(view: View, gauge: Gauge) -> tuple[float, str]:
 
 def beyond_gravity(estimate: Estimate) -> float:
     """What the flange's accelerometer feels beyond gravity [m/s²]."""
-    return math.hypot(*acceleration_felt(estimate))
+    return math.hypot(*estimate.a_felt.tolist())
 
 
 def _flange_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
-    x, y, z = acceleration_felt(view.estimate)
+    x, y, z = view.estimate.a_felt.tolist()
     if view.shares is not WHOLE:
         gauge.high = gauge.base * view.shares.linear * view.shares.along(x, y, z)
     return math.hypot(x, y, z), "flange"
@@ -82,7 +84,7 @@ def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
 
 def _joint_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base * view.shares.way
-    return _largest([now - then for now, then in zip(view.estimate.q.tolist(), view.since.angles, strict=True)], view)
+    return _largest(list(map(sub, view.estimate.q.tolist(), view.since.angles)), view)
 
 
 def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
@@ -106,7 +108,7 @@ def _largest(values: list[float], view: View) -> tuple[float, str]:
 def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The motor that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
     torques = view.estimate.tau_m.tolist()
-    _, part = _largest([torque / rated for torque, rated in zip(torques, view.scale, strict=True)], view)
+    _, part = _largest(list(map(truediv, torques, view.scale)), view)
     joint = view.joints.index(part)
     gauge.high = gauge.base * view.scale[joint]
     return abs(torques[joint]), part
@@ -114,17 +116,15 @@ def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
-    worst, at, high, value = -1.0, 0, 0.0, 0.0
-    base, share, estimate = gauge.base, view.share, view.estimate
-    limits = [base * rated for rated in view.scale]
+    share, estimate = view.share, view.estimate
+    limits = list(map(mul, view.scale, repeat(gauge.base)))
     if share:
-        limits = [limit + share * abs(load) for limit, load in zip(limits, estimate.tau_J.tolist(), strict=True)]
-    for joint, (now, then, limit) in enumerate(zip(estimate.tau_ext.tolist(), view.since.torques, limits, strict=True)):
-        size = abs(now - then)
-        if size > worst * limit:
-            worst, at, high, value = size / limit, joint, limit, size
-    gauge.high = high
-    return value, view.joints[at]
+        limits = list(map(add, limits, map(mul, map(abs, estimate.tau_J.tolist()), repeat(share))))
+    sizes = list(map(abs, map(sub, estimate.tau_ext.tolist(), view.since.torques)))
+    ratios = list(map(truediv, sizes, limits))
+    joint = ratios.index(max(ratios))
+    gauge.high = limits[joint]
+    return sizes[joint], view.joints[joint]
 
 
 def _payload_force(view: View, _: Gauge) -> tuple[float, str]:
@@ -182,7 +182,7 @@ PARAMETERS: dict[str, Parameter] = {
 class Monitor:
     """All limits of one stage that are switched on."""
 
-    __slots__ = ("_gauges",)
+    __slots__ = ("_gauges", "_needs")
 
     def __init__(self, limits: Section, names: Iterable[str] = PARAMETERS, suffix: str = "") -> None:
         """
@@ -191,7 +191,8 @@ class Monitor:
             names: of the parameters that are looked at.
             suffix: of what they are called.
         """
-        self._gauges: list[tuple[Reader, bool, bool, Gauge]] = []  # how it is read, what sensors it needs
+        self._gauges: list[tuple[Reader, Gauge]] = []  # how it is read
+        self._needs: list[tuple[bool, bool]] = []  # of each: the flange's force/torque sensor, its accelerometer
         for name in names:
             parameter, limit = PARAMETERS[name], getattr(limits, name, None)
             if isinstance(limit, Limit) and limit.on:
@@ -199,7 +200,8 @@ class Monitor:
                 low = -limit.max if parameter.signed else -math.inf
                 text, allowed = parameter.text + suffix, ticks(limit.time)
                 gauge = Gauge(text, parameter.unit, low=low, high=limit.max, allowed=allowed, stop=stop)
-                self._gauges.append((parameter.read, parameter.wrench, parameter.acceleration, gauge))
+                self._gauges.append((parameter.read, gauge))
+                self._needs.append((parameter.wrench, parameter.acceleration))
 
     def step(self, view: View) -> list[Gauge]:
         """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
@@ -207,21 +209,25 @@ class Monitor:
         gauges, way = self._gauges, view.shares.way
         no_wrench, no_acceleration = view.split is None, not view.estimate.acceleration_valid
         if no_wrench or no_acceleration:
-            gauges = [each for each in gauges if not ((no_wrench and each[1]) or (no_acceleration and each[2]))]
-        for read, _, _, gauge in gauges:
+            needs = zip(gauges, self._needs, strict=True)
+            gauges = [each for each, (wrench, felt) in needs if not ((no_wrench and wrench) or (no_acceleration and felt))]
+        for read, gauge in gauges:
             value, part = read(view, gauge)
-            if gauge.judge(value, part, way):
+            if not gauge.beyond and gauge.low <= value <= gauge.high:  # as nearly always: without a call
+                gauge.value, gauge.part = value, part
+            elif gauge.judge(value, part, way):
                 beyond.append(gauge)
         return beyond
 
     def monitored(self) -> tuple[Monitored, ...]:
         """The values of the last step against their limits; without those that could not be read."""
-        return tuple([gauge.monitored for *_, gauge in self._gauges if gauge.part])
+        # Written out, for it is asked for in every tick of the sequence: as `Gauge.monitored`.
+        return tuple([Monitored(g.name, g.part, g.value, g.low, g.high, g.unit) for _, g in self._gauges if g.part])
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return tuple([gauge.memory for *_, gauge in self._gauges])
+        return tuple([gauge.memory for _, gauge in self._gauges])
 
 
 def reference(estimate: Estimate, use_wrench: bool) -> Reference:

@@ -1,4 +1,6 @@
-"""What a tick's decision tells: put together from the parts, and the last one again while nothing is different."""
+"""What a tick's decision tells: put together from the parts. Of the last one is kept what is not different."""
+
+from msgspec.structs import replace
 
 from pendant.axis_locks import axis_locks
 from pendant.contact import Contact
@@ -16,17 +18,19 @@ from pendant.tooling import Tooling
 class Publisher:
     """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
 
-    __slots__ = ("_checksum", "_decision", "_key", "_locks", "_robot", "_settings", "_tooling")
+    __slots__ = ("_checksum", "_decision", "_key", "_locks", "_passing", "_robot", "_settings", "_tooling")
 
     def __init__(self, robot: Robot, tooling: Tooling, settings: Settings) -> None:
         self._robot, self._tooling = robot, tooling
-        self._key: tuple[object, ...] = ()
-        self._decision: Decision | None = None  # the last one, if the next may be the same
+        self._key: tuple[object, ...] = ()  # what lasts of it
+        self._decision: Decision | None = None  # the last one
+        self._passing = False  # it tells of what is of its tick alone
         self.refresh(settings)
 
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         self._settings = settings
+        self._decision = None
         self._checksum = limits_checksum(settings)
         self._locks = axis_locks(settings.axes)
 
@@ -48,36 +52,44 @@ class Publisher:
             shake: haptic feedback.
         """
         robot, tooling, use = self._robot, self._tooling, self._settings
-        free, sequencer = robot.free, robot.sequencer
-        locks = self._locks if robot.mode is Mode.FREE_DRIVE else None
+        free, sequencer, mode, phase = robot.free, robot.sequencer, robot.mode, robot.free.phase
+        locks = self._locks if mode is _FREE_DRIVE else None
+        trying = phase is _SEQUENCE
+        helping, balance = free.helping, free.balance
+        # What lasts, and what is of this tick alone: mostly only the latter is different from what was told last.
+        key = (
+            mode, robot.safety, phase, law, helping, free.baseline, robot.grip, speeds, balance, free.damping, free.zones, locks,
+            free.singularity, shake, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on, tooling.fitting,
+            tooling.wizard.progress,
+        )  # fmt: skip
         periods = free.periods() if not free.idle and use.free_drive.remainders else ()
-        trying = free.phase is Phase.SEQUENCE
-        helping = free.helping and free.balance is None and not (trying and not use.sequence.amplified)
-        gain = use.free_drive.gain if helping else 0.0
-        walls = () if free.phase is Phase.OFF else free.walls()
-        key: tuple[object, ...] = ()
-        if not (events or periods or walls):
-            state = (robot.mode, robot.safety, free.phase, law, free.helping, robot.grip, speeds)
-            guided = (free.balance, free.damping, free.zones, locks, free.singularity, shake)
-            program = (sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on)
-            key = (*state, *guided, *program, tooling.fitting, tooling.wizard.progress)
-            if self._decision is not None and key == self._key:
-                return self._decision
+        walls = () if phase is _OFF else free.walls()
+        monitored = free.monitored() if trying else ()
+        passing = bool(events or periods or walls or monitored or contacts)
+        last = self._decision
+        if last is not None and key == self._key:
+            if passing or self._passing:
+                now, self._passing = tuple(events), passing
+                last = replace(last, events=now, periods=periods, walls=walls, monitored=monitored, contacts=contacts)
+                self._decision = last
+            return last
+        amplified = helping and balance is None and not (trying and not use.sequence.amplified)
         active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
-        decision = Decision(
-            mode=robot.mode,
+        self._key, self._passing = key, passing
+        self._decision = Decision(
+            mode=mode,
             safety=robot.safety,
-            phase=free.phase,
+            phase=phase,
             law=law,
             move=sequencer.move,
-            gain=gain,
+            gain=use.free_drive.gain if amplified else 0.0,
             force_cap=use.free_drive.force_cap,
             baseline=free.baseline,
             periods=periods,
             events=tuple(events),
             program=sequencer.state,
             step=sequencer.index + 1 if active else 0,
-            monitored=free.monitored() if trying else (),
+            monitored=monitored,
             contacts=contacts,
             tool_on=sequencer.tool_on,
             walls=walls,
@@ -85,7 +97,7 @@ class Publisher:
             speed_limits=speeds,
             damping=free.damping,
             zones=free.zones,
-            balance=free.balance,
+            balance=balance,
             fitting=tooling.fitting,
             wizard=tooling.wizard.progress,
             locks=locks,
@@ -93,6 +105,7 @@ class Publisher:
             shake=shake,
             limits=self._checksum,
         )
-        self._key = key
-        self._decision = decision if key else None
-        return decision
+        return self._decision
+
+
+_FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick

@@ -7,14 +7,15 @@ The flange sensor's offset looks like both.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+
+import msgspec
 
 from pendant.estimate import GRAVITY
 
 Vector = tuple[float, float, float]
 
 
-class Split(NamedTuple):
+class Split(msgspec.Struct, frozen=True, gc=False):
     """A wrench in two parts; sizes, but for the first."""
 
     payload_force: float  # along `up`, signed: negative when the payload is heavier than configured [N]

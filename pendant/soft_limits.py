@@ -32,7 +32,20 @@ class SoftLimits:
         pushed: the hand's force and torque are looked at.
     """
 
-    __slots__ = ("_damping", "_dynamic", "_hard", "_origin", "_shares", "_soft", "_way", "damping", "pushed", "shares")
+    __slots__ = (
+        "_damping",
+        "_dynamic",
+        "_hard",
+        "_last",
+        "_origin",
+        "_plain",
+        "_shares",
+        "_soft",
+        "_way",
+        "damping",
+        "pushed",
+        "shares",
+    )
 
     def __init__(self, settings: Settings, estimate: Estimate) -> None:
         """
@@ -46,6 +59,8 @@ class SoftLimits:
         self._way = way.max if way.on else math.inf  # of the flange from entry [m]
         self._origin = tuple(estimate.p_BF.tolist())
         self._dynamic = DynamicLimits(in_operation(settings), estimate)
+        self._plain = not way.on and self._dynamic.shares.vertical == 1.0  # the same all over and in every direction
+        self._last: Shares | None = None  # of the tick before
         self._shares = (0.0, 0.0, 0.0)  # of tcp, elbow and joints, to which `_damping` belongs
         self._damping: Damping | None = None
         self.damping: Damping | None = None
@@ -68,7 +83,8 @@ class SoftLimits:
         shares = self._dynamic.step(estimate, force, torque)
         if self._soft.hard:
             self.shares = shares
-        if self._soft.on:
+        if self._soft.on and not (self._plain and shares is self._last):
+            self._last = shares
             tcp = elbow = shares.speed
             joint = shares.turning
             if shares.vertical != 1.0:

@@ -24,14 +24,9 @@ def motion_ok(estimate: Estimate) -> bool:
 
 
 def _finite(estimate: Estimate) -> bool:
-    values = estimate.q.tolist()
-    values += estimate.qd.tolist()
-    values += estimate.tau_ext.tolist()
-    values += estimate.theta.tolist()
-    values += estimate.theta_d.tolist()
-    values += estimate.tau_J.tolist()
-    values += estimate.v_F.tolist()
-    return math.isfinite(sum(values))
+    positions, speeds = estimate.q.tolist() + estimate.theta.tolist(), estimate.qd.tolist() + estimate.theta_d.tolist()
+    torques = estimate.tau_ext.tolist() + estimate.tau_J.tolist()
+    return math.isfinite(sum(positions + speeds + torques + estimate.v_F.tolist()))
 
 
 def wrench_ok(estimate: Estimate) -> bool:
@@ -54,7 +49,11 @@ class Stillness:
         if not (estimate.joints_valid or estimate.degraded):
             self.count = 0
             return
-        for joint, value in enumerate(estimate.qd.tolist()):
+        speeds = estimate.qd.tolist()
+        if sum(map(abs, speeds)) < limit:  # in one go, as an arm at rest mostly is
+            self.count += 1
+            return
+        for joint, value in enumerate(speeds):
             if not -limit < value < limit:
                 self.count = 0
                 if math.isfinite(value):

@@ -67,12 +67,14 @@ class ContactSources:
         pair = sample.wrench_valid and sample.acceleration_valid
         links = use.links and sample.joints_valid
         rigid, out = self._dynamics.recursion, self._out
-        flange = (self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns)
-        arm = (rigid.origins, rigid.jacobian, self._links, self._before, self._started)
-        which = (pair, pair and use.flange, links)
-        _read(*which, sample.values, *flange, *arm, estimate.tau_ext, estimate.qd, estimate.qdd, out)
+        flange = pair and use.flange
+        _read(
+            pair, flange, links, sample.values, self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns,
+            rigid.origins, rigid.jacobian, self._links, self._before, self._started, estimate.tau_ext, estimate.qd, estimate.qdd,
+            out,
+        )  # fmt: skip
         self._started = links
-        estimate.signals = Signals(out.copy(), (pair, pair and use.flange, links, links))
+        estimate.signals = Signals(out.copy(), (pair, flange, links, links))
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

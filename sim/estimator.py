@@ -155,6 +155,7 @@ class Estimator:
             w_sensor=sample.wrench,
             F_user=self.forces.F_user,
             a_F=sample.acceleration_flange,
+            a_felt=self.forces.a_felt,
             p_BF=rigid.p,
             R_BF=rigid.R,
             v_F=rigid.v_F,

@@ -1,4 +1,4 @@
-"""The user's wrench on the flange from its force/torque sensor, and the force there that the joints feel."""
+"""The user's wrench on the flange from its force/torque sensor, the force that the joints feel there, and the acceleration."""
 
 import math
 
@@ -25,6 +25,7 @@ class FlangeForces:
     Attributes:
         F_user: the user's wrench (6,) in axes of B at the flange origin: force [N], torque [N·m]; zeros while the sensor is out.
         F_joints: the force (3,) in B that explains the joints' external torques best [N].
+        a_felt: what the accelerometer on the arm's side feels beyond gravity (3,), axes of B [m/s²].
 
     Args:
         dynamics: the controller's rigid model, whose recursion has been run in this tick.
@@ -32,7 +33,7 @@ class FlangeForces:
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
-        self.F_user, self.F_joints = np.zeros(6), np.zeros(3)
+        self.F_user, self.F_joints, self.a_felt = np.zeros(6), np.zeros(3), np.zeros(3)
         self._turns = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         self.set_load(dynamics.load)
@@ -60,15 +61,19 @@ class FlangeForces:
             turns[0] = rigid.R.T @ rigid.v_F[3:]
         _update(
             rigid.jacobian, tau_ext, rigid.R, sample.wrench, force, sample.gyro_tool, turns, self._mass, self._load,
-            self._smoothing, sample.wrench_valid, differentiated, self.F_user, self.F_joints,
+            self._smoothing, sample.wrench_valid, differentiated, sample.acceleration_flange, self._dynamics.gravity_B,
+            self.F_user, self.F_joints, self.a_felt,
         )  # fmt: skip
 
 
 @numba.njit(cache=True)
 def _update(
-    jacobian, tau_ext, R, wrench, force, gyro, turns, mass, load, smoothing, wrench_valid, differentiated, F_user, F_joints
+    jacobian, tau_ext, R, wrench, force, gyro, turns, mass, load, smoothing, wrench_valid, differentiated, specific, gravity,
+    F_user, F_joints, a_felt,
 ) -> None:  # fmt: skip
     _felt_by_joints(jacobian, tau_ext, F_joints)
+    for k in range(3):
+        a_felt[k] = R[k, 0] * specific[0] + R[k, 1] * specific[1] + R[k, 2] * specific[2] + gravity[k]
     if differentiated:
         _differentiate(gyro, turns[0], turns[1], smoothing)
     if wrench_valid:

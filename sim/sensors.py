@@ -129,8 +129,11 @@ class Sensors:
         self._next = (self._next + 1) % len(self._rows)
         sample = self._rows[self._next]
         value = sample.values
-        truth = (plant.theta, plant.q, current, plant.flange)
-        _measure(*truth, *self._distortion, self._channels, self._noise, row, plant.step.tick, value)
+        gain, ripple, phase = self._distortion
+        _measure(
+            plant.theta, plant.q, current, plant.flange, gain, ripple, phase, self._channels, self._noise, row,
+            plant.step.tick, value,
+        )  # fmt: skip
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1

@@ -123,24 +123,25 @@ class Simulation:
         """
         for change in wishes.changes:
             self.apply(change)
-        if self.supervisor.fitting is not self.fitting:
-            self.fit(self.supervisor.fitting)
-        sample = self.sensors.read(self.plant, self._current)
-        use, references = self.supervisor.settings.joint_control, self.controller.references
+        supervisor, estimator, controller, plant = self.supervisor, self.estimator, self.controller, self.plant
+        if supervisor.fitting is not self.fitting:
+            self.fit(supervisor.fitting)
+        sample = self.sensors.read(plant, self._current)
+        use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
         done, refusal = references.move_done, references.refusal
         before = None if self._decision is None else self._decision.law
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
         learn = before is _FOLLOW
-        explained = self.controller.free_drive.explained if before is _FREE else None
-        estimate = self.estimator.update(sample, done, refusal, use, references.answered, learn, explained)
-        self.contact_sources.read(sample, estimate, self.estimator.jacobian, self.supervisor.settings.contact)
+        explained = controller.free_drive.explained if before is _FREE else None
+        estimate = estimator.update(sample, done, refusal, use, references.answered, learn, explained)
+        self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
         if before is _FREE:
-            estimate.singularity = self.controller.free_drive.singularity.value
-        decision = self.supervisor.step(estimate, wishes.inputs)
-        friction, stiffer = self.estimator.friction, self.estimator.transmission.stiffer
-        self._current = self.controller.update(estimate, decision, self.estimator.jacobian, friction, stiffer, use)
-        self.plant.advance(self._current * self._motor, wishes.touches, decision.law is _OFF)
+            estimate.singularity = controller.free_drive.singularity.value
+        decision = supervisor.step(estimate, wishes.inputs)
+        friction, stiffer = estimator.friction, estimator.transmission.stiffer
+        self._current = controller.update(estimate, decision, jacobian, friction, stiffer, use)
+        plant.advance(self._current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
         return decision
 

@@ -61,6 +61,7 @@ def estimate(
         w_sensor=np.zeros(6) if needed is None else np.subtract(needed + [0.0] * 3, vector(force, 3) + [0.0] * 3),
         F_user=np.array(vector(force, 3) + vector(torque, 3)),
         a_F=np.add(vector(acceleration, 3), [0.0, 0.0, 9.81]),
+        a_felt=np.array(vector(acceleration, 3)),
         p_BF=np.array(vector(position, 3)),
         R_BF=np.eye(3),
         v_F=np.array(vector(speed, 3) + [0.0] * 3),

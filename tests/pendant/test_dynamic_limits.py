@@ -57,7 +57,7 @@ def test_acceleration_lowers_way_and_time_alone(size: float, direction: int) -> 
     """(i), however gravity lies: the arm hangs from a wall, and the accelerometer feels what holds it up as well."""
     now = estimate()
     now.g_B = np.array([9.81, 0.0, 0.0])
-    now.a_F = size * np.eye(3)[direction] - now.g_B
+    now.a_felt = size * np.eye(3)[direction]
     found = shares(now, soft__acceleration=True, soft__acceleration_share=0.5)
     assert found.way == pytest.approx(1.0 / (1.0 + 0.5 * size))
     assert found[1:6] == (1.0,) * 5

@@ -47,7 +47,8 @@ def test_it_shows_the_side_that_is_near(low: float, high: float, value: float, l
     gauge = Gauge("force", "N", low=low, high=high)
     gauge.judge(value, "flange")
     assert gauge.excess == Excess("force", "flange", value, limit, "N")
-    assert gauge.monitored == Monitored("force", "flange", value, limit, "N")
+    assert gauge.monitored == Monitored("force", "flange", value, low, high, "N")
+    assert gauge.monitored.limit == limit
 
 
 def test_its_memory_tells_all_of_it() -> None:

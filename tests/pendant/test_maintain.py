@@ -88,7 +88,6 @@ def drift(rate: float, seconds: float, direction: list[float], g: list[float]) -
     for k in range(round(500 * seconds)):
         value = estimate(force=(np.array(direction) * rate * k / 500).tolist())
         value.g_B = 9.81 * np.array(g)
-        value.a_F = -value.g_B
         watch = watch or Maintained(value, Settings(), True, JOINTS)
         excess = watch.step(value, use_wrench=True)
         if excess is not None:

@@ -36,6 +36,7 @@ def estimate(**values: Any) -> Estimate:
         "w_sensor": np.zeros(6),
         "F_user": np.zeros(6),
         "a_F": np.zeros(3),
+        "a_felt": np.zeros(3),
         "p_BF": np.zeros(3),
         "R_BF": np.eye(3),
         "v_F": np.zeros(6),

@@ -349,6 +349,17 @@ def test_the_joints_tell_a_force_on_the_flange() -> None:
     assert np.linalg.norm(seen.F_joints - before - [20.0, -15.0, 25.0]) < 12.0
 
 
+def test_gravity_is_taken_off_what_the_accelerometer_feels() -> None:
+    """On a wall: next to nothing at rest, in axes of B; a copy keeps it."""
+    bench = Bench(Scenario(mismatch="nominal", mounting=WALL, posture=[0.3, -1.2, 1.4, -1.3, -1.2, 0.2]))
+    bench.run(0.2)
+    seen = bench.estimate
+    np.testing.assert_allclose(seen.a_felt, seen.R_BF @ seen.a_F + seen.g_B, atol=1e-12)
+    assert np.linalg.norm(seen.a_F) > 9.0
+    assert np.linalg.norm(seen.a_felt) < 0.5
+    assert seen.copy().a_felt is not seen.a_felt
+
+
 def test_a_hand_on_the_elbow_is_never_learned() -> None:
     """AF-2: no sensor tells its force, so it would pass for less friction and another gear, and stay when it has gone."""
     load = Load(mass=1.0, com=[0.0, 0.0, 0.05])

@@ -1,5 +1,6 @@
 """What the pendant shows of a snapshot and its events, and what its controls do."""
 
+import math
 from collections.abc import Callable
 
 import pytest
@@ -144,7 +145,7 @@ def test_how_free_drive_ended_is_told_until_a_program_runs(loop: FakeLoop, still
 def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: FakeLoop, still: Served) -> None:
     loop.phase = Phase.SEQUENCE
     shares = (0.2, 1.5, 0.9, 0.05, 0.4, 0.3, 0.0)
-    loop.monitored = tuple(Monitored(f"value {i}", "flange", 2.0 * share, 2.0, "N") for i, share in enumerate(shares))
+    loop.monitored = tuple(Monitored(f"value {i}", "flange", 2.0 * share, -math.inf, 2.0, "N") for i, share in enumerate(shares))
     still.docks.show(loop.latest())
     shown = still.panel.numbers.shown
     names = [name for name in (f"value {i}" for i in (1, 2, 4, 5, 0)) if name in shown]
