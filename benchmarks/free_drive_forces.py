@@ -2,9 +2,12 @@
 
 Random postures of hand-guiding work (`posture`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and
 damper) leads the flange at 0.1 m/s along six directions, turns it at 0.3 rad/s, pushes the elbow, starts it from rest, and lets
-go. Truth is read for scoring alone.
+go. Each begins in the posture as drawn, free-drive just entered: an arm that was pushed about before stands elsewhere, often next
+to a singularity, and the bars speak of postures that are not. Besides, one long free-drive is measured: the arm is led and turned
+along all directions, pushed at the elbow, and let go. Truth is read for scoring alone.
 """
 
+from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -53,15 +56,13 @@ class Case(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What the hand needed in one posture, a value a direction; not a number where free-drive ended meanwhile."""
+    """What the hand needed in one posture."""
 
     entered: bool
-    lead: list[float]  # [N]
-    turn: list[float]  # [N·m]
-    elbow: list[float]  # [N]
-    breakaway: list[float]  # [N]
+    forces: dict[str, list[float]]  # of `PUSHES`, a value a direction [N], [N·m]; not a number where free-drive ended meanwhile
     rest: float = 0.0  # time to rest after letting go [s]
     drift: float = 0.0  # hands off [mm]
+    long: tuple[float, float, float] = (0.0, 0.0, 0.0)  # in one long free-drive: share of it after its end, rest [s], drift [mm]
     last: float = 0.0  # speed of the fastest joint in the last second of that, RMS [rad/s]
     hum: float = 0.0  # RMS of the fastest joint's speed while a hand holds on, still [rad/s]
 
@@ -206,32 +207,40 @@ def elbow_directions(hand: Hand) -> Array:
     return np.array([sign * row for row in axes for sign in (1.0, -1.0)])
 
 
+PUSHES: dict[str, Callable[[Hand, Array], float]] = {
+    "lead": Hand.lead,
+    "turn": Hand.turn,
+    "elbow": lambda hand, direction: hand.lead(direction, "elbow"),
+    "breakaway": Hand.breakaway,
+}
+
+
 def measure_case(case: Case) -> tuple[Result, int]:
     """All figures of one posture, and how many postures were thrown away before it."""
     hand = Hand(case)
-    forces: dict[str, list[float]] = {name: [] for name in ("lead", "turn", "elbow", "breakaway")}
-
-    def note(name: str, force: float) -> None:
-        nonlocal hand
-        forces[name].append(force if hand.free else np.nan)
-        hand = hand if hand.free else Hand(case)
-
-    if not case.over:
-        for k in range(6):
-            note("lead", hand.lead(directions()[k]))
-        for k in range(6):
-            note("turn", hand.turn(directions()[k]))
-        for k in range(len(elbow_directions(hand))):
-            ways = elbow_directions(hand)
-            if k < len(ways):  # fewer, where the pushes before have brought the elbow near its axis
-                note("elbow", hand.lead(ways[k], "elbow"))
-        for k in range(6):
-            note("breakaway", hand.breakaway(directions()[k]))
-    result = Result(hand.entered, forces["lead"], forces["turn"], forces["elbow"], forces["breakaway"])
+    forces: dict[str, list[float]] = {name: [] for name in PUSHES}
+    for name, push in PUSHES.items() if not case.over else ():
+        for direction in elbow_directions(hand) if name == "elbow" else directions():
+            fresh = Hand(case)
+            force = push(fresh, direction)
+            forces[name].append(force if fresh.free else np.nan)
+    result = Result(hand.entered, forces)
     if not case.helped:
         return result, hand.thrown
     rest, drift, last = hand.let_go(directions()[case.number % 6], case.rest)
-    return result._replace(rest=rest, drift=drift, last=last, hum=hand.hum()), hand.thrown
+    result = result._replace(rest=rest, drift=drift, last=last, hum=hand.hum())
+    return (result if case.over else result._replace(long=long_free_drive(case))), hand.thrown
+
+
+def long_free_drive(case: Case) -> tuple[float, float, float]:
+    """Led, turned, pushed at the elbow, let go: share of pushes from when free-drive had ended; rest [s], drift [mm]."""
+    hand, stayed = Hand(case), []
+    for name in ("lead", "turn", "elbow"):
+        for direction in elbow_directions(hand) if name == "elbow" else directions():
+            PUSHES[name](hand, direction)
+            stayed.append(hand.free)
+    rest, drift, _ = hand.let_go(directions()[case.number % 6], case.rest)
+    return 1.0 - float(np.mean(stayed)), rest, drift
 
 
 FORCES = (
@@ -254,7 +263,7 @@ def measure(report: Report) -> None:
     report.row("postures near a singularity thrown away", 100.0 * thrown / (thrown + count), "%", at_most=15.0)
     report.row("free-drive entered", sum(row.entered for row in helped) / count, "", at_least=1.0)
     for name, what, unit, bar in FORCES:
-        values, others = (np.concatenate([getattr(row, name) for row in side]) for side in (helped, plain))
+        values, others = (np.concatenate([row.forces[name] for row in side]) for side in (helped, plain))
         ended = np.isnan(values)
         report.row(f"{what}: free-drive ended meanwhile", 100.0 * float(ended.mean()), "%", at_most=0.0)
         values, others = values[~ended], others[~np.isnan(others)]
@@ -267,6 +276,10 @@ def measure(report: Report) -> None:
     report.row("rest after letting go, worst", max(row.rest for row in helped), "s", at_most=0.3)
     report.row("drift hands off, 10 s, worst", max(row.drift for row in helped), "mm", at_most=2.0)
     report.row("speed while a hand holds on, RMS, worst", max(row.hum for row in helped), "rad/s", at_most=HUM)
+    ended, rest, drift = np.array([row.long for row in helped]).T
+    report.row("a long free-drive: ended meanwhile", 100.0 * float(np.mean(ended > 0.0)), "%", at_most=0.0)
+    report.row("a long free-drive: rest after it, worst", float(rest.max()), "s", at_most=0.3)
+    report.row("a long free-drive: drift after it, hands off, worst", float(drift.max()), "mm", at_most=2.0)
     over = [row for row, _ in rows[2 * count :]]
     report.row("20 % too much: fastest joint long after letting go, worst", max(row.last for row in over), "rad/s", at_most=HUM)
     report.row("20 % too much: speed while a hand holds on, RMS, worst", max(row.hum for row in over), "rad/s", at_most=HUM)

@@ -87,7 +87,7 @@ class FreeArm:
         Args:
             around: this tick.
             settings: as they are now.
-            waits: nobody is known to move the arm: a period runs.
+            waits: nobody is known to move the arm.
         """
         estimate, zero, hand = around.estimate, self._zero, self._hand
         tick = estimate.tick

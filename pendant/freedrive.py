@@ -195,7 +195,7 @@ class FreeDrive:
 
     def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> list[Event]:
         """One tick of free-drive."""
-        events = arm.step(around, settings, periods.runs)
+        events = arm.step(around, settings, periods.waits)
         if not events or TABLE[events[-1].kind].effect not in ENDING:
             events += periods.step(around, settings, self._gate, arm.user, self._zero.used)
             self.phase = periods.phase

@@ -14,6 +14,9 @@ from pendant.residual import upward
 SETTLING = 1.5
 """Time constant with which a change along gravity becomes payload-like [s]: a sensor that drifts by 2 N/s stays below 3 N."""
 
+LED, LED_SETTLING = 0.02, 4.0
+"""While the flange is faster than this [m/s] that takes longer [s]: a hand may lead the arm gently up or down for seconds."""
+
 SWING = 0.05
 """Time constant that takes the arm's own swinging off what the flange sensor feels [s]: a hand's push lasts longer."""
 
@@ -29,7 +32,7 @@ JOINTS_SWING = 0.1
 FELT_BY_JOINTS = 10.0
 """A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
 
-_SLOW, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, SWING, JOINTS_SWING))
+_SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
 
 
 class Hand:
@@ -86,10 +89,12 @@ class Hand:
     def step(self, estimate: Estimate, use_wrench: bool) -> None:
         """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
         ux, uy, uz = self._up
+        x, y, z, _, _, _ = estimate.v_F.tolist()
+        settle = _SLOWER if x * x + y * y + z * z > LED * LED else _SLOW
         x, y, z = estimate.F_joints.tolist()
         x0, y0, z0 = self._felt
         x, y, z = x - x0, y - y0, z - z0
-        self._slow_joints = residual = self._slow_joints + _SLOW * (x * ux + y * uy + z * uz - self._slow_joints)
+        self._slow_joints = residual = self._slow_joints + settle * (x * ux + y * uy + z * uz - self._slow_joints)
         bx, by, bz = self._by_joints
         bx += _JOINTS * (x - residual * ux - bx)
         by += _JOINTS * (y - residual * uy - by)
@@ -105,7 +110,7 @@ class Hand:
             y -= payload * uy + yx * ox + yy * oy + yz * oz
             z -= payload * uz + zx * ox + zy * oy + zz * oz
             self.change = (x, y, z)
-            self._slow = slow = self._slow + _SLOW * (x * ux + y * uy + z * uz - self._slow)
+            self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow
             sx, sy, sz = self._by_sensor
             sx += _SENSOR * (x - slow * ux - sx)

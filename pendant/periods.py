@@ -69,6 +69,11 @@ class Periods:
         return self.phase in RUNNING
 
     @property
+    def waits(self) -> bool:
+        """Nobody is known to move the arm: a period runs, and there was no manipulation in the tick before."""
+        return self.runs and not self._stirred
+
+    @property
     def remaining(self) -> Remaining | None:
         """Of the running period (FD-20)."""
         return Remaining(RUNNING[self.phase], self._left, self._total) if self.runs else None

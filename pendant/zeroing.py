@@ -1,8 +1,10 @@
 """The flange sensor's zero in free-drive: what it drifts and steps by is no hand's, and must not drive the arm (FD-19).
 
 A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
-taken off: of a hand's push next to nothing. A sensor that steps does so in no time, where a hand needs 10 ms or more; and the
-joints do not feel it. They feel the opposite first: the help that the step calls for pushes them from within.
+taken off. A hand that begins to push cannot be told from it before the arm moves; then what was taken off lately is given back,
+for push after push it would add up to an offset that drives the arm when it is let go. A sensor that steps does so in no time,
+where a hand needs 10 ms or more; and the joints do not feel it. They feel the opposite first: the help that the step calls for
+pushes them from within.
 """
 
 import math
@@ -23,6 +25,12 @@ SLOW_TURN = 0.6
 
 QUIET = 2.5
 """Before a step nobody is felt: a hand that lets go is none [N]."""
+
+BEGINS = 5
+"""Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
+
+MOVED = 0.03
+"""A joint that is faster is moved by somebody [rad/s]."""
 
 JUMP = 3.5
 """Smallest step [N]; smaller ones do not move an arm."""
@@ -48,20 +56,30 @@ Six = tuple[float, ...]
 class Drift:
     """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window."""
 
-    __slots__ = ("_count", "_mean")
+    __slots__ = ("_count", "_lately", "_mean")
 
     def __init__(self) -> None:
         self._count = 0
         self._mean: Six | None = None
+        self._lately: list[Six] = []  # what was taken off in the last windows, axes of F [N, N·m]
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._count, self._mean)
+        return (self._count, self._mean, tuple(self._lately))
 
     def restart(self) -> None:
-        """The arm is moved, or the sensor is not used."""
+        """The arm may be moved, or the sensor is not used."""
         self._count, self._mean = 0, None
+
+    def give_back(self) -> list[Six]:
+        """What was taken off lately was a hand's, axes of F [N, N·m]."""
+        lately, self._lately = self._lately, []
+        return lately
+
+    def keep(self, gone: Six) -> None:
+        """So much was taken off, axes of F [N, N·m]."""
+        self._lately = [*self._lately[-BEGINS + 1 :], gone]
 
     def due(self) -> bool:
         """One tick; whether a mean is wanted in it."""
@@ -197,16 +215,21 @@ class Zero:
             return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)})
         if not waits:
             self._drift.restart()
+            # A sensor that has drifted far seems to be a hand as well, but moves nothing.
+            if any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
+                for x, y, z, a, b, c in self._drift.give_back():
+                    self._take_off((-x, -y, -z), (-a, -b, -c), hand)
         elif self._drift.due():
             gone = self._drift.step(mean.mean())
             if gone is not None:
-                self._take_off(gone, estimate, hand)
+                R_BF = flat(estimate.R_BF)
+                force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
+                self._drift.keep((*force, *torque))
+                self._take_off(force, torque, hand)
         return None
 
-    def _take_off(self, gone: Six, estimate: Estimate, hand: Hand) -> None:
-        """`gone` [N, N·m], axes of B now, is an offset of the sensor."""
-        R_BF = flat(estimate.R_BF)
-        force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
+    def _take_off(self, force: Vector, torque: Vector, hand: Hand) -> None:
+        """So much [N, N·m], axes of F, is an offset of the sensor."""
         hand.shift(force)
         at_begin = (*turned(self._turned, force), *turned(self._turned, torque))
         self.baseline = tuple([a + b for a, b in zip(self.baseline, at_begin, strict=True)])

@@ -88,13 +88,11 @@ class Estimator:
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
-        explained: Array | None = None,
     ) -> Estimate:
         """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
-        as known, and the gears are compared with the rigid model only where `explained` says which joint torques (n,) [N·m]
-        that hand explains.
+        as known, and the gears are not compared with the rigid model.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -120,7 +118,7 @@ class Estimator:
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        self._estimate_torques(sample, use, rigid.torque, learn, explained)
+        self._estimate_torques(sample, use, rigid.torque, learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known = self._known
         if known is None:
@@ -173,7 +171,7 @@ class Estimator:
             F_joints=self.forces.F_joints,
         )
 
-    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool, explained: Array | None) -> None:
+    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
         surplus, stiction = self._surplus, self._stiction
@@ -190,9 +188,7 @@ class Estimator:
         ways = transmission.ways
         ways[DEFLECTION] = self._deflection
         moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
-        transmission.explained[:] = 0.0 if explained is None else explained
-        comparing = moving and (learn or explained is not None)
-        transmission.update(friction.deviation, stiction, motor[2], comparing, self._ways)
+        transmission.update(friction.deviation, stiction, motor[2], moving and learn, self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
 

@@ -29,7 +29,6 @@ HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own mo
 BRAKE, BRAKE_SPEED = 0.5, 0.1  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
 FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
 USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
-TOLD = 5.0  # force of a hand that the flange's sensor tells surely [N]
 FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
 
 
@@ -66,7 +65,6 @@ class FreeDriveLaw:
         self.share = COMPENSATED
         self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
-        self._force = 0.0  # of the hand, as the flange's sensor feels it [N]
         self._memory = np.zeros((3, n))  # asked and felt, filtered; what is usual
         self._turned = np.eye(3)
 
@@ -78,11 +76,6 @@ class FreeDriveLaw:
     def balancing(self) -> Array:
         """Torque (n,) that balances a load nobody told of, as far as it was found since free-drive began [N·m] (FD-10)."""
         return self._balancing.torque
-
-    @property
-    def explained(self) -> Array | None:
-        """Joint torques (n,) of a hand at the flange [N·m], None where its sensor tells of none."""
-        return self._hand[0] if self._force > TOLD else None
 
     def start(self, estimate: Estimate) -> None:
         """Free-drive begins: what the joints feel now is no hand."""
@@ -107,7 +100,6 @@ class FreeDriveLaw:
             friction: its estimate.
             with_friction: take friction off the hand.
         """
-        self._force = 0.0
         torque = self._dynamics.gravity(estimate.q)
         for wall in decision.walls:
             if wall.force != ORIGIN:
@@ -134,7 +126,7 @@ class FreeDriveLaw:
         hand = self._hand
         if estimate.wrench_valid and decision.gain > 0.0:
             cap, gain = decision.force_cap, help * decision.gain
-            self._force = _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
+            _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
             if locks is not None:
                 constraint.project(hand[1], gain, torque)
         else:
@@ -165,8 +157,8 @@ def _push(jacobian, p_BF, p, force, moving, torque) -> None:
 
 
 @numba.njit(cache=True)
-def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> float:
-    """What the hand asks of each joint; returns its force. The baseline is an offset of the sensor: it turns with the flange."""
+def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> None:
+    """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
     wrench = np.empty(6)
     for k in range(3):
         wrench[k], wrench[3 + k] = F_user[k], F_user[3 + k]
@@ -182,7 +174,6 @@ def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> fl
             asked += jacobian[j, i] * wrench[j]
         hand[0, i], hand[1, i] = asked, share * asked
         torque[i] += gain * hand[1, i]
-    return size
 
 
 @numba.njit(cache=True)

@@ -133,8 +133,7 @@ class Simulation:
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
         learn = before is _FOLLOW
-        explained = controller.free_drive.explained if before is _FREE else None
-        estimate = estimator.update(sample, done, refusal, use, references.answered, learn, explained)
+        estimate = estimator.update(sample, done, refusal, use, references.answered, learn)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value

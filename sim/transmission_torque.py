@@ -53,7 +53,6 @@ class TransmissionTorque:
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
-        explained: of `external`, what a hand pushes that another sensor tells (n,) [N·m]: the caller's, and not learned.
         contact: some joint feels a contact.
     """
 
@@ -73,10 +72,10 @@ class TransmissionTorque:
         self.forget()
         self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         # One block for all that a tick brings: each array that is handed to a kernel costs as much as a joint's arithmetic.
-        self._outcome = np.zeros((12, n))
+        self._outcome = np.zeros((11, n))
         self.ways, self.deviations = self._outcome[:3], self._outcome[3:6]
         # The last but one is the standard deviation of the rigid model where nothing is touched.
-        self.fused, self.deviation, self.external, self.external_deviation, self._model, self.explained = self._outcome[6:]
+        self.fused, self.deviation, self.external, self.external_deviation, self._model = self._outcome[6:]
         self.contact = False
         self._quiet = SETTLE_TICKS
 
@@ -117,12 +116,11 @@ def _update(
 ) -> int:  # fmt: skip
     """Compare, then fuse. Returns for how many ticks nothing has been touched."""
     rubbing, learned = (friction_deviation, stiction), (correction, covariance, walk, differ)
-    ways, deviations, model, explained = outcome[:3], outcome[3:6], outcome[10], outcome[11]
+    ways, deviations, model = outcome[:3], outcome[3:6], outcome[10]
     fused, deviation, external, external_deviation = outcome[6], outcome[7], outcome[8], outcome[9]
     learn = moving and quiet >= SETTLE_TICKS
     touched = _compare(
-        ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation,
-        explained,
+        ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
     )  # fmt: skip
     quiet = 0 if touched else quiet + 1
     _fuse(ways, deviations, (model, constants[0], differ), external, quiet < SETTLE_TICKS, use, fused, deviation)
@@ -131,7 +129,7 @@ def _update(
 
 @numba.njit(cache=True)
 def _compare(
-    ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation, explained
+    ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
 ) -> bool:  # fmt: skip
     """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
     correction, covariance, walk, differ = learned
@@ -171,7 +169,7 @@ def _compare(
             continue
         P, ripple = covariance[i], constants[1, i]
         x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
-        error = external[i] - explained[i]
+        error = external[i]
         differ[3, i] = min(differ[3, i] + 1.0, REMEMBERED)
         differ[0, i] += SLOWLY * (error - differ[0, i])
         differ[1, i] += (differ[0, i] ** 2 - differ[1, i]) / differ[3, i]

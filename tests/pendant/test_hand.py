@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.estimate import Estimate
-from pendant.hand import FELT_BY_JOINTS, JOINTS_SWING, OFFSET, SETTLING, SWING, Hand
+from pendant.hand import FELT_BY_JOINTS, JOINTS_SWING, LED, LED_SETTLING, OFFSET, SETTLING, SWING, Hand
 from pendant.modes import TICK
 from pendant.pose import Vector
 from tests.pendant.estimates import estimate
@@ -52,6 +52,15 @@ def test_a_change_along_gravity_becomes_payload_like() -> None:
     after(hand, SETTLING - 0.1, down)
     assert hand.payload[2] == pytest.approx(-20.0 * (1.0 - math.exp(-1.0)), rel=1e-3)
     assert after(hand, 12.0, down) == pytest.approx((0.0, 0.0, 0.0), abs=0.05)
+
+
+def test_while_the_arm_is_led_that_takes_longer() -> None:
+    down = {"force": [0.0, 0.0, -2.0]}
+    slow, led = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
+    after(slow, 2.0, estimate(speed=0.99 * LED, **down))  # type: ignore[arg-type]
+    after(led, 2.0, estimate(speed=1.01 * LED, **down))  # type: ignore[arg-type]
+    assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
+    assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / LED_SETTLING)), rel=1e-3)
 
 
 def test_without_a_sensor_the_joints_tell_from_a_size_on() -> None:

@@ -9,7 +9,7 @@ from pendant.events import Kind
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
 from pendant.pose import Vector
-from pendant.zeroing import ANSWER, JUMP, LATER, QUIET, SLOW, SLOW_TURN, STRAY, Drift, Steps
+from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, QUIET, SLOW, SLOW_TURN, STRAY, Drift, Steps
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench
 
@@ -117,6 +117,39 @@ def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
     assert bench.last.phase is Phase.PERIOD
     assert bench.last.baseline[2] == pytest.approx(6.0, abs=0.5)
     assert bench.last.baseline[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_only_the_last_windows_are_given_back() -> None:
+    drift = Drift()
+    assert drift.give_back() == []
+    gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
+    for each in gone:
+        drift.keep(each)
+    assert drift.memory != Drift().memory
+    drift.restart()
+    assert drift.give_back() == gone[-BEGINS:]
+    assert drift.give_back() == []
+
+
+def test_a_drift_that_seems_to_be_a_hand_but_moves_nothing_is_not_given_back() -> None:
+    bench = Bench(free_drive__period=30.0, free_drive__restart_period=30.0).in_period()
+    for tick in range(2500):
+        bench.step(NOTHING, estimate(force=[0.004 * tick, 0.0, 0.0]))
+    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.RESTARTED]
+    assert bench.last.baseline[0] == pytest.approx(10.0, abs=0.5)
+
+
+@pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
+def test_pushes_leave_no_offset_behind(anew: bool) -> None:
+    """Each grows by 10 N/s for 0.3 s before the arm moves; 3 N/s would pass for drift. It is gone before the arm rests."""
+    bench = Bench(free_drive__period=30.0, free_drive__restart_at_manipulation=anew).in_period()
+    for _ in range(6):
+        for tick in range(300):
+            bench.step(NOTHING, estimate(force=[min(0.02 * tick, 6.0), 0.0, 0.0], qd=0.3 if tick > 150 else 0.0))
+        for tick in range(400):
+            bench.step(NOTHING, estimate(qd=0.3 if tick < 60 else 0.0))
+    assert bench.last.phase in (Phase.PERIOD, Phase.RESTART)
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
 
 
 def test_switched_off_nothing_is_taken_off() -> None:

@@ -360,8 +360,13 @@ def test_gravity_is_taken_off_what_the_accelerometer_feels() -> None:
     assert seen.copy().a_felt is not seen.a_felt
 
 
-def test_a_hand_on_the_elbow_is_never_learned() -> None:
-    """AF-2: no sensor tells its force, so it would pass for less friction and another gear, and stay when it has gone."""
+@pytest.mark.parametrize(
+    ("part", "forwards"), [("elbow", [0.0, -0.905, -0.425]), ("flange", [0.0, 0.0, -1.0])], ids=["elbow", "flange"]
+)
+def test_a_hand_is_never_learned(part: str, forwards: list[float]) -> None:
+    """AF-2: on a link no sensor tells its force, so it would pass for less friction and another gear, and stay when it has gone.
+    Nor at the flange: what joints feel would shift, and what they felt at entry would tell no more who pushes a link.
+    """
     load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
     posture = [1.58, -1.13, 0.67, -2.17, 2.3, -1.33]
     bench = Bench(Scenario(seed=1003, posture=posture, payload_true=load, payload_configured=load))
@@ -369,13 +374,13 @@ def test_a_hand_on_the_elbow_is_never_learned() -> None:
     estimator = bench.simulation.estimator
     known = (estimator.friction.terms.copy(), estimator.transmission.correction.copy())
     untouched = means(bench, 0.3)["tau_ext"]
-    body = bench.plant.model.body("elbow").id
-    target = bench.plant.data.xpos[body].copy()
-    forwards = np.array([0.0, -0.905, -0.425])
+    body = bench.plant.model.body(part).id
+    start = bench.plant.data.xpos[body].copy()
+    target = start.copy()
     for k in range(500):
-        target += forwards * 0.1 * 0.002 * min(k / 100.0, 1.0)
-        bench.run(0.002, Pull("elbow", CENTRE, tuple(target), 300.0))
-    assert bench.estimate.q[1] > -1.0, "it goes along"
+        target += np.array(forwards) * 0.1 * 0.002 * min(k / 100.0, 1.0)
+        bench.run(0.002, Pull(part, CENTRE, tuple(target), 300.0))
+    assert (bench.plant.data.xpos[body] - start) @ forwards > 0.06, "it goes along"
     assert bench.mode is Mode.FREE_DRIVE, "who guides the arm by its elbow is somebody (FD-19)"
     assert (estimator.friction.terms == known[0]).all()
     assert (estimator.transmission.correction == known[1]).all()
