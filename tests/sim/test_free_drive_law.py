@@ -86,7 +86,7 @@ def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None
     seen = estimate(q=Q, R_BF=R, p_BF=P)
     for part, place in points(Q).items():
         state = WallState("wall", part, tuple(place.tolist()), 0.0, (1.0, 0.0, 0.0), 1.0, False, tuple(force.tolist()))
-        held = replace(decision(Law.FREE), walls=(state, state._replace(force=(0.0, 0.0, 0.0))))
+        held = replace(decision(Law.FREE), walls=(state, replace(state, force=(0.0, 0.0, 0.0))))
         torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True) - GRAVITY
         for i in range(N):
             step = np.zeros(N)
