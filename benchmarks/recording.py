@@ -1,4 +1,8 @@
-"""What recording costs: its share of a tick on the simulation's thread and in all, and headless speed with it."""
+"""What recording costs: its share of a tick on the simulation's thread and in all, and headless speed with it.
+
+Speed with recording is what a user waits for, so the wall clock measures it: the log is packed, compressed and written on a
+thread of its own, beside the simulation. What both would need of one core together stands beside it.
+"""
 
 import time
 from collections.abc import Callable
@@ -21,7 +25,7 @@ SHARE = 0.15
 """Recording costs at most this share of a tick."""
 
 SPEED = 8.0
-"""Headless speed with recording is at least this [x real time]."""
+"""Headless speed with recording is at least this on the wall clock [x real time]."""
 
 SESSIONS = ("free-drive", "hold", "program")
 IDLE = Wishes(NOTHING, (), ())
@@ -66,18 +70,20 @@ def measure(report: Report, ticks: int = 2000, turns: int = 5) -> None:
     for name in SESSIONS:
         session = load(find(name), Session)
         prepared = prepare(session, name)
-        speeds: list[float] = []
+        speeds: list[tuple[float, float]] = []  # on the wall clock, in processor time
         size = 0
         for _ in range(turns):
             with TemporaryDirectory() as out:
-                begun = time.process_time()
+                begun, spent = time.perf_counter(), time.process_time()
                 record(session, prepared, Path(out))
-                speeds.append(session.duration / (time.process_time() - begun))
+                took, spent = time.perf_counter() - begun, time.process_time() - spent
+                speeds.append((session.duration / took, session.duration / spent))
                 size = (Path(out) / "log.mcap").stat().st_size
-        speed = float(np.median(speeds))  # the first run loads what is compiled
+        speed, on_one = np.median(speeds, axis=0).tolist()  # the first run loads what is compiled
         report.row(f"session {name} with recording, median of {turns}", speed, "x real time", at_least=SPEED)
+        report.row(f"session {name} with recording, in processor time of all threads", on_one, "x real time")
         report.row(f"session {name}: log", size / 1e6 / session.duration, "MB a second")
-    report.notes.append(f"processor time of all threads; a tick is {1000 * TICK:g} ms")
+    report.notes.append(f"processor time of all threads, but for speed: the wall clock; a tick is {1000 * TICK:g} ms")
 
 
 if __name__ == "__main__":

@@ -116,9 +116,10 @@ class Anchor:
         if len(track) < self._length:
             track.append((x, y, z, against))
         else:
-            ox, oy, oz, before = track[self._next]
-            track[self._next] = (x, y, z, against)
-            self._next = (self._next + 1) % self._length
+            at = self._next
+            ox, oy, oz, before = track[at]
+            track[at] = (x, y, z, against)
+            self._next = (at + 1) % self._length
             sx, sy, sz, sum_against = sx - ox, sy - oy, sz - oz, sum_against - before
         sx, sy, sz, sum_against = self._sums = (sx + x, sy + y, sz + z, sum_against + against)
         somebody = (self._left > 0 or sum_against >= MOVED) and not stay.in_band

@@ -142,35 +142,36 @@ class Barrier:
         self._reference = reference
         local = place if reference is HERE else seen_from(reference, place)
         factor = self._base if border.size is None else self._base * border.size.factor(around.measures)
-        if isinstance(border, Wall):
-            if self._anchor is None:
-                self._anchor = Anchor(border, local, ticks(border.averaging_period))
+        if self._anchor is not None:
+            anchor = self._anchor.local
+        elif isinstance(border, Wall):
+            self._anchor = Anchor(border, local, ticks(border.averaging_period))
             anchor = self._anchor.local
         else:
             anchor = border.position
         distance, outward = self._measure(local, anchor, factor, reference)
-        nx, ny, nz = outward
-        if self._guard is None:
-            self._guard, self._part, self._before = Guard(distance), place, distance
+        guard = self._guard
+        if guard is None:
+            guard = self._guard = Guard(distance)
+            self._part, self._before = place, distance
         x, y, z = self._part
         moved = (px - x, py - y, pz - z)
         lay, lies, before = self._lies, (anchor, factor, reference), self._before
         self._lies, self._before, self._part = lies, distance, place
         exceeded = distance > 0.0
         near, force, consequence, anchored = 0.0, ORIGIN, _NONE, False
-        if distance > -border.band or exceeded or self._guard.place > 0.0:
+        if distance > -border.band or exceeded or guard.place > 0.0:
+            nx, ny, nz = outward
             drift = 0.0
             if lay is not None and lies != lay:
                 drift = distance - before - dot(outward, moved)
             near = closeness(distance, border.band)
-            beyond = self._guard.step(distance, drift)
-            fx, fy, fz = around.user_force
-            push = fx * nx + fy * ny + fz * nz
-            if self._stage is Stage.OPERATION:
+            beyond = guard.step(distance, drift)
+            if self._stage is _OPERATION:
                 size = -self._resist(exceeded, beyond, near, vx * nx + vy * ny + vz * nz)
                 force = (size * nx, size * ny, size * nz)
             if exceeded:
-                consequence = self._consequence(beyond, push)
+                consequence = self._consequence(beyond, dot(around.user_force, outward))
         self._caught = consequence is _HOLD
         if self._anchors:
             assert self._anchor is not None
@@ -254,5 +255,5 @@ def placed(border: AnyBorder, centre: Vector, factor: float, reference: Pose) ->
     return Place(Pose((x + px, y + py, z + pz), product(reference.R, rotation(border.orientation))), factor)
 
 
-_NONE, _HOLD = Consequence.NONE, Consequence.HOLD  # looked up in every tick
+_NONE, _HOLD, _OPERATION = Consequence.NONE, Consequence.HOLD, Stage.OPERATION  # looked up in every tick
 _LEAVING = {Reaction.STAY: Consequence.LEAVE, Reaction.LEAVE: Consequence.LEAVE, Reaction.STOP: Consequence.STOP}

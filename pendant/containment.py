@@ -108,12 +108,11 @@ class Containment:
 
     def states(self) -> tuple[WallState, ...]:
         """What the last step found, for the law and for pictures; without a wall that could not be told."""
-        states: list[WallState] = []
-        for reading in self._reading:
-            border, distance = reading.border, reading.distance
-            if distance < math.inf:
-                outward, near, force = reading.outward, reading.near, reading.force
-                states.append(WallState(border.name, border.part, reading.p, distance, outward, near, reading.exceeded, force))
+        states = [
+            WallState(r.border.name, r.border.part, r.p, r.distance, r.outward, r.near, r.exceeded, r.force)
+            for r in self._reading
+            if r.distance < math.inf
+        ]
         return tuple(states)
 
     def places(self) -> tuple[tuple[AnyBorder, Place], ...]:

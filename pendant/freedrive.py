@@ -82,7 +82,7 @@ class FreeDrive:
     @property
     def idle(self) -> bool:
         """Nothing runs that would have to be published."""
-        return self.phase is Phase.OFF and self._gate.left == 0
+        return self.phase is _OFF and self._gate.left == 0
 
     def periods(self) -> tuple[Remaining, ...]:
         """Every running period (FD-20)."""
@@ -180,7 +180,7 @@ class FreeDrive:
     def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
         """What happens; what it does to the phase, unless the next period begins, is decided by its effect."""
         phase = self.phase
-        if phase is not Phase.OFF and not around.enabled:
+        if phase is not _OFF and not around.enabled:
             kind = Kind.LEFT_ENABLING if phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
             return [Event(kind, around.estimate.tick, {"grip": around.grip or ""})]
         if self._arm is not None and self._periods is not None:
@@ -224,3 +224,6 @@ class FreeDrive:
         joints = way_back(posture, tuple(around.estimate.q.tolist()), self._joints)
         if joints and settings.free_drive.way_back:
             events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)}))
+
+
+_OFF = Phase.OFF  # looked up in every tick

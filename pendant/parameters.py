@@ -212,10 +212,10 @@ class Monitor:
             needs = zip(gauges, self._needs, strict=True)
             gauges = [each for each, (wrench, felt) in needs if not ((no_wrench and wrench) or (no_acceleration and felt))]
         for read, gauge in gauges:
-            value, part = read(view, gauge)
+            value, gauge.part = read(view, gauge)
             if not gauge.beyond and gauge.low <= value <= gauge.high:  # as nearly always: without a call
-                gauge.value, gauge.part = value, part
-            elif gauge.judge(value, part, way):
+                gauge.value = value
+            elif gauge.judge(value, gauge.part, way):
                 beyond.append(gauge)
         return beyond
 

@@ -120,16 +120,16 @@ class Estimator:
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         self._estimate_torques(sample, use, rigid.torque, learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
-        known = self._known
+        known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
         known.tick = self.tick
-        known.joints_valid, known.wrench_valid = sample.joints_valid, sample.wrench_valid
+        known.joints_valid, known.wrench_valid = valid, sample.wrench_valid
         known.acceleration_valid = sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
         known.move_done, known.move_refused = move_done, move_refused
-        known.degraded = not sample.joints_valid and self._started and bool(self._able[MOTOR_ANGLE].all())
+        known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         return known

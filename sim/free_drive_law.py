@@ -109,7 +109,7 @@ class FreeDriveLaw:
         if decision.balance is not None:
             self._balancing.add(estimate, decision.balance, jacobian, torque)
             return torque
-        if decision.phase is Phase.SEQUENCE and decision.gain <= 0.0:
+        if decision.gain <= 0.0 and decision.phase is Phase.SEQUENCE:
             return torque
         self.singularity.update(jacobian)
         locks = decision.locks

@@ -52,10 +52,8 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                where, target = _floats(touch.point), _floats(touch.target)
-                point, force = _pull(
-                    *self._poses, *self._motion, self._roots[body], body, self._applied, where, target, float(touch.cap)
-                )
+                spring = (*touch.point, *touch.target, touch.cap)
+                point, force = _pull(*self._poses, *self._motion, self._roots[body], body, self._applied, *map(float, spring))
                 torque = ZERO
             else:
                 force, torque = _floats(touch.force), _floats(touch.torque)
@@ -103,14 +101,13 @@ def _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, 
 
 
 @numba.njit(cache=True)
-def _pull(positions, orientations, centres, cvel, tree_com, root, body, applied, at, target, cap):
+def _pull(positions, orientations, centres, cvel, tree_com, root, body, applied, x, y, z, to_x, to_y, to_z, cap):
     """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
-    x, y, z = at
     point = _push(positions, orientations, centres, body, applied, x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     vx, vy, vz = _velocity(cvel, tree_com, root, body, point)
-    fx = STIFFNESS * (target[0] - point[0]) - DAMPING * vx
-    fy = STIFFNESS * (target[1] - point[1]) - DAMPING * vy
-    fz = STIFFNESS * (target[2] - point[2]) - DAMPING * vz
+    fx = STIFFNESS * (to_x - point[0]) - DAMPING * vx
+    fy = STIFFNESS * (to_y - point[1]) - DAMPING * vy
+    fz = STIFFNESS * (to_z - point[2]) - DAMPING * vz
     size = np.sqrt(fx * fx + fy * fy + fz * fz)
     share = cap / size if size > cap else 1.0
     fx, fy, fz = fx * share, fy * share, fz * share
