@@ -145,6 +145,7 @@ class Loop:
     def _start_over(self) -> None:
         self._reset = False
         self.simulation = self._make()
+        gc.collect()  # the one before holds megabytes that are not Python's, and would wait long to be found
         self._script = self._write() if self._write is not None else None
         self.desk.clear()
         self._do_tick()

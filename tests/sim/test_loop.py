@@ -1,8 +1,10 @@
 """The paced loop: in step with the clock, slower, paused, reset, late, broken. A clock of its own where it counts ticks."""
 
+import gc
 import os
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 
@@ -272,6 +274,20 @@ def test_a_reset_starts_anew_and_lets_go_of_everything(running: Callable[..., Lo
     assert now.truth_links.tobytes() == start.tobytes()
     assert len(loop.events(0)) == told, "what happened before stays; nothing held or commanded came over"
     assert loop.events(told) == []
+
+
+def test_the_simulation_before_a_reset_is_gone_with_it(running: Callable[..., Loop]) -> None:
+    loop = running(lambda: Simulation(UR5E, Scenario(), Settings()))
+    first = weakref.ref(loop.simulation)
+    loop.reset()
+    until(lambda: loop.simulation is not first())  # the first one is kept out of every collection
+    gc.disable()
+    try:
+        before = weakref.ref(loop.simulation.plant)
+        loop.reset()
+        until(lambda: before() is None)
+    finally:
+        gc.enable()
 
 
 class Note:
