@@ -45,7 +45,6 @@ class Estimate:
     w_sensor: Array  # (6,) wrench that the flange exerts on what it carries, in F at the flange origin
     F_user: Array  # (6,) the user's wrench on the flange: -(w_sensor - w_expected), axes of B, at the flange origin
     a_F: Array  # (3,) specific force at the flange accelerometer, in F [m/s²]
-    a_felt: Array  # (3,) what it feels beyond gravity, axes of B [m/s²]
     p_BF: Array  # (3,) flange position [m]
     R_BF: Array  # (3, 3) flange orientation
     v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
@@ -66,6 +65,7 @@ class Estimate:
     tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
+    a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
     load_mass: float = 0.0  # configured: payload and tool [kg]
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
@@ -87,7 +87,6 @@ class Estimate:
             self.w_sensor.copy(),
             self.F_user.copy(),
             self.a_F.copy(),
-            self.a_felt.copy(),
             self.p_BF.copy(),
             self.R_BF.copy(),
             self.v_F.copy(),
@@ -108,6 +107,7 @@ class Estimate:
             self.tcp.copy(),
             self.elbow.copy(),
             self.F_joints.copy(),
+            self.a_felt.copy(),
             self.load_mass,
             self.singularity,
         )
