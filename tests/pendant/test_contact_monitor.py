@@ -67,6 +67,14 @@ def test_switched_off_it_fills_its_buffers_and_finds_nothing() -> None:
     assert len(found) == 1  # at once, since the buffers were full
 
 
+def test_a_source_that_is_switched_off_finds_nothing() -> None:
+    """CD-2."""
+    stream = [*signals(200, push=ramp(200, START, 8.0, top=40.0))]
+    off = msgspec.structs.replace(USE, tool=False)
+    assert len(run(0, stream)) == 1
+    assert run(0, stream, off) == []
+
+
 @pytest.mark.parametrize("quiet", [START - 2, SUMMED - 1, SUMMED, SUMMED + 60])
 def test_however_long_it_was_off_it_finds_a_contact_at_once(quiet: int) -> None:
     monitor, found = ContactMonitor(), []

@@ -8,6 +8,7 @@ from pendant.decision import Decision
 from pendant.events import Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Mode, Phase
+from pendant.program import JointMove, Program, ProgramState
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
@@ -262,3 +263,57 @@ def test_a_push_is_told_in_every_mode() -> None:
     bench = Bench(signals__push__told=True)
     bench.run(0.5, force=[0.0, 20.0, 0.0])
     assert bench.kinds == [Kind.PUSHED]
+
+
+PROGRAM = Program(steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
+RUNS, PAUSED, ENDED = ProgramState.RUNNING, ProgramState.PAUSED, ProgramState.STOPPED
+
+
+@pytest.mark.parametrize(
+    ("switches", "before", "after"),
+    [
+        ("", RUNS, RUNS),
+        ("resumes", RUNS, RUNS),
+        ("pauses", RUNS, PAUSED),
+        ("stops", RUNS, ENDED),
+        ("pauses stops", RUNS, PAUSED),
+        ("", PAUSED, PAUSED),
+        ("pauses", PAUSED, PAUSED),
+        ("resumes", PAUSED, RUNS),
+        ("stops", PAUSED, ENDED),
+        ("resumes stops", PAUSED, RUNS),
+    ],
+)
+def test_a_push_does_to_a_program_what_is_set(switches: str, before: ProgramState, after: ProgramState) -> None:
+    """FD-6a."""
+    bench = Bench(signals__push__told=True, **{f"signals__push__{name}": True for name in switches.split()})
+    bench.run(0.002, Inputs(program=PROGRAM))
+    bench.run(0.2, Inputs(commands=(Command.START_PROGRAM,)))
+    if before is PAUSED:
+        bench.run(0.2, Inputs(commands=(Command.PAUSE_PROGRAM,)))
+    assert bench.last.program is before
+    bench.run(0.3, force=20.0)
+    assert bench.kinds.count(Kind.PUSHED) == 1
+    assert bench.last.program is after
+
+
+def test_joints_that_were_not_valid_feel_no_push_in_what_they_come_back_with() -> None:
+    """FD-5e: nobody knows what happened meanwhile."""
+    felt, lost = Bench(signals__joints__on=True), Bench(signals__joints__on=True)
+    felt.run(0.1)
+    lost.run(0.1, joints_valid=False)
+    for bench in (felt, lost):
+        bench.run(0.5, tau_ext=9.0)
+    assert felt.last.phase is Phase.ACTIVATION
+    assert lost.last.phase is Phase.OFF
+    assert Kind.SIGNAL_SEEN not in lost.kinds
+
+
+def test_a_force_in_free_drive_makes_another_state() -> None:
+    one, other = Bench(), Bench()
+    for bench in (one, other):
+        assert bench.run(2.5, HOLD).mode is Mode.FREE_DRIVE
+    assert one.supervisor.state == other.supervisor.state
+    one.run(0.002, HOLD, force=20.0)
+    other.run(0.002, HOLD)
+    assert one.supervisor.state != other.supervisor.state
