@@ -15,7 +15,7 @@ INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
 WORKERS ?= 2
 SEED ?= 1000
-BENCHES := $(filter-out __init__ common viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
+BENCHES := $(filter-out __init__ common postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
 .PHONY: run test bench bench-full soak soak-quick mutate clean lint types contracts kernels unit e2e wheel browser

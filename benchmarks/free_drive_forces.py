@@ -1,6 +1,6 @@
 """Free-drive: what a hand needs to lead, turn, start and stop a UR5e, with and without friction taken off.
 
-Random postures of hand-guiding work (`posture`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and
+Random postures (`benchmarks.postures`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and
 damper) leads the flange at 0.1 m/s along six directions, turns it at 0.3 rad/s, pushes the elbow, starts it from rest, and lets
 go. Each begins in the posture as drawn, free-drive just entered: an arm that was pushed about before stands elsewhere, often next
 to a singularity, and the bars speak of postures that are not. Besides, one long free-drive is measured: the arm is led and turned
@@ -14,6 +14,7 @@ import numpy as np
 
 from app.library import load_arm
 from benchmarks.common import Report, main, spread
+from benchmarks.postures import posture
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, TICK_RATE, Mode
 from pendant.settings import Settings, apply
@@ -27,13 +28,6 @@ CENTRE = (0.0, 0.0, 0.0)
 IDLE = Wishes(NOTHING, (), ())
 HOLD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
 RELEASE = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
-# Postures of hand-guiding work.
-NEAREST, FURTHEST = 0.3, 0.75  # of the flange from the base's axis: in front of the arm or beside it, within reach [m]
-LOWEST, HIGHEST = 0.0, 0.9  # of the flange over the base's foot: from the table to the chest [m]
-SHOULDER, ELBOW = (-2.3, -0.5), (0.5, 2.4)  # elbow up and bent: neither stretched nor folded [rad]
-TILT = 1.2  # of the tool from straight down, towards the arm or away from it [rad]
-ALIGNED = 0.6  # wrist 2 is at least so far from where the wrist's axes align [rad]
-SMALLEST_SINGULAR = 0.1
 PACE, TURN = 0.1, 0.3  # [m/s], [rad/s]
 TURN_STIFFNESS, TURN_DAMPING = 40.0, 1.0  # of the turning hand [N·m/rad], [N·m·s/rad]
 PAYLOAD = Load(mass=1.0, com=[0.0, 0.0, 0.05])
@@ -65,28 +59,6 @@ class Result(NamedTuple):
     long: tuple[float, float, float] = (0.0, 0.0, 0.0)  # in one long free-drive: share of it after its end, rest [s], drift [mm]
     last: float = 0.0  # speed of the fastest joint in the last second of that, RMS [rad/s]
     hum: float = 0.0  # RMS of the fastest joint's speed while a hand holds on, still [rad/s]
-
-
-def posture(rng: np.random.Generator, probe: Simulation) -> tuple[list[float], int]:
-    """A posture in which people guide an arm by hand, and how many were thrown away before it as too near a singularity.
-
-    The tool is in front of the arm or beside it within reach, between table and chest, and looks more or less down; the elbow
-    is up and bent, the wrist not aligned. All joint angles are uniform within that. What lies elsewhere is drawn again
-    without being counted.
-    """
-    thrown = 0
-    for _ in range(10000):
-        shoulder, elbow = rng.uniform(*SHOULDER), rng.uniform(*ELBOW)
-        wrist_1 = -0.5 * np.pi + rng.uniform(-TILT, TILT) - shoulder - elbow
-        wrist_2 = rng.choice([-1.0, 1.0]) * rng.uniform(ALIGNED, np.pi - ALIGNED)
-        q = np.array([rng.uniform(-np.pi, np.pi), shoulder, elbow, wrist_1, wrist_2, rng.uniform(-np.pi, np.pi)])
-        p, _, jacobian = probe.dynamics.update(q)
-        if not (NEAREST <= float(np.hypot(p[0], p[1])) <= FURTHEST and LOWEST <= p[2] <= HIGHEST):
-            continue
-        if np.linalg.svd(jacobian, compute_uv=False)[-1] > SMALLEST_SINGULAR:
-            return q.tolist(), thrown
-        thrown += 1
-    raise RuntimeError("no posture of hand-guiding work in 10000")
 
 
 class Hand:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from app.library import load_arm
 from benchmarks.common import Report, main, spread
-from benchmarks.free_drive_forces import posture
+from benchmarks.postures import posture
 from pendant.estimate import Estimate
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import TICK, TICK_RATE
