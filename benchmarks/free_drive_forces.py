@@ -187,12 +187,17 @@ PUSHES: dict[str, Callable[[Hand, Array], float]] = {
 }
 
 
+def ways(name: str, hand: Hand) -> Array:
+    """Directions (k, 3) of one of `PUSHES`, from where the arm is now."""
+    return elbow_directions(hand) if name == "elbow" else directions()
+
+
 def measure_case(case: Case) -> tuple[Result, int]:
     """All figures of one posture, and how many postures were thrown away before it."""
     hand = Hand(case)
     forces: dict[str, list[float]] = {name: [] for name in PUSHES}
     for name, push in PUSHES.items() if not case.over else ():
-        for direction in elbow_directions(hand) if name == "elbow" else directions():
+        for direction in ways(name, hand):
             fresh = Hand(case)
             force = push(fresh, direction)
             forces[name].append(force if fresh.free else np.nan)
@@ -208,7 +213,7 @@ def long_free_drive(case: Case) -> tuple[float, float, float]:
     """Led, turned, pushed at the elbow, let go: share of pushes from when free-drive had ended; rest [s], drift [mm]."""
     hand, stayed = Hand(case), []
     for name in ("lead", "turn", "elbow"):
-        for direction in elbow_directions(hand) if name == "elbow" else directions():
+        for direction in ways(name, hand):
             PUSHES[name](hand, direction)
             stayed.append(hand.free)
     rest, drift, _ = hand.let_go(directions()[case.number % 6], case.rest)

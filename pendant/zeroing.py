@@ -8,6 +8,7 @@ pushes them from within.
 """
 
 import math
+from collections import deque
 
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
@@ -54,19 +55,23 @@ Six = tuple[float, ...]
 
 
 class Drift:
-    """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window."""
+    """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
 
-    __slots__ = ("_count", "_lately", "_mean")
+    Attributes:
+        lately: what was taken off in the last windows, axes of F [N, N·m].
+    """
+
+    __slots__ = ("_count", "_mean", "lately")
 
     def __init__(self) -> None:
         self._count = 0
         self._mean: Six | None = None
-        self._lately: list[Six] = []  # what was taken off in the last windows, axes of F [N, N·m]
+        self.lately: deque[Six] = deque(maxlen=BEGINS)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._count, self._mean, tuple(self._lately))
+        return (self._count, self._mean, tuple(self.lately))
 
     def restart(self) -> None:
         """The arm may be moved, or the sensor is not used."""
@@ -74,12 +79,13 @@ class Drift:
 
     def give_back(self) -> list[Six]:
         """What was taken off lately was a hand's, axes of F [N, N·m]."""
-        lately, self._lately = self._lately, []
+        lately = list(self.lately)
+        self.lately.clear()
         return lately
 
     def keep(self, gone: Six) -> None:
         """So much was taken off, axes of F [N, N·m]."""
-        self._lately = [*self._lately[-BEGINS + 1 :], gone]
+        self.lately.append(gone)
 
     def due(self) -> bool:
         """One tick; whether a mean is wanted in it."""
@@ -216,7 +222,7 @@ class Zero:
         if not waits:
             self._drift.restart()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.
-            if any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
+            if self._drift.lately and any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
                 for x, y, z, a, b, c in self._drift.give_back():
                     self._take_off((-x, -y, -z), (-a, -b, -c), hand)
         elif self._drift.due():
