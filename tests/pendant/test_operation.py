@@ -101,14 +101,13 @@ def test_motion_that_nobody_causes_is_stopped_after_its_time() -> None:
 
 
 @pytest.mark.parametrize(
-    "pause", [{"speed": 0.019}, {"speed": 0.03, "force": 30.0}, {"speed": 0.03, "driven": True}], ids=["slow", "hand", "driven"]
+    ("speed", "force", "driven"), [(0.019, 0.0, False), (0.03, 30.0, False), (0.03, 0.0, True)], ids=["slow", "hand", "driven"]
 )
-def test_a_hand_a_wall_or_rest_starts_its_time_afresh(pause: dict[str, float | bool]) -> None:
+def test_a_hand_a_wall_or_rest_starts_its_time_afresh(speed: float, force: float, driven: bool) -> None:
     free = Free()
-    driven = bool(pause.pop("driven", False))
     assert free.until([estimate(speed=0.03)] * 149) is None
-    assert free.see(estimate(**pause), driven=driven) is None  # type: ignore[arg-type]
-    assert free.until([estimate(speed=0.03)] * 150) is None or "force" in pause
+    assert free.see(estimate(speed=speed, force=force), driven=driven) is None
+    assert free.until([estimate(speed=0.03)] * 150) is None or force > 0.0
 
 
 def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
