@@ -10,8 +10,8 @@ from pendant.contact import ArmPose, Contact
 from pendant.contact_limits import ContactLimits, limits
 from pendant.contact_settings import ContactUse
 from pendant.detector import Detector, Finding
-from pendant.estimate import Array, Estimate
-from pendant.history import MASK, SIZE, SUMMED
+from pendant.estimate import Estimate
+from pendant.history import SIZE, SUMMED
 from pendant.modes import Mode
 from pendant.pose import flat, turned
 from pendant.signal import Signal, Signals
@@ -47,28 +47,20 @@ def for_links(use: ContactUse) -> ContactUse:
 class Poses:
     """Where the arm was in the last `SIZE` ticks."""
 
-    __slots__ = ("_R", "_at", "_p", "_q")
+    __slots__ = ("_kept",)
 
     def __init__(self) -> None:
-        self._at = 0  # where the newest stands
-        self._q: Array | None = None  # (SIZE, n), once a tick has said how many joints there are
-        self._p, self._R = np.zeros((SIZE, 6)), np.zeros((SIZE, 3, 3))
+        self._kept: deque[tuple[bytes, bytes, bytes]] = deque(maxlen=SIZE)  # q, tcp, R_BF: bytes, for arrays take twice as long
 
     def push(self, estimate: Estimate) -> None:
         """Take one tick."""
-        if self._q is None:
-            self._q = np.zeros((SIZE, estimate.q.size))
-        self._at = at = (self._at + 1) & MASK
-        self._q[at] = estimate.q
-        self._p[at] = estimate.tcp
-        self._R[at] = estimate.R_BF
+        self._kept.append((estimate.q.tobytes(), estimate.tcp.tobytes(), estimate.R_BF.tobytes()))
 
     def at(self, age: int) -> ArmPose:
         """The pose of `age` ticks ago, 0 <= age < SIZE; something was pushed that long ago."""
-        assert self._q is not None
-        at = (self._at - age) & MASK
-        x, y, z = self._p[at, :3].tolist()
-        return ArmPose(tuple(self._q[at].tolist()), (x, y, z), flat(self._R[at]))
+        q, tcp, R_BF = (np.frombuffer(kept) for kept in self._kept[-1 - age])
+        x, y, z = tcp[:3].tolist()
+        return ArmPose(tuple(q.tolist()), (x, y, z), flat(R_BF.reshape(3, 3)))
 
 
 class ContactMonitor:

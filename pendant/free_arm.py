@@ -6,9 +6,9 @@ from pendant.containment import NOBODY, Containment, caught, facts
 from pendant.events import Event, Kind, Values
 from pendant.hand import Hand
 from pendant.joint_zones import JointZones
-from pendant.nearness import Nearness, SingularityWatch
+from pendant.nearness import SingularityWatch
 from pendant.operation import Operation
-from pendant.pose import Vector
+from pendant.pose import ORIGIN, Vector
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings
 from pendant.soft_limits import Damping
@@ -22,9 +22,25 @@ class FreeArm:
 
     Attributes:
         caught: a wall keeps the arm where it is (VW-6).
+        user: the user's force, axes of B [N].
+        damping: where free motion is resisted before a limit on its speed (FD-12b).
+        singularity: how near the arm is to one (FD-4).
+        suspect: a payload may have dropped (FD-19).
     """
 
-    __slots__ = ("_containment", "_hand", "_operation", "_singularity", "_zero", "_zones", "caught")
+    __slots__ = (
+        "_containment",
+        "_hand",
+        "_operation",
+        "_singularity",
+        "_zero",
+        "_zones",
+        "caught",
+        "damping",
+        "singularity",
+        "suspect",
+        "user",
+    )
 
     def __init__(
         self,
@@ -51,7 +67,10 @@ class FreeArm:
         self._hand = Hand(estimate, zero.baseline)
         self._operation = Operation(estimate, settings, zero.baseline, joints, rated)
         self._singularity = SingularityWatch()
-        self.caught = False
+        self.caught = self.suspect = False
+        self.user: Vector = ORIGIN
+        self.damping: Damping | None = None
+        self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
         containment.enter(settings.walls)
         containment.step(estimate, *NOBODY)
@@ -61,26 +80,6 @@ class FreeArm:
         """All of its state, to compare; what it was given is compared elsewhere."""
         return (self._hand.memory, self._operation.memory, self._singularity.memory, self.caught)
 
-    @property
-    def user(self) -> Vector:
-        """The user's force, axes of B [N]."""
-        return self._hand.user
-
-    @property
-    def damping(self) -> Damping | None:
-        """Where free motion is resisted before a limit on its speed (FD-12b)."""
-        return self._operation.damping
-
-    @property
-    def singularity(self) -> Nearness | None:
-        """How near the arm is to a singularity (FD-4)."""
-        return self._singularity.status
-
-    @property
-    def suspect(self) -> bool:
-        """A payload may have dropped (FD-19)."""
-        return self._operation.suspect
-
     def step(self, around: Surroundings, settings: Settings, waits: bool) -> list[Event]:
         """One tick. Returns what happened; free-drive is left where the last of it says so.
 
@@ -89,7 +88,7 @@ class FreeArm:
             settings: as they are now.
             waits: nobody is known to move the arm.
         """
-        estimate, zero, hand = around.estimate, self._zero, self._hand
+        estimate, zero, hand, operation = around.estimate, self._zero, self._hand, self._operation
         tick = estimate.tick
         if not joints_ok(estimate):
             return [Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED})]
@@ -98,12 +97,13 @@ class FreeArm:
             zero.leave()
             events.append(Event(Kind.WRENCH_LOST, tick))
         hand.step(estimate, zero.used)
+        self.user = hand.user
         if zero.used and settings.unexplained.sensor:
             stepped = zero.step(estimate, hand, around.mean, waits)
             if stepped is not None:
                 events.append(stepped)
         reading = self._containment.step(estimate, hand.user, hand.payload)
-        before, self.caught = self.caught, caught(reading)
+        before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:
             kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
             events.append(Event(kind, tick, facts(reading)))
@@ -114,7 +114,9 @@ class FreeArm:
         if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
             values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, tick, values))
-        ending = self._operation.step(estimate, hand, zero.used, around.shaken or self.caught or self._zones.pushing)
+        self.singularity = self._singularity.status
+        ending = operation.step(estimate, hand, zero.used, around.shaken or self.caught or self._zones.pushing)
+        self.damping, self.suspect = operation.damping, operation.suspect
         if ending is not None:
             events.append(Event(ending.kind, tick, ending.values))
         return events

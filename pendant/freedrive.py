@@ -11,12 +11,10 @@ from pendant.gate import Gate
 from pendant.joint_zones import JointZones
 from pendant.limits import Monitored
 from pendant.modes import Phase
-from pendant.nearness import Nearness
 from pendant.operation import way_back
 from pendant.periods import Periods
 from pendant.sequence import Verdict
 from pendant.settings import Settings, ticks
-from pendant.soft_limits import Damping
 from pendant.sources import Presence
 from pendant.surroundings import Surroundings
 from pendant.table import TABLE
@@ -39,11 +37,11 @@ class FreeDrive:
 
     Attributes:
         phase: of now.
+        arm: the free arm, from entry to leaving.
     """
 
     __slots__ = (
         "_activation",
-        "_arm",
         "_containment",
         "_gate",
         "_joints",
@@ -52,6 +50,7 @@ class FreeDrive:
         "_verdict",
         "_zero",
         "_zones",
+        "arm",
         "phase",
     )
 
@@ -70,7 +69,7 @@ class FreeDrive:
         self._zero = Zero()
         self._activation = Activation(joints, rated, containment, self._zero)
         self._verdict = Verdict()
-        self._arm: FreeArm | None = None  # from entry to leaving
+        self.arm: FreeArm | None = None
         self._periods: Periods | None = None  # from entry to leaving
 
     @property
@@ -88,8 +87,8 @@ class FreeDrive:
         """Every running period (FD-20)."""
         gate = self._gate
         running = (self._activation if self._periods is None else self._periods).remaining
-        cooling = Remaining("cool-down", gate.left, gate.total) if gate.left > 0 else None
-        return tuple([period for period in (running, cooling) if period is not None])
+        told = () if running is None else (running,)
+        return (*told, Remaining("cool-down", gate.left, gate.total)) if gate.left > 0 else told
 
     def monitored(self) -> tuple[Monitored, ...]:
         """What the activation sequence checks, while it runs."""
@@ -112,17 +111,7 @@ class FreeDrive:
     @property
     def caught(self) -> bool:
         """A wall keeps the arm where it is (VW-6)."""
-        return self._arm is not None and self._arm.caught
-
-    @property
-    def damping(self) -> Damping | None:
-        """Where free motion is resisted before a limit on its speed (FD-12b)."""
-        return None if self._arm is None else self._arm.damping
-
-    @property
-    def singularity(self) -> Nearness | None:
-        """How near the arm is to a singularity, None outside of free-drive (FD-4)."""
-        return None if self._arm is None else self._arm.singularity
+        return self.arm is not None and self.arm.caught
 
     @property
     def zones(self) -> tuple[float, ...]:
@@ -132,7 +121,7 @@ class FreeDrive:
     @property
     def helping(self) -> bool:
         """The user's force is amplified: not while a payload may have dropped (FD-19)."""
-        return self._zero.used and not (self._arm is not None and self._arm.suspect)
+        return self._zero.used and not (self.arm is not None and self.arm.suspect)
 
     def sense(self, held: bool, signal: Presence) -> None:
         """Begin a tick: the button, and the signal of activation."""
@@ -155,7 +144,7 @@ class FreeDrive:
     def stop(self, kind: Kind, settings: Settings) -> None:
         """Free-drive or its activation ends because of an event of `kind`, from here or from elsewhere: an emergency stop."""
         self.phase = Phase.OFF
-        self._arm = self._periods = None
+        self.arm = self._periods = None
         self._activation.end()
         self._containment.leave()
         self._zones.leave()
@@ -183,8 +172,8 @@ class FreeDrive:
         if phase is not _OFF and not around.enabled:
             kind = Kind.LEFT_ENABLING if phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
             return [Event(kind, around.estimate.tick, {"grip": around.grip or ""})]
-        if self._arm is not None and self._periods is not None:
-            return self._stay(self._arm, self._periods, around, settings)
+        if self.arm is not None and self._periods is not None:
+            return self._stay(self.arm, self._periods, around, settings)
         gate = self._gate
         told = self._verdict.step(around, gate.left <= 1) if self._verdict.waiting else []
         if phase is Phase.OFF and not gate.signal.source:
@@ -216,7 +205,7 @@ class FreeDrive:
         self._activation.end()
         zero.begin(around.estimate, around.wrench_ok, around.mean)
         self._periods = Periods(self._gate.held, around, settings, zero.used, self._joints)
-        self._arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
+        self.arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
         self.phase = self._periods.phase
 
     def _tell_way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings, events: list[Event]) -> None:

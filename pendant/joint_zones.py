@@ -20,7 +20,7 @@ class JointZones:
         pushing: a spring is bent, and may move its joint.
     """
 
-    __slots__ = ("_begin", "_guards", "_inner", "_ranges", "_rated", "_settings", "pushing", "torque")
+    __slots__ = ("_begin", "_guards", "_inner", "_least", "_ranges", "_rated", "_settings", "pushing", "torque")
 
     def __init__(self, rated: tuple[float, ...], ranges: tuple[float, ...]) -> None:
         """
@@ -31,6 +31,7 @@ class JointZones:
         self._rated, self._ranges = rated, ranges
         self._settings: JointLimits | None = None  # while they hold
         self._inner: tuple[float, ...] = ()  # where each damping zone begins [rad]
+        self._least = 0.0  # where the first of them does
         self._begin: tuple[float, ...] = ()  # where each stiff zone begins [rad]
         self._guards: list[Guard | None] = []
         self.torque: tuple[float, ...] = ()
@@ -50,6 +51,7 @@ class JointZones:
         self._settings = settings
         self._begin = tuple([limit - settings.stiff_zone for limit in self._ranges])
         self._inner = tuple([begin - settings.damping_zone for begin in self._begin])
+        self._least = min(self._inner)
         self._guards = [None] * len(self._ranges)
 
     def leave(self) -> None:
@@ -62,7 +64,8 @@ class JointZones:
         if settings is None:
             return
         angles = estimate.theta.tolist()
-        if max(map(sub, map(abs, angles), self._inner)) <= 0.0:
+        near = max(angles) > self._least or min(angles) < -self._least  # seldom, so that the joints need not be looked at
+        if not near or max(map(sub, map(abs, angles), self._inner)) <= 0.0:
             if self.torque:
                 self._guards = [None] * len(angles)
                 self.torque, self.pushing = (), False

@@ -66,7 +66,12 @@ class Ending(NamedTuple):
 
 
 class Operation:
-    """Watches one free-drive, from entry to leaving."""
+    """Watches one free-drive, from entry to leaving.
+
+    Attributes:
+        suspect: a payload may have dropped: the additional torque goes (FD-19).
+        damping: where motion is resisted, None while nothing is (FD-12b).
+    """
 
     __slots__ = (
         "_allowed",
@@ -85,6 +90,7 @@ class Operation:
         "_soft",
         "_stepped",
         "_twist",
+        "damping",
         "suspect",
     )
 
@@ -119,7 +125,8 @@ class Operation:
         self._level = 0.0  # of the share after a step
         self._stepped = 0  # ticks since a step, 0: none
         self._followed = NOTHING_FOLLOWS
-        self.suspect = False  # a payload may have dropped: the additional torque goes (FD-19)
+        self.suspect = False
+        self.damping: Damping | None = None
 
     @property
     def memory(self) -> tuple[object, ...]:
@@ -137,11 +144,6 @@ class Operation:
             self._since,
         )
         return (*own, self._monitor.memory, self._soft.memory, self._link.memory)
-
-    @property
-    def damping(self) -> Damping | None:
-        """Where motion is resisted, None while nothing is (FD-12b)."""
-        return self._soft.damping
 
     def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
         """One tick; its joint values are finite.
@@ -163,6 +165,7 @@ class Operation:
             soft.step(estimate, norm(hand.user), self._torque(estimate) if use_wrench else 0.0)
         else:
             soft.step(estimate)
+        self.damping = soft.damping
         parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
         beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
-from itertools import repeat
-from operator import add, mul, sub, truediv
+from operator import sub, truediv
 from typing import NamedTuple
 
 import msgspec
@@ -116,15 +115,14 @@ def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
 
 def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
-    share, estimate = view.share, view.estimate
-    limits = list(map(mul, view.scale, repeat(gauge.base)))
-    if share:
-        limits = list(map(add, limits, map(mul, map(abs, estimate.tau_J.tolist()), repeat(share))))
-    sizes = list(map(abs, map(sub, estimate.tau_ext.tolist(), view.since.torques)))
-    ratios = list(map(truediv, sizes, limits))
-    joint = ratios.index(max(ratios))
-    gauge.high = limits[joint]
-    return sizes[joint], view.joints[joint]
+    share, base, felt = view.share, gauge.base, view.estimate
+    nearest, size, part = -1.0, 0.0, 0
+    torques = zip(felt.tau_ext.tolist(), view.since.torques, view.scale, felt.tau_J.tolist(), strict=True)
+    for joint, (now, then, rated, load) in enumerate(torques):
+        change, limit = abs(now - then), base * rated + share * abs(load)
+        if change > nearest * limit:
+            nearest, size, part, gauge.high = change / limit, change, joint, limit
+    return size, view.joints[part]
 
 
 def _payload_force(view: View, _: Gauge) -> tuple[float, str]:

@@ -71,12 +71,12 @@ class Periods:
     @property
     def waits(self) -> bool:
         """Nobody is known to move the arm: a period runs, and there was no manipulation in the tick before."""
-        return self.runs and not self._stirred
+        return self.phase in RUNNING and not self._stirred
 
     @property
     def remaining(self) -> Remaining | None:
         """Of the running period (FD-20)."""
-        return Remaining(RUNNING[self.phase], self._left, self._total) if self.runs else None
+        return Remaining(RUNNING[self.phase], self._left, self._total) if self.phase in RUNNING else None
 
     def ask_anew(self) -> bool:
         """The running period is to begin anew in this tick (FD-16). Returns whether one runs."""

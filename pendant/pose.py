@@ -72,8 +72,7 @@ def dot(a: Vector, b: Vector) -> float:
 
 def norm(v: Vector) -> float:
     """The length."""
-    x, y, z = v
-    return math.sqrt(x * x + y * y + z * z)
+    return math.hypot(*v)
 
 
 def turned(R: Rotation, v: Vector) -> Vector:

@@ -52,17 +52,19 @@ class Publisher:
             shake: haptic feedback.
         """
         robot, tooling, use = self._robot, self._tooling, self._settings
-        free, sequencer, mode, phase = robot.free, robot.sequencer, robot.mode, robot.free.phase
+        free, sequencer, mode = robot.free, robot.sequencer, robot.mode
+        arm, phase, helping = free.arm, free.phase, free.helping
         locks = self._locks if mode is _FREE_DRIVE else None
         trying = phase is _SEQUENCE
-        helping, balance = free.helping, free.balance
+        balance = free.balance if trying else None
+        damping, singularity = (None, None) if arm is None else (arm.damping, arm.singularity)
         # What lasts, and what is of this tick alone: mostly only the latter is different from what was told last.
         key = (
-            mode, robot.safety, phase, law, helping, free.baseline, robot.grip, speeds, balance, free.damping, free.zones, locks,
-            free.singularity, shake, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on, tooling.fitting,
+            mode, robot.safety, phase, law, helping, free.baseline, robot.grip, speeds, balance, damping, free.zones, locks,
+            singularity, shake, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on, tooling.fitting,
             tooling.wizard.progress,
         )  # fmt: skip
-        periods = free.periods() if not free.idle and use.free_drive.remainders else ()
+        periods = free.periods() if use.free_drive.remainders and not free.idle else ()
         walls = () if phase is _OFF else free.walls()
         monitored = free.monitored() if trying else ()
         passing = bool(events or periods or walls or monitored or contacts)
@@ -95,13 +97,13 @@ class Publisher:
             walls=walls,
             grip=robot.grip,
             speed_limits=speeds,
-            damping=free.damping,
+            damping=damping,
             zones=free.zones,
             balance=balance,
             fitting=tooling.fitting,
             wizard=tooling.wizard.progress,
             locks=locks,
-            singularity=free.singularity,
+            singularity=singularity,
             shake=shake,
             limits=self._checksum,
         )

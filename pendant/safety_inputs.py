@@ -33,7 +33,7 @@ class SafetyInputs:
 
     def speed_limits(self, settings: Settings) -> SpeedLimits | None:
         """What holds in REDUCED, None outside of it."""
-        return self._reduced.limits(settings.reduced)
+        return self._reduced.limits(settings.reduced) if self._reduced.on else None
 
     def step(
         self, estimate: Estimate, commands: tuple[Command, ...], held: bool, settings: Settings, events: list[Event]

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,10 +28,10 @@ class Signal(NamedTuple):
     saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size
 
 
-class Signals(NamedTuple):
+class Signals(msgspec.Struct, frozen=True, gc=False):
     """One tick of all sources. While nobody looks at them they stay the rows of numbers that they come as."""
 
-    rows: NDArray[np.float64] = np.zeros((0, len(Signal._fields)))  # a source each, with the fields of `Signal`
+    rows: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, len(Signal._fields))))  # fields of `Signal`
     valid: tuple[bool, ...] = ()  # of each source
 
     def each(self) -> tuple[Signal | None, ...]:

@@ -167,7 +167,8 @@ class Supervisor:
         wrench = self._mean.step(estimate)
         calls, state = self._calls, self._sequencer.state
         events += calls.step(estimate, inputs, wrench, self._holding, self.settings, state, self._button.held)
-        self._free.sense(self._button.held, PROGRAM if self._asks_for_a_hand and not calls.signal.source else calls.signal)
+        asks = robot.mode is _RUN and not calls.signal.source and self._asks_for_a_hand
+        self._free.sense(self._button.held, PROGRAM if asks else calls.signal)
         return wrench
 
     def _grip(self) -> None:
@@ -176,9 +177,8 @@ class Supervisor:
 
     @property
     def _asks_for_a_hand(self) -> bool:
-        """A step of the program wants free-drive, which is off, and the arm stands."""
-        robot = self._robot
-        return self._sequencer.guiding and robot.static and robot.mode is Mode.RUN and self._free.phase is Phase.OFF
+        """A step of the running program wants free-drive, which is off, and the arm stands."""
+        return self._sequencer.guiding and self._robot.static and self._free.phase is Phase.OFF
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
@@ -268,4 +268,4 @@ class Supervisor:
         self._haptics.step(Moment(mode, law, free.phase, events, near, left, feedback), self.settings.haptics)
 
 
-_BUTTON, _OFF, _HOLD = Button.FREE_DRIVE, Phase.OFF, Law.HOLD  # looked up in every tick
+_BUTTON, _OFF, _HOLD, _RUN = Button.FREE_DRIVE, Phase.OFF, Law.HOLD, Mode.RUN  # looked up in every tick

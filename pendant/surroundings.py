@@ -26,4 +26,4 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     @property
     def enabled(self) -> bool:
         """No enabling device forbids motion."""
-        return enables(self.grip)
+        return self.grip is None or enables(self.grip)

@@ -12,6 +12,8 @@ from pendant.settings import Static, ticks
 WINDOW = ticks(0.1)
 """Ticks over which F_user is averaged before free-drive begins."""
 
+_SHARES = tuple(np.full(count, 1.0 / count) for count in range(1, WINDOW + 1))  # of each tick in the mean of so many
+
 
 def joints_ok(estimate: Estimate) -> bool:
     """Joint values are valid, and finite as well: validity is not taken on trust (FD-12)."""
@@ -24,9 +26,9 @@ def motion_ok(estimate: Estimate) -> bool:
 
 
 def _finite(estimate: Estimate) -> bool:
-    positions, speeds = estimate.q.tolist() + estimate.theta.tolist(), estimate.qd.tolist() + estimate.theta_d.tolist()
-    torques = estimate.tau_ext.tolist() + estimate.tau_J.tolist()
-    return math.isfinite(sum(positions + speeds + torques + estimate.v_F.tolist()))
+    q, theta, qd, theta_d = estimate.q.tolist(), estimate.theta.tolist(), estimate.qd.tolist(), estimate.theta_d.tolist()
+    tau_ext, tau_J, v_F = estimate.tau_ext.tolist(), estimate.tau_J.tolist(), estimate.v_F.tolist()
+    return math.isfinite(sum([*q, *theta, *qd, *theta_d, *tau_ext, *tau_J, *v_F]))
 
 
 def wrench_ok(estimate: Estimate) -> bool:
@@ -93,7 +95,8 @@ class WrenchMean:
         """The mean [N, N·m]; zeros without a valid value."""
         if self.count == 0:
             return ZEROS
-        return tuple((self._ring[: self.count].sum(axis=0) / self.count).tolist())
+        ring = self._ring if self.count == WINDOW else self._ring[: self.count]
+        return tuple(_SHARES[self.count - 1].dot(ring).tolist())
 
     @property
     def memory(self) -> tuple[object, ...]:

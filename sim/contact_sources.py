@@ -13,6 +13,7 @@ from pendant.signal import Signals
 from sim.chain import Body
 from sim.cholesky import factor, solve
 from sim.dynamics import Dynamics
+from sim.frames import skew
 from sim.sensors import Sample
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
     Not compiled: it is asked for rarely, and a compiled solver of systems costs a fresh installation half a minute.
     """
     linear, angular = jacobian[:3], jacobian[3:]
-    at_load = linear + np.cross(angular.T, R @ load.com).T
+    at_load = linear - skew(R @ load.com) @ angular
     carried = load.mass * (at_load.T @ at_load) + angular.T @ (R @ load.inertia @ R.T) @ angular
     mobility = linear @ np.linalg.solve(mass - carried, linear.T)
     return 1.0 / float(np.linalg.eigvalsh(mobility)[-1])

@@ -3,6 +3,8 @@
 import threading
 from dataclasses import dataclass, field
 
+import msgspec
+
 from pendant.inputs import Button, Command, Inputs
 from pendant.program import Program
 from pendant.tools import Tool
@@ -11,8 +13,7 @@ from sim.scenario import Load
 from sim.touch import Touch
 
 
-@dataclass(frozen=True, slots=True)
-class Wishes:
+class Wishes(msgspec.Struct, frozen=True, gc=False):
     """What the loop takes from the desk for one tick."""
 
     inputs: Inputs

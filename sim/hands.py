@@ -41,10 +41,11 @@ class Hands:
         Raises:
             KeyError: a touch names a part that does not exist.
         """
-        if self._pushed:
-            for body in self._pushed:
-                self._applied[body] = 0.0
-            self._pushed.clear()
+        applied, pushed = self._applied, self._pushed
+        if pushed:
+            for body in pushed:
+                applied[body] = 0.0
+            pushed.clear()
         if not touches:
             self.touched = ()
             return
@@ -52,13 +53,13 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                spring = (*touch.point, *touch.target, touch.cap)
-                point, force = _pull(*self._poses, *self._motion, self._roots[body], body, self._applied, *map(float, spring))
+                spring = map(float, (*touch.point, *touch.target, touch.cap))
+                point, force = _pull(*self._poses, *self._motion, self._roots[body], body, applied, *spring)
                 torque = ZERO
             else:
                 force, torque = _floats(touch.force), _floats(touch.torque)
-                point = _push(*self._poses, body, self._applied, *map(float, (*touch.point, *force, *torque)))
-            self._pushed.add(body)
+                point = _push(*self._poses, body, applied, *map(float, (*touch.point, *force, *torque)))
+            pushed.add(body)
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
 

@@ -30,12 +30,12 @@ class MotorController:
         self._limits = np.stack([per_torque, largest, np.array(arm.limits.speed)])
         self.command = np.zeros(arm.n)
         self.excess = np.zeros(arm.n)
+        self._current = np.zeros(arm.n)
 
     def current(self, torque: Array, speed: Array) -> Array:
-        """Motor currents (n,) [A] for a wanted motor torque (n,) [N·m] at motor speeds (n,) [rad/s]."""
-        current = np.empty_like(torque)
-        _limit(torque, speed, self._limits, self.command, self.excess, current)
-        return current
+        """Motor currents (n,) [A] for a wanted motor torque (n,) [N·m] at motor speeds (n,) [rad/s]; good until the next call."""
+        _limit(torque, speed, self._limits, self.command, self.excess, self._current)
+        return self._current
 
 
 @numba.njit(cache=True)
