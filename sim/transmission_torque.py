@@ -21,6 +21,7 @@ MODEL_FLOOR = 0.004  # what the rigid model misses at least, relative to the tor
 ACCELERATION_FLOOR = 0.1  # deviation of the output's acceleration at rest [rad/s²]
 ACCELERATION_SHARE = 0.15  # and of the largest acceleration lately: links swing on their springs faster than the filter sees
 LATELY = math.exp(-TICK / 0.3)
+SOFTEST, STIFFEST = 1.0 / (1.0 + STIFFNESS) - 1.0, 1.0 / (1.0 - STIFFNESS) - 1.0  # the springs, against what is believed
 STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
 RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
@@ -42,9 +43,10 @@ class TransmissionTorque:
     the deflection, or without it from the motor's way, by more than both allow.
 
     The model's errors change fast, with accelerations that it does not see in time; the deflection's slowly, with the angle.
-    So the deflection is trusted as far as the two have agreed lately, in the mean over a third of a second, the model as far as
-    the rest of their difference was small (innovation-based adaptive estimation: Mehra, 1970). That is for the fusion alone:
-    agreement at the angles of now says little of the next ones, and what tells a hand from an error must not count on it.
+    So the deflection is trusted as far as the two have agreed lately, in the mean over a third of a second, more or less than was
+    believed of it, and as far as the model explains how much they differ now; the model as far as the rest of their difference
+    was small (innovation-based adaptive estimation: Mehra, 1970). That is for the fusion alone: agreement at the angles of now
+    says little of the next ones, and what tells a hand from an error must not count on it.
 
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
@@ -150,7 +152,7 @@ def _compare(
         gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
         external_deviation[i] = np.sqrt(gear + noise + rigid)
         if use[0, i] and differ[3, i] == REMEMBERED:
-            gear = min(gear, differ[1, i])
+            gear = max(differ[1, i], differ[0, i] ** 2 - rigid)
         deviations[1, i] = np.sqrt(gear + noise)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
@@ -178,14 +180,15 @@ def _compare(
         P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
-        correction[0, i] += g0 * error / spread
-        correction[1, i] += g1 * error / spread
-        correction[0, i] = min(max(correction[0, i], -STIFFNESS), STIFFNESS)
-        correction[1, i] = min(max(correction[1, i], -ripple), ripple)
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
         P[1, 0] = P[0, 1]
+        stiffer = correction[0, i] + g0 * error / spread
+        correction[0, i] = min(max(stiffer, SOFTEST), STIFFEST)
+        # The offset was learned together with a stiffness that cannot be: it is what goes with the bound.
+        offset = correction[1, i] + g1 * error / spread + (correction[0, i] - stiffer) * P[0, 1] / P[0, 0]
+        correction[1, i] = min(max(offset, -ripple), ripple)
     return False
 
 
