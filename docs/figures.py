@@ -13,15 +13,18 @@ RESULTS = ROOT / "out" / "bench"
 HEADER = """\
 # Figures
 
-What the benches measured against their bars, a column for each seed base; tuning used none of them. Rows without a bar are in the
-files of the benches only. Times are of the machine that ran them: compare them with each other. To remake this page:
+What the benches measured against their bars, a column for each seed base; neither tuning nor an earlier measurement used them.
+Rows without a bar are in the files of the benches only. Where a bench was run in its full size that stands in place of its quick
+one. Times are of the machine that ran them: compare them with each other. To remake this page:
 
 ```
-make bench-full SEED=1000
-make bench-full SEED=2000
-make bench-full SEED=3000
+make bench SEED=11000
+make bench SEED=12000
+make bench SEED=13000
 python -m docs.figures
 ```
+
+`make bench-full` takes hours; `make soak` is an hour by itself.
 """
 
 
@@ -44,7 +47,7 @@ class Unreadable(ValueError):
 
 
 def results(folder: Path) -> list[dict[str, Any]]:
-    """The documents that benches wrote, in the order of their files' names; of each bench those of full size, if there are any.
+    """The documents that benches wrote, in the order of their files' names; of each bench and base the one of full size, if any.
 
     Raises:
         Unreadable: there is none, or one is no JSON, or lacks what a bench writes.
@@ -52,8 +55,8 @@ def results(folder: Path) -> list[dict[str, Any]]:
     found = [_read(path) for path in sorted(folder.glob("*.json"))]
     if not found:
         raise Unreadable(f"{folder}: no results of benches; run `make bench` first")
-    full = {document["bench"] for document in found if document["size"] == "full"}
-    return [document for document in found if document["size"] == "full" or document["bench"] not in full]
+    full = {(document["bench"], document["seed"]) for document in found if document["size"] == "full"}
+    return [each for each in found if each["size"] == "full" or (each["bench"], each["seed"]) not in full]
 
 
 def _read(path: Path) -> dict[str, Any]:
