@@ -89,6 +89,8 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
             "No stop.",
         ),
         "<h2>Contacts</h2>",
+        "<p>Delays as the detector tells them: since the first tick in which it sees the change. `make bench` measures them from "
+        "the true onset.</p>",
         _table(
             ("at [s]", "what", "rule", "delay [ms]", "action"),
             [_contact(event) for event in summary.contacts],
