@@ -58,9 +58,7 @@ contracts: $(VENV)/dev.stamp
 
 # A fresh clone compiles its kernels once, and not in each worker of the tests.
 kernels: $(VENV)/dev.stamp
-	$(BIN)/pendant run free-drive --out build/kernels >/dev/null
-	$(BIN)/pendant run axis-locks contact-3a --out build/kernels >/dev/null
-	@rm -rf build/kernels
+	$(BIN)/python -c "from app.warm_up import warm_up; warm_up()"
 
 unit: $(VENV)/dev.stamp
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10

@@ -7,18 +7,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import typer
+
 from app.checked import BadInput
 from app.library import mesh_path
 from app.log.playback import Player
 from app.log.reader import read, repair
 from app.prepare import Prepared
 from app.runner import simulate
+from app.warm_up import warm_up
 from app.web.access import access_through, free_port
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
 from app.web.site import Site
 from sim.loop import Loop
+
+PATIENCE = 4.0
+"""A start that takes longer is explained [s]: it is the first one after an installation."""
+
+COMPILING = "Compiling what runs in every tick. This first start takes half a minute, later ones a second or two."
 
 
 @contextmanager
@@ -41,6 +49,10 @@ def serve_until_interrupted(
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: ended.set())
+    notice = threading.Timer(PATIENCE, lambda: typer.echo(COMPILING))
+    notice.start()
+    warm_up()
+    notice.cancel()
     loop = Loop(lambda: simulate(prepared))
     loop.start()
     try:

@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from app.library import load_arm
+from app.warm_up import warm_up
 from app.web.server import serve
 from pendant.modes import TICK
 from pendant.settings import Settings
@@ -78,6 +79,7 @@ def run(seed: int) -> None:
     """Serve until standard input ends."""
     logging.basicConfig(stream=sys.stderr, level=logging.WARNING)
     arm = load_arm("ur5e")
+    warm_up()  # as the app does
     loop = Loop(lambda: Simulation(arm, Scenario(seed=seed), Settings()))
     loop.start()
     ended = threading.Event()
