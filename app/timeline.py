@@ -143,6 +143,10 @@ class Timeline:
                 self._held.add(button)
             return
         entry.done = True
+        self._at_once(action, now)
+
+    def _at_once(self, action: Action, now: _Tick) -> None:
+        """Do what takes no time."""
         match action:
             case DigitalInput():
                 (self._high.add if action.high else self._high.discard)(action.input)

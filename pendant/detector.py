@@ -107,22 +107,11 @@ class Detector:
     def _rule(self, use: ContactUse, limit: ContactLimits) -> tuple[Rule, int, bool] | None:
         """The rule that saw a change, how far back the change may reach, and whether the acceleration has died out."""
         history, counts, misses, hard_count = self.history, self._counts, int(use.misses), int(use.hard_count)
-        seen: list[tuple[Rule, int, bool]] = []
-        wanted = 0
         of_values = ratio_of_values = False
         if use.instant or use.ratio_of_values:
             of_values, ratio_of_values = values(history, limit)
-        if use.difference or use.ratio:
-            change = hard(history, limit)
-            clear = change.clear and use.retrospective and self._confirmed(limit, hard_count)
-            if use.difference:
-                wanted += 1
-                if counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses) or clear:
-                    seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
-            if use.ratio:
-                wanted += 1
-                if counts[Rule.RATIO].step(change.ratio or (ratio_of_values and use.ratio_of_values), hard_count, misses):
-                    seen.append((Rule.RATIO, STEP + hard_count, False))
+        wanted = use.difference + use.ratio
+        seen = self._hard(use, limit, ratio_of_values and use.ratio_of_values) if wanted else []
         if use.instant:
             wanted += 1
             if counts[Rule.INSTANT].step(of_values, hard_count, misses):
@@ -139,6 +128,18 @@ class Detector:
         if not seen or (use.all_rules and len(seen) < wanted):
             return None
         return seen[0]
+
+    def _hard(self, use: ContactUse, limit: ContactLimits, of_values: bool) -> list[tuple[Rule, int, bool]]:
+        """Difference and ratio rule, as `_rule`; `of_values`: the values of now show the ratio, too (CD-4, CD-5)."""
+        counts, misses, hard_count = self._counts, int(use.misses), int(use.hard_count)
+        seen: list[tuple[Rule, int, bool]] = []
+        change = hard(self.history, limit)
+        clear = change.clear and use.retrospective and self._confirmed(limit, hard_count)
+        if use.difference and (counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses) or clear):
+            seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
+        if use.ratio and counts[Rule.RATIO].step(change.ratio or of_values, hard_count, misses):
+            seen.append((Rule.RATIO, STEP + hard_count, False))
+        return seen
 
     def _confirmed(self, limit: ContactLimits, count: int) -> bool:
         """A clear difference against one sample is clear against those before it, too: `count` in all (CD-9)."""
