@@ -55,6 +55,8 @@ def test_every_list_has_one_value_a_joint(field: str) -> None:
         ("inertias.tensor.1", [1.0, 1.0, 1.0], "inertias.tensor[1]", "a list of 6"),
         ("frictions.torque.4", [1.0, 2.0], "frictions.torque[4]", "a list of 4"),
         ("shapes.3.start", [0.0], "shapes[3].start", "a list of 3"),
+        ("chain.a.1", -425.0, "reach", "425.9 m, and at least a quarter"),  # millimetres
+        ("reach", 850.0, "reach", "at most the chain's length end to end, 1.312 m"),
         ("chain.elbow", 6, "chain.elbow", "0 to 5"),
         ("chain.elbow", -1, "chain.elbow", "0 to 5"),
         ("chain.home.1", 6.5, "chain.home[1]", "6.28319"),
