@@ -17,6 +17,7 @@ from app import actions
 from app.checked import BadInput, convert
 from app.library import load_arm
 from app.session import Session
+from app.web import surfaces
 from docs import modules
 from pendant import contact_rules, contact_settings, limit_settings, parameters, shapes, solids
 from pendant.history import History
@@ -48,9 +49,9 @@ def recipe(name: str) -> str:
     return (ROOT / "docs" / "how-to" / f"{name}.md").read_text()
 
 
-def within(module: Any, code: str) -> dict[str, Any]:
-    """What a block defines, read at the end of the module that it belongs to."""
-    names = {**vars(module), "math": math}
+def within(module: Any, code: str, **more: Any) -> dict[str, Any]:
+    """What a block defines, read at the end of the module that it belongs to, where `more` is known."""
+    names = {**vars(module), "math": math, **more}
     exec(compile(code, module.__name__, "exec", dont_inherit=True), names)
     return names
 
@@ -104,7 +105,7 @@ def test_the_parameter_of_the_example_is_read() -> None:
 
 
 def test_the_shape_of_the_example_is_what_it_says() -> None:
-    field, shape = blocks("wall-shape")
+    field, shape, case = blocks("wall-shape")
     made = within(shapes, "")
     made["solids"] = type("Solids", (), {"capsule": staticmethod(within(solids, field)["capsule"])})
     exec(compile(shape, "shapes", "exec", dont_inherit=True), made)
@@ -118,6 +119,9 @@ def test_the_shape_of_the_example_is_what_it_says() -> None:
         far, *slope = distance(*point.tolist())
         assert far == pytest.approx(np.linalg.norm(point - axis, axis=1).min() - 0.1, abs=1e-6)
         assert distance(*(point - far * np.array(slope)).tolist())[0] == pytest.approx(0.0, abs=1e-9)
+    picture = f"def picture(shape):\n    match shape:\n{textwrap.indent(case, ' ' * 8)}"
+    drawn = within(surfaces, picture, Capsule=made["Capsule"])["picture"](pill)
+    assert max(abs(distance(*corner)[0]) for corner in drawn.vertices.tolist()) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_the_rule_of_the_example_sees_a_large_force() -> None:
