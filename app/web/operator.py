@@ -1,4 +1,4 @@
-"""One operator at a time; everybody else watches (spec/app.md, web app)."""
+"""One operator at a time; everybody else watches (docs/network.md)."""
 
 from dataclasses import dataclass
 
