@@ -36,14 +36,14 @@ MOVED = 0.03
 JUMP = 3.5
 """Smallest step [N]; smaller ones do not move an arm."""
 
-STRAY = 0.3
-"""Share of it by which it may stray until it is judged: a knock is over by then."""
+STRAY, NOISE = 0.3, 1.0
+"""Share of it by which it may stray until it is judged, and what the sensor's noise adds [N]: a knock is over by then."""
 
 SHAKEN = 1.5
 """What is felt by the accelerometer as well, in the step's first ticks, is a hand's or a knock [m/s²]."""
 
-SOON = 4
-"""Ticks of a step in which it shakes the flange; help comes later."""
+SOON = 3
+"""Ticks of a step in which a hand's shakes the flange; later the help does that a step of the sensor calls for."""
 
 LATER = 6
 """Ticks from a step to the joints' answer."""
@@ -152,7 +152,7 @@ class Steps:
         x, y, z = self._sum
         self._sum = (x + now[0], y + now[1], z + now[2])
         size = dot(self._step, self._step)
-        if dot(off, off) > STRAY * STRAY * size:
+        if norm(off) > STRAY * math.sqrt(size) + NOISE:
             self._age = 0
             return None
         if self._age <= LATER:

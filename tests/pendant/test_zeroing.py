@@ -9,7 +9,7 @@ from pendant.events import Kind
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
 from pendant.pose import Vector
-from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, QUIET, SLOW, SLOW_TURN, STRAY, Drift, Steps
+from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, NOISE, QUIET, SLOW, SLOW_TURN, SOON, STRAY, Drift, Steps
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench
 
@@ -184,6 +184,24 @@ def test_a_step_that_shakes_the_flange_or_that_nobody_can_tell_from_one_that_doe
         for k, force in enumerate(forces)
     ]
     assert found == [None] * len(forces)
+
+
+@pytest.mark.parametrize(("quiet", "told"), [(SOON - 1, True), (SOON - 2, False)])
+def test_help_that_comes_soon_shakes_the_flange_later_than_a_hand_does(quiet: int, told: bool) -> None:
+    """A step of 20 N moves a light wrist within four ticks, as the help that it calls for does."""
+    steps, first = Steps(), 2  # the step's first tick
+    found = [
+        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > first)], acceleration=2.0 * (k > first + quiet)), force)
+        for k, force in enumerate(stepping(20.0))
+    ]
+    assert any(step is not None for step in found) is told
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.99, True), (1.01, False)])
+def test_the_sensors_noise_does_not_hide_a_small_step(share: float, told: bool) -> None:
+    stray = share * (STRAY * 5.0 + NOISE)
+    forces: list[Vector] = [(0.0, 0.0, 0.0)] * 2 + [(0.0, 0.0, 5.0)] * 2 + [(stray, 0.0, 5.0), (-stray, 0.0, 5.0)] * 3
+    assert bool(seen(Steps(), forces, [0.0, 0.0, -2.0])) is told
 
 
 def test_the_baseline_is_in_the_axes_of_the_flange_at_entry() -> None:
