@@ -147,7 +147,7 @@ class Anchor:
 def _against(stay: Stay) -> float:
     """How far the part moved against the payload-like residual in this tick [m]."""
     fx, fy, fz = stay.payload_force
-    size = math.sqrt(fx * fx + fy * fy + fz * fz)
+    size = math.hypot(fx, fy, fz)
     if size < RESIDUAL:
         return 0.0
     x, y, z = stay.moved

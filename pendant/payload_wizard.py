@@ -31,31 +31,31 @@ IDLE = Progress()
 
 
 class PayloadWizard:
-    """One tick at a time, while it measures; nothing is done otherwise."""
+    """One tick at a time, while it measures; nothing is done otherwise.
 
-    __slots__ = ("_halves", "_left", "_postures", "_total", "progress")
+    Attributes:
+        progress: for interfaces.
+        left: ticks left of the measurement that runs, 0 where none does.
+    """
+
+    __slots__ = ("_halves", "_postures", "_total", "left", "progress")
 
     def __init__(self) -> None:
         self._postures: tuple[Posture, ...] = ()
         self._halves = np.zeros((2, 6))  # sums of the sensor's values
         self._total = 0  # ticks of the measurement
-        self._left = 0
+        self.left = 0
         self.progress = IDLE
-
-    @property
-    def measuring(self) -> bool:
-        """A posture is being measured."""
-        return self._left > 0
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._postures, self._halves.tobytes(), self._total, self._left, self.progress)
+        return (self._postures, self._halves.tobytes(), self._total, self.left, self.progress)
 
     def clear(self) -> None:
         """Forget all postures: the tool is another, or the user begins again."""
         self._postures = ()
-        self._left = 0
+        self.left = 0
         self.progress = IDLE
 
     def begin(self, estimate: Estimate, length: int, why_not: str) -> list[Event]:
@@ -66,7 +66,7 @@ class PayloadWizard:
             length: of the measurement [ticks], 2 or more.
             why_not: what forbids it, or "".
         """
-        if self.measuring:
+        if self.left > 0:
             why_not = "a posture is being measured"
         elif len(self._postures) == MOST:
             why_not = f"{MOST} postures are enough: clear them to begin again"
@@ -75,7 +75,7 @@ class PayloadWizard:
         if why_not:
             return [_refused(estimate, why_not)]
         self._halves[:] = 0.0
-        self._total = self._left = length
+        self._total = self.left = length
         self._tell()
         return []
 
@@ -88,14 +88,14 @@ class PayloadWizard:
             known: what the sensor feels besides the load that is looked for.
         """
         if why_not:
-            self._left = 0
+            self.left = 0
             self._tell()
             return [_refused(estimate, why_not)]
-        half = 0 if 2 * self._left > self._total else 1
+        half = 0 if 2 * self.left > self._total else 1
         self._halves[half] += estimate.w_sensor
-        self._left -= 1
+        self.left -= 1
         self._tell()
-        return [] if self._left else self._end(estimate, known)
+        return [] if self.left else self._end(estimate, known)
 
     def _end(self, estimate: Estimate, known: tuple[Load, ...]) -> list[Event]:
         later = self._total // 2
@@ -147,7 +147,7 @@ class PayloadWizard:
         return f"{math.degrees(angle):.1f}° from posture {number}, at least {math.degrees(least):.1f}°: turn the wrist on"
 
     def _tell(self) -> None:
-        share = 1.0 - self._left / self._total if self._left else 0.0
+        share = 1.0 - self.left / self._total if self.left else 0.0
         self.progress = self.progress._replace(postures=len(self._postures), share=share)
 
 

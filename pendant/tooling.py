@@ -59,7 +59,7 @@ class Tooling:
             use: settings.
         """
         steered = not WIZARD.isdisjoint(inputs.commands)
-        if not (inputs.tool or inputs.load or inputs.tools or steered or self.changing or self.wizard.measuring):
+        if not (inputs.tool or inputs.load or inputs.tools or steered or self.changing or self.wizard.left):
             return []
         events: list[Event] = []
         why_not = "" if phase is Phase.OFF else "free-drive is being tried"
@@ -73,7 +73,7 @@ class Tooling:
             events += self._configure(inputs.load, why_not, estimate.tick, use)
         if steered:
             events += self._steer(estimate, inputs.commands, why_not, _obstacle(estimate, phase, still), use)
-        elif self.wizard.measuring:
+        elif self.wizard.left:
             events += self.wizard.step(estimate, _obstacle(estimate, phase, still), self._known)
         if self.changing:
             events += self._go_on(estimate.tick)

@@ -26,33 +26,32 @@ class Friction:
         self.output_viscous: Array = frictions.output_share * slope  # (n,) [N·m·s/rad]
         inner = total - self.output_coulomb[:, None] - self.output_viscous[:, None] * speed
         root = np.sqrt(speed)
-        self._coefficients = np.linalg.solve(np.vander(root), inner.T)  # highest power first, (m, n)
-        self._root_low, self._root_high = float(root[0]), float(root[-1])
+        coefficients = np.linalg.solve(np.vander(root), inner.T)  # highest power first, (m, n)
         self.breakaway: Array = np.array(frictions.breakaway) - self.output_coulomb  # (n,) of the input side at rest [N·m]
         self.load = np.array(frictions.load)  # rise with |tau_J| (n,) [N·m per N·m]
-        self._reference = frictions.temperature
-        self.per_kelvin = frictions.per_kelvin  # relative change a kelvin at the reference
         self.factor = np.ones(arm.n)
         """Wear or grease: a factor a joint, 1 when new."""
-
-    def input_side(self, speed: Array, tau_J: Array, temperature: Array, out: Array) -> None:
-        """Put the friction torque (n,) [N·m], never negative, into `out`.
-
-        Below the slowest measured speed the curve goes straight (in the root of the speed) to the breakaway torque; above
-        the fastest it stays level.
-
-        Args:
-            speed: of the motors (n,) [rad/s].
-            tau_J: transmission torque (n,) [N·m].
-            temperature: of the joints (n,) [°C].
-            out: (n,).
-        """
-        numbers = (self._root_low, self._root_high, self._reference, self.per_kelvin)
-        _input_side(speed, tau_J, temperature, self._coefficients, self.breakaway, self.load, self.factor, out, *numbers)
+        shape = np.array([root[0], root[-1], frictions.temperature, frictions.per_kelvin])
+        self.per_kelvin = shape[3:]  # relative change a kelvin at the reference temperature (1,)
+        self.curves = (coefficients, self.breakaway, self.load, self.factor, shape)
+        """What `input_side` wants of this arm."""
 
 
 @numba.njit(cache=True)
-def _input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, out, low, high, reference, per_kelvin) -> None:
+def input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, out) -> None:
+    """Put the friction torque (n,) [N·m], never negative, into `out`.
+
+    Below the slowest measured speed the curve goes straight (in the root of the speed) to the breakaway torque; above
+    the fastest it stays level.
+
+    Args:
+        speed: of the motors (n,) [rad/s].
+        tau_J: transmission torque (n,) [N·m].
+        temperature: of the joints (n,) [°C].
+        coefficients, breakaway, load, factor, shape: `Friction.curves`.
+        out: (n,).
+    """
+    low, high, reference, per_kelvin = shape
     for i in range(out.size):
         root = np.sqrt(abs(speed[i]))
         inside = min(max(root, low), high)

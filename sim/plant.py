@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm import Arm
-from sim.friction import Friction
+from sim.friction import Friction, input_side
 from sim.hands import Hands
 from sim.model import SENSORS, Step, build
 from sim.objects import set_contact_stiffness
@@ -53,6 +53,7 @@ class Plant:
         values = arm.transmissions
         springs = np.array([values.stiffness, values.stiffening, values.damping, values.hysteresis_stiffness])
         self._brakes, self._braked = np.array(arm.limits.torque), False
+        self._held = np.zeros(arm.n)  # by the brakes, as they are
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
@@ -143,12 +144,10 @@ class Plant:
         self.hands.apply(touches)
         if self.scenario.world:
             self.world.advance()
-        self.friction.input_side(self.theta_d, self.tau_J, self.temperature, self.friction_in)
         if braked is not self._braked:
             self._brake(braked)
-        if braked:
-            self.friction_in += self._brakes
-        _drive(self._bias, self._rubs, self.friction_in, self._applied, self._dof_theta, motor_torque)
+        state = (self.theta_d, self.tau_J, self.temperature, *self.friction.curves, self.friction_in)
+        _drive(*state, self._held, self._bias, self._rubs, self._applied, self._dof_theta, motor_torque)
         mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
         _finish(*self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
         self.tick += 1
@@ -166,11 +165,13 @@ class Plant:
         values, at = self.model.actuator_dynprm, self.model.actuator_actadr[self._rubs]
         held = values[self._rubs, LUGRE_STIFFNESS] * self.data.act[at]
         if not braked:
-            held = np.clip(held, -self.friction_in, self.friction_in)
+            own = self.friction_in - self._held
+            held = np.clip(held, -own, own)
         values[self._rubs, LUGRE_STIFFNESS] *= factor
         values[self._rubs, LUGRE_DAMPING] *= math.sqrt(factor)
         self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
         self._braked = braked
+        self._held = self._brakes if braked else np.zeros_like(self._brakes)
 
     def _warm(self) -> None:
         """First-order warming of each joint by its own friction loss."""
@@ -241,8 +242,13 @@ def _sliding(motor_speed, speed, inner, coulomb, viscous):
 
 
 @numba.njit(cache=True)
-def _drive(bias, rows, friction, applied, at, torque) -> None:
+def _drive(
+    speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction, held, bias, rows, applied, at, torque
+) -> None:
+    """Friction of this tick, with what closed brakes hold, and the motors' torques."""
+    input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction)
     for i in range(rows.size):
+        friction[i] += held[i]
         bias[rows[i], 3] = bias[rows[i], 4] = friction[i]
         applied[at[i]] = torque[i]
 

@@ -31,7 +31,7 @@ def standing(R: np.ndarray, mass: float = 2.0, centre: tuple[float, float, float
 
 def measure(wizard: PayloadWizard, value: Estimate, length: int = TICKS, known: tuple[Load, ...] = ()) -> list[Event]:
     events = wizard.begin(value, length, "")
-    while wizard.measuring:
+    while wizard.left:
         events += wizard.step(value, "", known)
     return events
 
@@ -41,7 +41,7 @@ WRIST = [turned(math.pi), turned(math.pi - 0.8), turned(math.pi, 0.8), turned(ma
 
 def test_four_postures_lead_to_the_payload() -> None:
     wizard = PayloadWizard()
-    assert (wizard.progress, wizard.measuring) == (IDLE, False)
+    assert (wizard.progress, wizard.left) == (IDLE, False)
     told = [measure(wizard, standing(R)) for R in WRIST]
     assert [[event.kind for event in events] for events in told[:3]] == [[Kind.POSTURE_MEASURED]] * 3
     assert told[0][0].values == {"number": 1, "angle": 0.0, "limit": 0.0, "missing": 3}
@@ -70,7 +70,7 @@ def test_a_measurement_lasts_its_ticks_and_shows_how_far_it_is() -> None:
     value = standing(WRIST[0])
     assert wizard.begin(value, 4, "") == []
     seen = []
-    while wizard.measuring:
+    while wizard.left:
         seen.append(wizard.progress.share)
         wizard.step(value, "", ())
     assert seen == [0.0, 0.25, 0.5, 0.75]
@@ -109,11 +109,11 @@ def test_what_forbids_it_is_said_and_nothing_begins() -> None:
     assert wizard.begin(standing(WRIST[0]), TICKS, "the arm moves") == [
         Event(Kind.POSTURE_REFUSED, 0, {"reason": "the arm moves"})
     ]
-    assert not wizard.measuring
+    assert not wizard.left
     assert wizard.begin(standing(WRIST[0]), TICKS, "") == []
     (event,) = wizard.begin(standing(WRIST[0]), TICKS, "")
     assert event.values == {"reason": "a posture is being measured"}
-    assert wizard.measuring
+    assert wizard.left
 
 
 def test_what_comes_in_between_ends_the_measurement() -> None:
@@ -123,7 +123,7 @@ def test_what_comes_in_between_ends_the_measurement() -> None:
     wizard.step(value, "", ())
     (event,) = wizard.step(value, "the arm moves", ())
     assert (event.kind, event.values) == (Kind.POSTURE_REFUSED, {"reason": "the arm moves"})
-    assert (wizard.measuring, wizard.progress) == (False, IDLE)
+    assert (wizard.left, wizard.progress) == (False, IDLE)
 
 
 @pytest.mark.parametrize(("force", "kind"), [(0.9 * UNSTEADY, Kind.POSTURE_MEASURED), (1.1 * UNSTEADY, Kind.POSTURE_REFUSED)])
@@ -164,7 +164,7 @@ def test_clearing_forgets_everything() -> None:
     assert wizard.memory[0] == fresh[0] == ()
     wizard.begin(standing(WRIST[0]), TICKS, "")
     wizard.clear()
-    assert not wizard.measuring
+    assert not wizard.left
     assert measure(wizard, standing(WRIST[0]))[0].values["number"] == 1
 
 

@@ -302,7 +302,7 @@ def test_a_posture_is_measured_only_where_the_sensor_tells_the_load(changes: dic
             setattr(bench, name, value)
         (event,) = bench.step(*() if begun else (Command.WIZARD_MEASURE,))
         assert (event.kind, event.values["reason"]) == (Kind.POSTURE_REFUSED, words)
-        assert not bench.tooling.wizard.measuring
+        assert not bench.tooling.wizard.left
 
 
 def test_a_program_that_waits_may_be_measured_in() -> None:
