@@ -23,6 +23,7 @@ IDLE = Wishes(NOTHING, (), ())
 HOLD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
 RELEASE = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
 SMALLEST_SINGULAR = 0.1  # postures nearer to a singularity are drawn again; the share is printed
+LOOK_AHEAD = 0.1  # so far on is looked which way leads away from singularities [m]
 Mismatch = Literal["on", "nominal"]
 
 
@@ -87,12 +88,21 @@ def enter(simulation: Simulation) -> bool:
     return simulation.tick(RELEASE).mode is Mode.FREE_DRIVE
 
 
+def easiest(simulation: Simulation) -> np.ndarray:
+    """Direction in W (3,) in which the flange is easiest to move, the way that leads away from singularities."""
+    q = simulation.plant.q
+    jacobian = simulation.dynamics.update(q)[2][:3]
+    mobility = jacobian @ np.linalg.solve(simulation.dynamics.mass(q), jacobian.T)
+    along = np.linalg.eigh(mobility)[1][:, -1]
+    step = np.linalg.pinv(jacobian) @ along * LOOK_AHEAD
+    there, behind = (np.linalg.svd(simulation.dynamics.update(q + way)[2], compute_uv=False)[-1] for way in (step, -step))
+    base = simulation.plant.data.xmat[simulation.plant.model.body("foot").id].reshape(3, 3)
+    return base @ (along if there >= behind else -along)
+
+
 def speed_up(simulation: Simulation) -> float:
     """Guide the flange by a hand along its easiest direction until it moves at 250 mm/s; returns the speed reached [m/s]."""
-    jacobian = simulation.dynamics.update(simulation.plant.q)[2][:3]
-    mobility = jacobian @ np.linalg.solve(simulation.dynamics.mass(simulation.plant.q), jacobian.T)
-    base = simulation.plant.data.xmat[simulation.plant.model.body("foot").id].reshape(3, 3)
-    direction = base @ np.linalg.eigh(mobility)[1][:, -1]
+    direction = easiest(simulation)
     before = flange(simulation)
     target, pace, speed = before / 1000.0, 0.0, 0.0
     for _ in range(1500):
