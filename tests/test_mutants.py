@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutants import main, summary
+from tests.mutants import TABLES, main, second_trial, summary
 
 CODES = {
     "pendant.a.x_f__mutmut_1": 1,
@@ -18,7 +18,8 @@ CODES = {
 def test_survivors_are_those_that_pass_or_that_no_test_reaches() -> None:
     lines, share = summary(CODES)
     assert share == pytest.approx(2 / 3)
-    assert [line.split() for line in lines[:2]] == [["1", "of", "2", "pendant.a"], ["1", "of", "1", "pendant.b"]]
+    assert lines[:2] == ["pendant.a.x_f__mutmut_2", "pendant.b.x_g__mutmut_1"]
+    assert [line.split() for line in lines[2:4]] == [["1", "of", "2", "pendant.a"], ["1", "of", "1", "pendant.b"]]
     assert "2 of     3  in all: 66.7 %" in lines[-1]
 
 
@@ -32,3 +33,35 @@ def test_up_to_a_tenth_may_survive(alive: int, code: int, tmp_path: Path) -> Non
     codes = {f"pendant.a.x_f__mutmut_{k}": int(k >= alive) for k in range(10)}
     (tmp_path / "a.py.meta").write_text(json.dumps({"exit_code_by_key": codes}))
     assert main(tmp_path) == code
+
+
+MADE_ON_IMPORT = """
+import os
+
+def x_table__mutmut_orig(): return [1, 2]
+def x_table__mutmut_1(): return [1, 3]
+def x_table__mutmut_2(): return [1, 2]
+def x_last__mutmut_orig(): return TABLE[-1]
+def x_last__mutmut_1(): return 2
+
+def set_or(function):
+    return globals().get(os.environ.get("MUTANT_UNDER_TEST", "").removeprefix("pendant.a."), function)
+
+TABLE = set_or(x_table__mutmut_orig)()
+"""
+"""A module as mutmut leaves it: each function with its mutants beside it; the environment says which one runs."""
+
+
+def test_survivors_of_what_runs_on_import_are_tried_again_with_the_mutant_set_before_it(tmp_path: Path) -> None:
+    """The one that no test of tables tells from the original survives; what runs later is left as it is."""
+    for name in TABLES:
+        test = tmp_path / name
+        test.parent.mkdir(parents=True, exist_ok=True)
+        test.write_text("from pendant.a import TABLE\n\ndef test_table():\n    assert TABLE == [1, 2]\n")
+    (tmp_path / "pendant").mkdir()
+    (tmp_path / "pendant" / "__init__.py").touch()
+    (tmp_path / "pendant" / "a.py").write_text(MADE_ON_IMPORT)
+    codes = dict.fromkeys([f"pendant.a.x_{name}__mutmut_{k}" for name in ("table", "last") for k in (1, 2)], 0)
+    assert second_trial(codes, tmp_path) == {"pendant.a.x_table__mutmut_1": 1, "pendant.a.x_table__mutmut_2": 0}
+    codes["pendant.a.x_table__mutmut_1"] = 1
+    assert second_trial(codes, tmp_path) == {"pendant.a.x_table__mutmut_2": 0}
