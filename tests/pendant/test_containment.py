@@ -18,6 +18,7 @@ from pendant.shapes import Box, HalfSpace, Sphere
 from pendant.supervisor import Supervisor
 from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 
 HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
 LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
@@ -48,7 +49,7 @@ class Bench:
         value = value or estimate()
         value.tick = self.tick
         decision = self.supervisor.step(value, inputs)
-        self.events += decision.events
+        self.events += whole(decision.events, self.tick)
         return decision
 
     def run(self, count: int, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:

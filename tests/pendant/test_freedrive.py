@@ -13,6 +13,7 @@ from pendant.modes import Law, Mode, Phase
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 
 HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
 LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
@@ -37,7 +38,7 @@ class Bench:
         value = value or estimate()
         value.tick = self.tick
         self.last = self.supervisor.step(value, inputs)
-        self.events += self.last.events
+        self.events += whole(self.last.events, self.tick)
         return self.last
 
     def run(self, count: int, inputs: Inputs = NOTHING, value: Estimate | None = None) -> Decision:

@@ -17,6 +17,7 @@ from pendant.operation import CERTAIN, LEAST, Ending, Operation, way_back
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
@@ -330,7 +331,7 @@ class Robot:
         self.tick += 1
         value.tick = self.tick
         decision = self.supervisor.step(value, inputs)
-        self.events += decision.events
+        self.events += whole(decision.events, self.tick)
         return decision
 
 

@@ -12,6 +12,7 @@ from pendant.program import JointMove, Program, ProgramState
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 
 HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
 LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
@@ -34,7 +35,7 @@ class Bench:
             value = estimate(**values)
             value.tick = self.tick
             self.last = self.supervisor.step(value, inputs)
-            self.kinds += [event.kind for event in self.last.events]
+            self.kinds += [event.kind for event in whole(self.last.events, self.tick)]
         return self.last
 
 

@@ -22,6 +22,7 @@ from pendant.tooling import Fitting, Tooling
 from pendant.tools import BARE, Equipment, Tool
 from pendant.watch import WINDOW
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 from tests.pendant.test_payload_wizard import WRIST, standing
 
 GRIPPER = Tool(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.01, 0.16])
@@ -46,7 +47,7 @@ class Bench:
 
     def step(self, *commands: Command, tool: str = "", load: Load | None = None, tools: Table = ()) -> list[Event]:
         inputs = Inputs(commands=commands, tool=tool, load=load, tools=tools)
-        return self.tooling.step(self.value, inputs, self.mode, self.phase, self.still, self.use)
+        return whole(self.tooling.step(self.value, inputs, self.mode, self.phase, self.still, self.use), self.value.tick)
 
     def run(self, count: int) -> list[Event]:
         return [event for _ in range(count) for event in self.step()]
@@ -328,7 +329,7 @@ class Robot:
         now = value or estimate()
         now.tick = self.tick
         self.last = self.supervisor.step(now, inputs)
-        self.events += self.last.events
+        self.events += whole(self.last.events, self.tick)
         return self.last
 
     def run(self, count: int, inputs: Inputs = IDLE, value: Estimate | None = None) -> None:
