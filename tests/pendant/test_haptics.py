@@ -1,11 +1,26 @@
 """Haptic patterns: each ends where it began, within its bounds, at its moment, and is taken for nobody's hand (HF-1, HF-2)."""
 
 import itertools
+import math
 
 import pytest
 
 from pendant.events import Event, Kind
-from pendant.haptics import ABOUT_TO_END, CONTACTS, RHYTHMS, SETTLING, Haptics, HapticUse, Moment, Pattern, length, offset
+from pendant.haptics import (
+    ABOUT_TO_END,
+    CONTACTS,
+    CYCLE,
+    GAP,
+    RHYTHMS,
+    SETTLING,
+    WANDER,
+    Haptics,
+    HapticUse,
+    Moment,
+    Pattern,
+    length,
+    offset,
+)
 from pendant.inputs import Command, Inputs
 from pendant.modes import TICK, Law, Mode, Phase
 from pendant.settings import ticks
@@ -50,6 +65,27 @@ def test_a_long_one_does_not_turn_at_the_same_places(pattern: Pattern) -> None:
         assert all(abs(a - b) > 0.04 for a, b in itertools.pairwise(same_side))
 
 
+@pytest.mark.parametrize("pattern", Pattern)
+def test_a_burst_swells_and_fades_about_the_centre_that_wanders(pattern: Pattern) -> None:
+    """HF-2: each begins to the positive side, is at the centre after every half cycle, and the same backwards, turned over."""
+    begin = 0.0
+    assert offset(pattern, 0.5) > 0.0
+
+    def beside(tick: float) -> float:
+        return offset(pattern, tick) - WANDER * (1.0 - math.cos(2.0 * math.pi * tick / length(pattern))) / 2.0
+
+    for cycles in RHYTHMS[pattern]:
+        assert begin == 0.0 or beside(begin - GAP / 2.0) == pytest.approx(0.0)
+        assert [beside(begin + half * CYCLE / 2.0) for half in range(2 * cycles + 1)] == pytest.approx([0.0] * (2 * cycles + 1))
+        assert beside(begin + CYCLE / 4.0) > 0.05
+        middle = begin + cycles * CYCLE / 2.0
+        peak = math.cos(math.pi / (4.0 * cycles)) ** 2
+        assert abs(beside(middle + CYCLE / 4.0)) == pytest.approx(peak)
+        for away in (0.1, 0.3, 0.45):
+            assert beside(middle - away * cycles * CYCLE) == pytest.approx(-beside(middle + away * cycles * CYCLE))
+        begin += cycles * CYCLE + GAP
+
+
 def test_patterns_are_distinct() -> None:
     assert len(set(RHYTHMS.values())) == len(Pattern)
     assert set(RHYTHMS) == set(Pattern)
@@ -70,9 +106,8 @@ def test_each_is_felt_at_its_moment_for_its_length_and_can_be_switched_off(patte
     played(haptics, moment._replace(events=[], near=False, left=-1))
     assert played(haptics, moment) is pattern
     after = moment._replace(events=[], left=-1)
-    run = [played(haptics, after) for _ in range(length(pattern) + SETTLING)]
-    assert run == [pattern] * length(pattern) + [None] * SETTLING
-    assert not haptics.busy
+    run = [(played(haptics, after), haptics.busy) for _ in range(length(pattern) + SETTLING)]
+    assert run == [(pattern, True)] * length(pattern) + [(None, True)] * (SETTLING - 1) + [(None, False)]
     off = HapticUse(on=True, **{pattern.value: False})
     haptics = Haptics()
     played(haptics, moment._replace(events=[], near=False, left=-1))
@@ -114,6 +149,14 @@ def test_another_law_ends_it(ends: Moment) -> None:
     assert played(haptics, ends, HapticUse(on=True, left=False)) is None
 
 
+@pytest.mark.parametrize(("law", "mode", "phase"), [(Law.FOLLOW, Mode.RUN, Phase.OFF), (Law.FREE, Mode.TEACH, Phase.SEQUENCE)])
+def test_nothing_begins_where_it_would_disturb_the_law(law: Law, mode: Mode, phase: Phase) -> None:
+    """HF-2, FD-9."""
+    moment = Moment(mode, law, phase, event(Kind.CONTACT_GAINED), False, -1, 250)
+    assert played(Haptics(), moment) is None
+    assert played(Haptics(), moment._replace(law=Law.HOLD, mode=Mode.TEACH)) is Pattern.CONTACT
+
+
 def test_switched_off_it_ends() -> None:
     haptics = Haptics()
     played(haptics, FREE)
@@ -127,6 +170,9 @@ def test_who_is_asked_is_not_shaken_while_the_answer_counts(feedback: float, ask
     haptics = Haptics()
     moment = REST._replace(events=event(Kind.CONFIRM_ASKED), feedback=ticks(feedback))
     assert played(haptics, moment) is asked
+    needed = length(Pattern.CONFIRMATION) + SETTLING
+    assert played(Haptics(), moment._replace(feedback=needed)) is Pattern.CONFIRMATION
+    assert played(Haptics(), moment._replace(feedback=needed - 1)) is None
 
 
 def test_speed_and_acceleration_belong_to_the_angle() -> None:

@@ -307,6 +307,14 @@ def test_every_setting_has_a_short_text() -> None:
         assert 5 < len(row.text) <= 60, row.name
 
 
+def test_what_all_limits_have_says_which_limit_it_is_of() -> None:
+    """FD-25."""
+    whose = {name.rpartition(".")[0]: find(name).text for name in EXPECTED if name.endswith(".max")}
+    for name, text in whose.items():
+        assert find(f"{name}.on").text == f"{text}: checked"
+        assert find(f"{name}.time").text == f"{text}: allowed time beyond"
+
+
 def test_defaults_are_the_shipped_settings() -> None:
     assert {row.name: value_of(Settings(), row.name) for row in describe()} == {row.name: row.default for row in describe()}
 

@@ -87,6 +87,29 @@ def test_without_the_guard_it_may_go_on() -> None:
     assert limits(module)[0] == 1.5
 
 
+ORIGIN = [0.4, -0.3, 0.2]
+
+
+@pytest.mark.parametrize("way", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0), (0, 0, -1)])
+@pytest.mark.parametrize("vertical", [False, True])
+def test_on_the_way_out_they_fall_to_the_end_of_the_way_and_the_way_back_is_free(
+    way: tuple[int, int, int], vertical: bool
+) -> None:
+    """FD-12b: 0.5 m from entry, half of them across gravity along it where the rule says so; from half of the way on."""
+    changes = {"limits.operation.flange_displacement.on": True, "soft.vertical": vertical}
+    module = SoftLimits(apply(Settings(), changes), estimate(position=ORIGIN))
+    whole = 0.25 if vertical and way[2] else 0.5
+    speed = 0.5 * 1.5 if vertical else 1.5  # of the elbow, which is taken to move along gravity
+    for gone, left in ((0.4, 1.0), (0.75, 0.5), (0.9, 0.2), (0.99, 0.1), (2.0, 0.1)):
+        place = [start + gone * whole * axis for start, axis in zip(ORIGIN, way, strict=True)]
+        out, across = [0.1 * axis for axis in way], [0.1 * axis for axis in (way[2], way[0], way[1])]
+        for motion, share in ((out, left), ([-value for value in out], 1.0), (across, 1.0)):
+            now = estimate(position=place, speed=motion)
+            now.elbow[3:] = (0.0, 0.0, -0.2)
+            module.step(now)
+            assert limits(module)[1:] == pytest.approx((share * speed, share * 3.0))
+
+
 @given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), max_size=60), st.floats(0.0, 10.0))
 def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: list[tuple[float, float]], mass: float) -> None:
     module = soft(soft__drift_time=0.2)

@@ -145,6 +145,34 @@ def test_stop_categories_are_those_of_the_robots() -> None:
     assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 
 
+def test_a_refusal_warns_a_contact_is_noticed_and_no_row_is_without_its_severity() -> None:
+    """FD-22, CD-16."""
+    for kind, row in TABLE.items():
+        assert row.severity in tuple(Severity)
+        if row.effect is Effect.NO_ENTRY or "REFUSED" in kind.name:
+            assert row.severity is Severity.WARNING, kind
+        if kind.name.startswith("CONTACT"):
+            assert row.severity is Severity.NOTICE
+        if row.effect is Effect.INFO:
+            assert row.severity is not Severity.STOP
+
+
+def test_what_starts_the_cool_down_is_shown_to_its_end_unless_it_stops() -> None:
+    """FD-12c, FD-22."""
+    for row in TABLE.values():
+        if row.cool_down:
+            assert row.clears is (Clears.RESET if row.severity is Severity.STOP else Clears.COOL_DOWN)
+
+
+def test_a_contact_is_told_with_force_rule_and_action() -> None:
+    """CD-16."""
+    values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
+    assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
+        "Contact gained: tool",
+        "17.6 N more or less; rule slow, 20 ticks after it began. Action: none.",
+    )
+
+
 def test_severities_are_ordered() -> None:
     assert list(Severity) == [Severity.INFO, Severity.NOTICE, Severity.WARNING, Severity.STOP]
     assert sorted(Severity) == list(Severity)
