@@ -69,11 +69,20 @@ def test_static_again_but_not_before_the_torque_has_settled_it_is_held(moving: i
     assert remaining(bench.last) == {"cool-down": (1000, 1000)}
 
 
-@pytest.mark.parametrize(("force", "mass", "way"), [(-19.62, 2.0, "down"), (9.81, -1.0, "up")])
+@pytest.mark.parametrize(("force", "mass", "way"), [(-19.62, 2.0, "down"), (9.81, -1.0, "up"), (0.4905, -0.05, "up")])
 def test_what_it_bears_then_is_reported(force: float, mass: float, way: str) -> None:
     bench = balanced()
     bench.run(150, NOTHING, estimate(force=[3.0, 0.0, force]))
     assert bench.last.events[1].values == {"mass": pytest.approx(mass), "force": pytest.approx(abs(force)), "way": way}
+
+
+def test_the_way_is_from_where_it_was_found() -> None:
+    bench = Bench(sequence__on=True, sequence__compensate=True)
+    bench.run(60)
+    bench.run(501, HOLD)
+    bench.step(LET_GO, estimate(position=[0.003, -0.001, 0.002], qd=0.05))
+    bench.run(150, NOTHING, estimate(position=[0.005, 0.002, 0.008]))
+    assert bench.last.events[0].values["moved"] == pytest.approx(7.0)
 
 
 def test_a_payload_seen_at_once_is_refused_as_one_and_the_verdict_waits() -> None:

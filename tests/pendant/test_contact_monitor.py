@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pendant.contact import Change, Contact
-from pendant.contact_monitor import SOURCES, ContactMonitor
+from pendant.contact_monitor import SOURCES, ContactMonitor, for_links
 from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
 from pendant.history import SUMMED
@@ -98,3 +98,52 @@ def test_limits_follow_the_settings_at_once() -> None:
         found += monitor.step(now, dull if now.tick < 300 else USE, Mode.RUN, True)
     assert found
     assert all(contact.tick >= 300 for contact in found)
+
+
+def test_links_know_the_slow_rule_alone_and_all_else_as_it_is_set() -> None:
+    """CD-2."""
+    use = msgspec.structs.replace(USE, instant=True, ratio_of_values=True, slow_count=7.0)
+    same = {name: value for name, value in msgspec.structs.asdict(use).items() if name not in HASTY}
+    assert msgspec.structs.asdict(for_links(use)) == {**same, **dict.fromkeys(HASTY, False)}
+    assert use.slow
+
+
+HASTY = ("instant", "difference", "ratio", "ratio_of_values", "statistical")
+
+
+@pytest.mark.parametrize(("missed", "known"), [(10, 61), (SUMMED - 1, SUMMED + 50), (SUMMED, SUMMED), (SUMMED + 60, SUMMED)])
+def test_what_was_missed_is_caught_up_on_and_what_is_lost_is_a_gap(missed: int, known: int) -> None:
+    """CD-4: the buffers are filled always."""
+    monitor = ContactMonitor()
+    for now in estimates(0, [*signals(50 + missed + 1)]):
+        monitor.step(now, USE, Mode.RUN, not 50 < now.tick <= 50 + missed)
+    assert monitor.detectors[0].history.count == known
+
+
+@pytest.mark.parametrize("look_back", [True, False])
+def test_the_pose_is_of_the_first_suspicious_sample_or_of_now(look_back: bool) -> None:
+    """CD-14: a contact so gentle that it takes long to be seen."""
+    use = msgspec.structs.replace(USE, look_back=look_back)
+    (contact,) = run(0, [*signals(300, push=ramp(300, START, 0.1, top=6.0), noise=0.3)], use)
+    assert contact.steps > 5 if look_back else contact.steps == 0
+    first = contact.tick - contact.steps
+    assert contact.pose.q == pytest.approx((0.001 * first,) * 6)
+
+
+def test_the_ratio_is_told_of_a_hard_contact() -> None:
+    """CD-5: 1 kg carried by 2 kg of arm; the object pushes both, so force over acceleration is 1 kg less 3 kg."""
+    (contact,) = run(0, [*signals(200, push=ramp(200, START, 8.0, top=40.0), noise=0.2)])
+    assert contact.ratio == pytest.approx(-2.0, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("mode", "speed", "seen"), [(Mode.RUN, 0.0, True), (Mode.FREE_DRIVE, 0.0, False), (Mode.RUN, 1.0, False)]
+)
+def test_thresholds_follow_mode_and_speed_as_they_change(mode: Mode, speed: float, seen: bool) -> None:
+    """CD-11: a contact that is found at rest in RUN is not in FREE_DRIVE, nor where the arm is fast by then."""
+    use = msgspec.structs.replace(USE, speed_share=2.0, slow=False, statistical=False)
+    monitor, found = ContactMonitor(), []
+    for now in estimates(0, [*signals(200, push=ramp(200, START, 1.5, top=6.0), noise=0.3)]):
+        now.v_tcp = 0.0 if now.tick < START else speed
+        found += monitor.step(now, use, mode, True)
+    assert bool(found) is seen

@@ -223,3 +223,25 @@ def test_contact_force_leaves_out_the_payload() -> None:
 
 def test_the_settings_ship_with_detection_off() -> None:
     assert not ContactUse().on
+
+
+def test_the_rules_on_values_in_space() -> None:
+    """CD-3, CD-5, eq. 8, with vectors: the force without the payload's, against the acceleration without gravity."""
+    rng, said = np.random.default_rng(4), set()
+    for _ in range(3000):
+        mass, thresholds = float(rng.choice([0.0, 1.0, 3.0])), limit(mass=1.0)
+        a = rng.normal(0.0, 4.0, 3)
+        push = -a * rng.uniform(0.0, 5.0) + rng.normal(0.0, rng.choice([1.0, 6.0]), 3)
+        g = 9.81 * np.array(rng.choice([[0.0, 0.0, -1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6]]))
+        felt = a - g
+        now = history((*(mass * felt + push).tolist(), *felt.tolist(), *g.tolist(), mass, 2.0))
+        force = thresholds.value_force + thresholds.payload_margin * float(np.linalg.norm(felt))
+        against, size = float(push @ a), float(np.linalg.norm(push))
+        opposite = against < 0.0 and against**2 >= thresholds.cosine_sq * size**2 * float(a @ a) and size >= force
+        beyond = (push * a < 0.0) & (abs(push) > force) & (abs(a) > thresholds.value_acceleration)
+        ratio = float((push + mass * a) @ a) / float(a @ a)
+        fast = float(np.linalg.norm(a)) > thresholds.value_acceleration
+        expected = (opposite and bool(beyond.any()), opposite and fast and abs(ratio) > thresholds.ratio)
+        assert values(now, thresholds) == expected
+        said.add(expected)
+    assert said == {(False, False), (True, False), (False, True), (True, True)}

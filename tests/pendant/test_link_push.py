@@ -41,6 +41,11 @@ def test_a_joint_that_stands_tells_nothing_and_the_mean_is_over_all_ticks() -> N
     assert not told((50, 0.9 * TURNS, 12.0, 0.0), (50, 0.2, -4.5, 0.0))
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_joint_turns_from_its_least_speed_on(way: float) -> None:
+    assert told((10, way * TURNS, -8.0 + way * 20.0, 0.0))
+
+
 def test_what_the_gear_may_hide_is_no_hand() -> None:
     assert not told((100, 0.2, -5.1, 0.0), deviation=3.0 / UNSURE)
     assert told((100, 0.2, -4.9, 0.0), deviation=3.0 / UNSURE)

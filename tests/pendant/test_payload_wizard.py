@@ -10,6 +10,7 @@ from pendant.events import Event, Kind
 from pendant.load import Load
 from pendant.payload_wizard import IDLE, MOST, UNSTEADY, PayloadWizard
 from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
 
 G = 9.81
 TICKS = 10
@@ -33,7 +34,7 @@ def measure(wizard: PayloadWizard, value: Estimate, length: int = TICKS, known: 
     events = wizard.begin(value, length, "")
     while wizard.left:
         events += wizard.step(value, "", known)
-    return events
+    return whole(events, value.tick)
 
 
 WRIST = [turned(math.pi), turned(math.pi - 0.8), turned(math.pi, 0.8), turned(math.pi, -0.8)]
@@ -55,6 +56,39 @@ def test_four_postures_lead_to_the_payload() -> None:
     assert finding is not None
     assert finding.load == Load(mass=2.0, com=[0.0, 0.0, 0.1])
     assert (wizard.progress.postures, wizard.progress.share, wizard.progress.reason) == (4, 0.0, "")
+    assert (*finding.force_offset, *finding.torque_offset) == pytest.approx((0.0,) * 6, abs=1e-9)
+
+
+def test_what_is_found_is_told_in_millimetres_with_its_uncertainty() -> None:
+    wizard = PayloadWizard()
+    (*_, told) = [event for R in WRIST for event in measure(wizard, standing(R, centre=(0.02, -0.03, 0.08)))]
+    assert [told.values[name] for name in ("x", "y", "z")] == pytest.approx([20.0, -30.0, 80.0])
+    # Exact readings: what is left is 0.6 % of the scale, in the mass and with it in the centre.
+    assert [told.values[name] for name in ("mass_deviation", "centre_deviation")] == pytest.approx([0.012, 0.48])
+    assert told.values["fit"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_more_postures_there_are_the_nearer_another_may_be() -> None:
+    """facts/free-drive.md 1.6: with the fifth, pi / 10 is enough."""
+    wizard = PayloadWizard()
+    for R in WRIST:
+        measure(wizard, standing(R))
+    (refused,) = measure(wizard, standing(turned(math.pi + math.radians(17.9))))
+    assert refused.values == {"reason": "17.9° from posture 1, at least 18.0°: turn the wrist on"}
+    measured, _ = measure(wizard, standing(turned(math.pi + math.radians(18.1))))
+    assert (measured.values["angle"], measured.values["limit"]) == (pytest.approx(18.1), pytest.approx(18.0))
+
+
+def test_steady_is_the_force_not_the_torque() -> None:
+    wizard = PayloadWizard()
+    value = standing(WRIST[0])
+    wizard.begin(value, TICKS, "")
+    events: list[Event] = []
+    for k in range(TICKS):
+        if k == TICKS // 2:
+            value.w_sensor = np.add(value.w_sensor, [0.0, 0.0, 0.0, 1.5 * UNSTEADY, 0.0, 0.0])
+        events += wizard.step(value, "", ())
+    assert [event.kind for event in events] == [Kind.POSTURE_MEASURED]
 
 
 def test_what_is_known_is_not_found_again() -> None:
@@ -148,7 +182,8 @@ def test_postures_that_tell_nothing_together_are_kept_and_the_reason_is_said() -
     events = [event for k in range(4) for event in measure(wizard, standing(turned(math.radians(23.0 * k))))]
     assert [event.kind for event in events][-2:] == [Kind.POSTURE_MEASURED, Kind.POSTURE_REFUSED]
     assert "across one direction" in wizard.progress.reason
-    assert wizard.progress.finding is None
+    assert (wizard.progress.postures, wizard.progress.share, wizard.progress.finding) == (4, 0.0, None)
+    assert events[-1].values == {"reason": wizard.progress.reason}
     events = measure(wizard, standing(turned(0.0, 1.0)))
     assert events[-1].kind is Kind.PAYLOAD_FOUND
     assert wizard.progress.reason == ""

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from pendant.decision import Decision
-from pendant.events import Kind
+from pendant.events import Event, Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.modes import Mode, Phase
 from pendant.program import JointMove, Program, ProgramState
@@ -26,6 +26,7 @@ class Bench:
         self.supervisor = Supervisor(apply(Settings(), {k.replace("__", "."): v for k, v in settings.items()}), 6)
         self.tick = 0
         self.kinds: list[Kind] = []
+        self.events: list[Event] = []
         self.last: Decision
         self.run(0.5, **(untouched or {}))
 
@@ -35,7 +36,8 @@ class Bench:
             value = estimate(**values)
             value.tick = self.tick
             self.last = self.supervisor.step(value, inputs)
-            self.kinds += [event.kind for event in whole(self.last.events, self.tick)]
+            self.events += whole(self.last.events, self.tick)
+            self.kinds += [event.kind for event in self.last.events]
         return self.last
 
 
@@ -134,6 +136,26 @@ def test_torque_must_have_been_calm_for_its_period() -> None:
     assert bench.last.phase is Phase.OFF
     bench.run(0.1, force=20.0)
     assert bench.last.phase is Phase.ACTIVATION
+
+
+@pytest.mark.parametrize(
+    ("name", "felt", "less"),
+    [
+        ("push", {"force": 20.0}, {"force": 13.0}),
+        ("twist", {"torque": 4.0}, {"torque": 2.6}),
+        ("force_step", {"force": 20.0}, {"force": 8.5}),
+    ],
+)
+def test_what_was_felt_is_over_when_the_sensor_is_lost(name: str, felt: dict[str, Any], less: dict[str, Any]) -> None:
+    """FD-5, FD-12: what would be enough to stay is not enough to come back."""
+    bench = Bench(**{f"signals__{name}__on": True, "signals__force_step__quiet": 0.1})
+    bench.run(0.3, **felt)
+    assert bench.run(0.1, **less).phase is Phase.ACTIVATION
+    bench.run(0.1, wrench_valid=False)
+    bench.run(3.0)
+    seen = len(bench.kinds)
+    bench.run(0.5, **less)
+    assert bench.kinds[seen:] == []
 
 
 def test_a_steady_offset_is_no_push_and_nothing_is_felt_without_the_sensor() -> None:
@@ -262,8 +284,13 @@ def test_the_deactivation_signal_and_another_mode_end_an_attempt(phase: Phase) -
 def test_a_push_is_told_in_every_mode() -> None:
     """FD-6a."""
     bench = Bench(signals__push__told=True)
-    bench.run(0.5, force=[0.0, 20.0, 0.0])
+    bench.run(0.5, force=[6.0, -12.0, 12.0])
     assert bench.kinds == [Kind.PUSHED]
+    assert bench.events[0].values == {
+        "part": "flange",
+        "force": pytest.approx(18.0, rel=0.01),
+        **{axis: pytest.approx(share / 3.0) for axis, share in (("x", 1.0), ("y", -2.0), ("z", 2.0))},
+    }
 
 
 PROGRAM = Program(steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))

@@ -99,6 +99,31 @@ def test_a_payload_is_led_over_evenly_and_to_the_tick() -> None:
     assert render(small) == ("Payload 3.00 kg", "Centre 0, 0, 50 mm; with tool flange 3.00 kg."), "no minus before a nought"
 
 
+def test_it_ends_at_the_payload_itself_not_near_it() -> None:
+    bench = Bench()
+    bench.step(load=Load(mass=0.1))
+    bench.run(RAMP)
+    assert bench.tooling.fitting.mass == 0.1
+
+
+def test_a_tool_as_heavy_as_allowed_is_taken_and_its_point_told() -> None:
+    bench, heavy = Bench(), Tool(name="heavy", mass=5.0, com=[0.0, 0.0, 0.06], tcp=[0.03, -0.02, 0.1])
+    bench.tooling = Tooling(EQUIPMENT._replace(tools=(BARE, heavy)))
+    (event,) = bench.step(tool="heavy")
+    assert [event.values[name] for name in ("x", "y", "z")] == [30.0, -20.0, 100.0]
+    (event,) = bench.step(tool="light")
+    assert event.values == {"what": "tool light", "reason": "there is flange, heavy"}
+
+
+def test_a_changed_tool_may_weigh_all_that_the_payload_leaves() -> None:
+    bench = Bench()
+    bench.step(tool="gripper")
+    bench.step(load=Load(mass=4.1))
+    moved = msgspec.structs.replace(GRIPPER, tcp=[0.0, 0.0, 0.2])
+    (event,) = bench.step(tools=(BARE, moved, ANVIL))
+    assert event.kind is Kind.TOOLS_CHANGED
+
+
 def test_it_changes_until_the_means_of_the_estimates_hold_the_new_load_alone() -> None:
     bench = Bench()
     bench.step(load=Load(mass=3.0))

@@ -1,0 +1,45 @@
+"""One attempt to start free-drive: what confirms it and when, to the tick (FD-7, FD-8)."""
+
+import pytest
+
+from pendant.attempt import Attempt, Outcome
+from pendant.modes import Phase
+from pendant.settings import Settings, apply
+from pendant.sources import NONE, Presence
+
+BUTTON = Presence("button")
+ABSENT, HOLD, WINDOW = 100, 100, 1500
+"""0.2 s of absence make a signal a new one, 0.2 s of it confirm, 3 s there is time to [ticks]."""
+
+
+def outcomes(feedback: float, *course: tuple[int, Presence]) -> tuple[Attempt, list[Outcome]]:
+    """What follows an activation that has just been completed, of signals for so many ticks each."""
+    settings = apply(Settings(), {"handshake.on": True, "handshake.feedback": feedback, "activation.period": 0.02})
+    attempt = Attempt(BUTTON, settings)
+    attempt.first()
+    assert [attempt.step(BUTTON, False) for _ in range(10)] == [Outcome.GOES_ON] * 9 + [Outcome.CONFIRM]
+    return attempt, [attempt.step(signal, False) for count, signal in course for _ in range(count)]
+
+
+@pytest.mark.parametrize(("feedback", "held"), [(0.2, 0), (0.0, 0), (0.1, 50), (0.2, 1), (0.0, 700)])
+@pytest.mark.parametrize(("absent", "new"), [(ABSENT, True), (ABSENT - 1, False), (ABSENT + 30, True)])
+def test_a_confirmation_is_new_after_an_absence(feedback: float, held: int, absent: int, new: bool) -> None:
+    """FD-8: counted from the first signal on, whether that goes on into the feedback or beyond it."""
+    absent = max(absent, round(feedback * 500) - held)
+    _, said = outcomes(feedback, (held, BUTTON), (absent, NONE), (HOLD, BUTTON), (1, BUTTON))
+    assert set(said[:-1]) == {Outcome.GOES_ON}
+    assert said[-1] is (Outcome.READY if new or absent >= ABSENT else Outcome.GOES_ON)
+
+
+@pytest.mark.parametrize("short", [1, 2, HOLD])
+def test_one_that_was_too_short_leaves_the_next_to_be_new_too(short: int) -> None:
+    """FD-8."""
+    attempt, said = outcomes(0.2, (100, NONE), (short, BUTTON), (1, NONE), (3 * HOLD, BUTTON))
+    assert set(said) == {Outcome.GOES_ON}
+    assert attempt.phase is Phase.CONFIRM
+
+
+def test_the_time_to_confirm_ends_to_its_tick() -> None:
+    """FD-8."""
+    _, said = outcomes(0.2, (100, NONE), (WINDOW, NONE))
+    assert said == [Outcome.GOES_ON] * (100 + WINDOW - 1) + [Outcome.UNCONFIRMED]
