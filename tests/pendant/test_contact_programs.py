@@ -13,14 +13,14 @@ from pendant.inputs import Command, Inputs
 from pendant.modes import Law, Mode
 from pendant.pose import UNTURNED
 from pendant.program import AnyStep, JointMove, LinearMove, Program, ProgramState, SwitchTool, Wait, WaitForContact
-from pendant.reaction import Until
+from pendant.reaction import REACTION_SPEED, Until, goal
 from pendant.table import render
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench
 
 BEGUN = ArmPose((0.0,) * 6, (0.0, 0.0, 0.5), UNTURNED)
 POSE = ArmPose((0.2,) * 6, (0.0, 0.0, 0.3), UNTURNED)
-GAINED = Contact(0, Change.GAINED, "difference", "tool", "sensor", (0.0, 0.0, -6.0), (0.0, 0.0, 4.0), -1.4, 3, POSE)
+GAINED = Contact(0, Change.GAINED, "difference", "tool", "sensor", (2.0, 3.0, -6.0), (-1.0, -4.0, 8.0), -1.4, 3, POSE)
 DOWN = LinearMove(position=(0.0, 0.0, 0.1), quaternion=(1.0, 0.0, 0.0, 0.0))
 NEXT = JointMove(q=(0.5,) * 6)
 
@@ -73,8 +73,8 @@ def test_a_contact_is_told_with_its_numbers() -> None:
     assert event.kind is Kind.CONTACT_GAINED
     assert decision.contacts == (GAINED,)
     assert event.values == {
-        "part": "tool", "source": "sensor", "rule": "difference", "force": 6.0, "fx": 0.0, "fy": 0.0, "fz": -6.0,
-        "acceleration": 4.0, "ax": 0.0, "ay": 0.0, "az": 4.0, "ratio": -1.4, "steps": 3,
+        "part": "tool", "source": "sensor", "rule": "difference", "force": 7.0, "fx": 2.0, "fy": 3.0, "fz": -6.0,
+        "acceleration": 9.0, "ax": -1.0, "ay": -4.0, "az": 8.0, "ratio": -1.4, "steps": 3,
         "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
         "posture": "0.2000 0.2000 0.2000 0.2000 0.2000 0.2000",
     }  # fmt: skip
@@ -128,6 +128,8 @@ def test_a_move_until_contact_brakes_rests_and_goes_on() -> None:
 @pytest.mark.parametrize("then", ["retract", "contact_pose", "reverse", "turn"])
 def test_the_reaction_is_a_move_of_its_own(then: str) -> None:
     bench, told = running(until(then), NEXT)
+    assert bench.last.move is not None
+    number = bench.last.move.id
     told.coming = iter((GAINED,))
     bench.step(value=estimate(qd=0.3))
     told.at = POSE
@@ -140,6 +142,9 @@ def test_the_reaction_is_a_move_of_its_own(then: str) -> None:
     else:
         assert isinstance(move, LinearMove)
         assert move.position == pytest.approx((0.0, 0.0, 0.32 if then == "retract" else 0.3))
+        assert move.speed == REACTION_SPEED
+    assert move.id == number + 1
+    assert bench.last.program is ProgramState.RUNNING
     done(bench)
     assert bench.last.step == 2
 
@@ -219,3 +224,26 @@ def test_without_a_program_a_contact_changes_nothing() -> None:
     bench.step()
     assert bench.last.law is Law.FOLLOW
     assert bench.events[-1].values["action"] == "none"
+
+
+def test_a_retreat_leads_back_along_the_way_with_the_tool_as_it_was() -> None:
+    """CD-15: 0.05 m of the 0.3 m from the contact back to where the move began."""
+    begun, there = BEGUN._replace(p_BT=(0.1, -0.3, 0.5)), POSE._replace(p_BT=(0.3, -0.1, 0.4))
+    back = goal(Until(then="retract", distance=0.05), GAINED._replace(pose=there), begun, BEGUN, ABOUT_Z)
+    assert back is not None
+    assert back.position == pytest.approx((0.3 - 0.1 / 3.0, -0.1 - 0.1 / 3.0, 0.4 + 0.05 / 3.0))
+    assert back.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))
+
+
+ABOUT_Z = (0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def test_the_tools_orientation_in_the_flange_is_kept_by_a_reaction() -> None:
+    """CD-15: a tool that is mounted turned stays so."""
+    bench, told = running(until("retract"), NEXT)
+    bench.supervisor._robot.sequencer.R_FT = ABOUT_Z
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    bench.run(50)
+    assert isinstance(bench.last.move, LinearMove)
+    assert bench.last.move.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))

@@ -218,7 +218,7 @@ def test_a_flat_change_shows_against_an_older_mean() -> None:
 
 
 def test_contact_force_leaves_out_the_payload() -> None:
-    assert contact_force((5.0, 2.0, 12.0, 1.0, 0.0, 4.0), 2.0) == (3.0, 2.0, 4.0)
+    assert contact_force((5.0, 2.0, 12.0, 1.0, -0.5, 4.0), 2.0) == (3.0, 3.0, 4.0)
 
 
 def test_the_settings_ship_with_detection_off() -> None:

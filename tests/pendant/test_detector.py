@@ -1,5 +1,8 @@
 """One detector on signals of a load that is moved and pushed: what it finds, when, and what it must not find."""
 
+import math
+from collections.abc import Iterator
+
 import msgspec
 import numpy as np
 import pytest
@@ -7,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendant.contact import Change
-from pendant.contact_rules import Rule
-from pendant.detector import GONE, SILENCE, Detector
+from pendant.contact_rules import NEW, Rule
+from pendant.detector import CALM, GONE, PATIENCE, SETTLED, SILENCE, Detector, Finding
+from pendant.signal import Signal
 from tests.pendant.contacts import GRAVITY, USE, found, limit, ramp, signals
 
 ONLY = {
@@ -170,3 +174,96 @@ def test_without_older_samples_a_clear_change_needs_a_second_tick() -> None:
     stream = signals(60, push=push, noise=0.0)
     assert found(stream[26:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # at once: four samples before it
     assert found(stream[27:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # three: one tick later
+
+
+@pytest.mark.parametrize("mass", [0.5, 2.0])
+def test_what_it_reports_of_a_step_in_space(mass: float) -> None:
+    """CD-13, CD-14: force on the object, change of acceleration and their ratio, since the sample before the first one."""
+    rng = np.random.default_rng(8)
+    for _ in range(20):
+        force, acceleration, push, g = rng.normal(0.0, 3.0, 3), rng.normal(0.0, 1.0, 3), rng.normal(size=3), GRAVITY
+        push *= 40.0 / np.linalg.norm(push)
+        a = -push / 3.0 + rng.normal(0.0, 1.0, 3)
+        rest = Signal(*force.tolist(), *acceleration.tolist(), *g.tolist(), mass, 2.0)
+        now = Signal(*(force + push + mass * a).tolist(), *(acceleration + a).tolist(), *g.tolist(), mass, 2.0)
+        (tick, finding), *_ = found([rest] * START + [now] * 20)
+        assert tick - finding.steps == START
+        assert finding.force == pytest.approx(push)
+        assert finding.acceleration == pytest.approx(a)
+        assert finding.ratio == pytest.approx(np.dot(push + mass * a, a) / np.dot(a, a))
+
+
+def test_the_first_suspicious_sample_of_a_ramp_is_the_first_beyond_the_noise() -> None:
+    """CD-14: 1.5 deviations of F - m·A, 0.15 N and 0.1 m/s² of 1 kg: 0.27 N, which 0.05 N a tick reach with the sixth."""
+    stream = signals(400, arm=1e6, push=ramp(400, START, 0.05, way=(0.0, -0.6, 0.8)), noise=0.0)
+    (tick, finding), *_ = found(stream, ONLY[Rule.SLOW])
+    assert tick - finding.steps == START + 6
+
+
+def heard(push: np.ndarray) -> Iterator[tuple[int, Detector, Finding | None]]:
+    """Tick by tick, without noise."""
+    detector = Detector()
+    for tick, signal in enumerate(signals(len(push), push=push, noise=0.0)):
+        detector.sense(signal)
+        yield tick, detector, detector.step(USE, limit())
+
+
+def ringing(n: int, start: int) -> np.ndarray:
+    """From `start` on, 30 and 10 N in turns of ten ticks: what it was ten ticks ago it never is."""
+    push = np.zeros((n, 3))
+    push[start:, 0] = [30.0 if k // 10 % 2 == 0 else 10.0 for k in range(n - start)]
+    return push
+
+
+def test_it_listens_again_six_ticks_after_what_was_ten_ticks_apart_is_the_same() -> None:
+    """CD-9a: five samples against five that are ten ticks older, from the fifteenth tick on, six times in a row."""
+    silent = [detector.silent for _, detector, _ in heard(ramp(400, START, 50.0, top=50.0))]
+    assert silent.count(True) == SETTLED + NEW + CALM - 1
+    for _, detector, _ in heard(ramp(400, START, 50.0, top=50.0)):
+        if detector.touching and not detector.silent:
+            assert detector.history.count == SETTLED + NEW, "what was before the contact counts no more"
+            break
+
+
+def test_a_force_that_never_settles_keeps_it_silent_for_half_a_second() -> None:
+    """CD-9a."""
+    silent = [detector.silent for _, detector, _ in heard(ringing(START + SILENCE + 20, START))]
+    begun = silent.index(True)
+    assert silent[begun:].index(False) == SILENCE
+
+
+def test_a_change_of_a_contact_that_never_settles_is_judged_in_the_end() -> None:
+    push = ramp(900, START, 20.0, top=20.0)
+    push[500:] = 2.0 * ringing(900, 500)[500:]
+    begun = None
+    for tick, detector, finding in heard(push):
+        if tick > 450 and detector.silent and begun is None:
+            begun = tick
+        if tick > 450 and finding is not None:
+            break
+    assert begun is not None
+    assert (tick - begun, finding.change) == (PATIENCE, Change.RESISTANCE)  # type: ignore[union-attr]
+
+
+def test_a_small_rest_is_a_lost_contact_and_the_next_is_gained() -> None:
+    """CD-13: 5 of 20 N are left; then 20 N more."""
+    push = ramp(1200, START, 20.0, top=20.0)
+    push[500:, 0], push[800:, 0] = 5.0, 25.0
+    changes = [finding.change for _, _, finding in heard(push) if finding is not None]
+    assert changes == [Change.GAINED, Change.LOST, Change.GAINED]
+
+
+def test_a_knock_has_left_no_contact_when_it_listens_again() -> None:
+    push = ramp(400, START, 40.0, top=40.0)
+    push[START + 6 :] = 0.0
+    after = [detector.touching for tick, detector, _ in heard(push) if tick > START + 5 and not detector.silent]
+    assert after
+    assert not any(after)
+
+
+def test_a_wrong_payload_may_explain_a_part_of_a_force() -> None:
+    """CD-11: 0.8 N of noise, and a quarter of 1 kg for each m/s² of change."""
+    before, now = (1.0, 2.0, 3.0, 0.0, 0.0, 9.81), (1.0, 2.0, 8.0, 0.0, 3.0, 13.81)
+    # F - m·A changes by 5 - 4 N along z and -3 N along y, A by 5 m/s².
+    assert Detector()._size(now, before, limit()) == pytest.approx(math.sqrt(10.0) - 0.8 - 1.25)
+    assert Detector()._size(before, before, limit()) == 0.0

@@ -118,6 +118,16 @@ def test_the_offset_of_a_wall_grows_with_it() -> None:
     assert place.pose.p == pytest.approx((1.0, 2.0, 3.025))
 
 
+def test_a_wall_is_drawn_where_its_offset_has_put_it() -> None:
+    """VW-2: with half of its size, half of its offset."""
+    enclosure = Enclosure((Wall(name="a", shape=BALL, offset=(0.02, -0.03, 0.05), activation_size=0.5),))
+    enclosure.begin(Start.SEQUENCE)
+    enclosure.step(around((1.0, 2.0, 3.0)))
+    (place,) = enclosure.places()
+    assert place is not None
+    assert place.pose.p == pytest.approx((1.01, 1.985, 3.025))
+
+
 def test_the_size_follows_the_posture() -> None:
     size = Dependence(measure=Measure.REACH, low=0.2, high=0.8, at_low=1.0, at_high=0.5)
     enclosure = entered(Wall(name="a", shape=BALL, size=size))
@@ -161,6 +171,7 @@ def test_what_is_not_known_never_passes(spoilt: str, reaction: Reaction, expecte
             reading = barrier.step(bad)
             assert (reading.consequence, reading.exceeded, reading.force) == (consequence, True, ORIGIN)
             assert math.isinf(reading.distance)
+            assert (reading.near, reading.anchored) == (1.0, False)
             assert barrier.step(good).consequence is Consequence.NONE
 
 

@@ -25,6 +25,7 @@ from pendant.inputs import Command, Inputs
 from pendant.modes import TICK, Law, Mode, Phase
 from pendant.settings import ticks
 from tests.pendant.estimates import estimate
+from tests.pendant.test_contact_programs import GAINED, Told
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
 
 ON = HapticUse(on=True)
@@ -228,3 +229,38 @@ def test_off_nothing_is_felt() -> None:
     bench.run(60)
     for inputs in [HOLD] * 600 + [LET_GO] * 10:
         assert bench.step(inputs).shake is None
+
+
+def test_a_wall_that_comes_close_is_felt_once_and_only_in_free_drive() -> None:
+    """HF-1: the tether's band begins 5 mm before its 30 mm."""
+    bench = Bench(haptics__on=True)
+    bench.run(60)
+    assert bench.last.shake is None
+    bench.in_period()
+    bench.run(length(Pattern.ENTERED) + SETTLING)
+    assert bench.last.shake is None
+    decision = bench.step(value=estimate(position=0.027))
+    assert decision.shake is not None
+    assert decision.shake.pattern is Pattern.BORDER
+
+
+def test_a_confirmation_that_is_asked_for_is_felt() -> None:
+    """HF-1, FD-8."""
+    bench = Bench(haptics__on=True, handshake__on=True)
+    bench.run(60)
+    bench.run(501, HOLD)
+    assert Kind.CONFIRM_ASKED in [each.kind for each in bench.events]
+    assert bench.last.shake is not None
+    assert bench.last.shake.pattern is Pattern.CONFIRMATION
+
+
+def test_the_sequence_is_not_disturbed() -> None:
+    """FD-9, HF-2: in it a contact is told and not felt."""
+    bench, told = Bench(haptics__on=True, sequence__on=True, activation__period=0.2), Told()
+    bench.supervisor._monitor = told
+    bench.run(60)
+    bench.run(101, HOLD)
+    assert bench.step(LET_GO).phase is Phase.SEQUENCE
+    told.coming = iter((GAINED,))
+    assert bench.step().contacts == (GAINED,)
+    assert bench.last.shake is None

@@ -1,5 +1,6 @@
 """What ends free-drive while it lasts: limits, motion that nobody causes, payloads that drop or change, the way back."""
 
+import itertools
 import math
 from collections.abc import Iterable
 
@@ -363,3 +364,46 @@ def test_equal_histories_are_equal() -> None:
     assert one.operation.memory == two.operation.memory
     one.see(loaded(force=[0.0, 0.0, 3.0]))
     assert one.operation.memory != two.operation.memory
+
+
+FULL, LOW, HIGH = 2.0 * G, 14.0**2, 25.0**2
+"""Weight of the load [N]; squares of what it needs, in turns [N²]."""
+
+
+def followed(*rows: tuple[int, float, float], weight: float = FULL, low: float = LOW) -> list[bool]:
+    """Of so many ticks each: the share that is missing, and what is missing across it [N]."""
+    operation, course = Free().operation, [row[1:] for row in rows for _ in range(row[0])]
+    squares = itertools.cycle((low, HIGH))
+    return [operation._follows(share, across, square, weight) for (share, across), square in zip(course, squares, strict=False)]
+
+
+def test_what_is_missing_follows_the_load_for_eight_ticks() -> None:
+    """FD-19."""
+    assert followed((8, 0.8, 0.0)) == [False] * 7 + [True]
+    assert not any(followed((20, 0.8, 0.0), low=HIGH / 1.9)), "the load hardly swings"
+    assert followed((8, -0.5, 0.0))[-1], "half of the load is enough"
+
+
+def test_one_tick_that_is_like_no_load_begins_it_anew() -> None:
+    """FD-19: across, more than all of it, less than half, fewer than 4 N; a share that strays by more than a tenth."""
+    for between in ((1, 0.8, 30.0), (1, 1.2, 0.0), (1, 0.4, 0.0)):
+        assert followed((6, 0.8, 0.0), between, (8, 0.8, 0.0)) == [False] * 14 + [True]
+    assert not any(followed((20, 0.45, 0.0)))
+    assert not any(followed((20, 0.6, 0.0), weight=6.0))
+    strays = [(1, 0.8 + 0.09 * (k % 2), 0.0) for k in range(20)]
+    assert not any(followed(*strays))
+    assert any(followed(*[(1, 0.8 + 0.07 * (k % 2), 0.0) for k in range(20)]))
+
+
+@pytest.mark.parametrize(
+    ("share", "across", "like"), [(0.6, 6.1, True), (0.6, 6.3, False), (1.15, 0.0, True), (-1.15, 0.0, True), (1.16, 0.0, False)]
+)
+def test_a_share_of_the_load_lies_along_it_and_is_hardly_more_than_all(share: float, across: float, like: bool) -> None:
+    """FD-19: of 20 N, 0.35 of what is missing may lie across it, and 2 N of noise."""
+    assert Operation._like(share, across, 20.0**2) is like
+
+
+def test_the_hands_torque_is_its_change_in_every_axis() -> None:
+    """FD-12b."""
+    free = Free((0.0, 0.0, 0.0, 0.1, 0.2, 0.3))
+    assert free.operation._torque(estimate(torque=[0.3, 0.6, -0.1])) == pytest.approx(0.6)

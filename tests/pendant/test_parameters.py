@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from pendant.dynamic_limits import Shares
 from pendant.limits import Gauge
 from pendant.parameters import PARAMETERS, ZEROS, Monitor, Reference, View, reference
 from pendant.residual import split
@@ -134,3 +135,24 @@ def test_a_reference_is_what_is_so_now() -> None:
     torques, angles = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.0, 0.5, 0.0, 0.0, 0.0)
     assert reference(value, use_wrench=True) == Reference((1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques, angles)
     assert reference(value, use_wrench=False) == Reference((1.0, 2.0, 3.0), ZEROS, torques, angles)
+
+
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        ("flange_displacement", 0.9),
+        ("joint_displacement", 0.9),
+        ("flange_speed", 0.8),
+        ("tcp_speed", 0.8),
+        ("elbow_speed", 0.8),
+        ("joint_speed", 0.7),
+        ("flange_acceleration", 0.6),
+        ("joint_acceleration", 0.5),
+    ],
+)
+def test_each_limit_falls_by_its_own_share(name: str, share: float) -> None:
+    """FD-12b."""
+    gauge = Gauge(name, "", high=2.0)
+    shares = Shares(way=0.9, speed=0.8, turning=0.7, linear=0.6, angular=0.5)
+    PARAMETERS[name].read(msgspec.structs.replace(view(estimate()), shares=shares), gauge)
+    assert gauge.high == pytest.approx(2.0 * share)

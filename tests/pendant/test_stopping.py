@@ -110,3 +110,21 @@ def test_a_stop_that_kept_the_power_is_forgotten_once_measured() -> None:
     (event,) = stopping.step(estimate(), 50, 50)
     assert (event.values["cause"], event.values["category"]) == ("emergency_stop", 1)
     assert stopping.off
+
+
+def test_each_stop_is_measured_anew() -> None:
+    """After a reset, and after one that found the arm at rest."""
+    stopping = Stopping()
+    for _ in range(2):
+        stopping.begin(Kind.EMERGENCY_STOP, 1, False)
+        assert stopping.step(MOVING, 0, 50) == []
+        (event,) = stopping.step(estimate(), 50, 50)
+        assert (event.kind, stopping.off) == (Kind.STOPPED, True)
+        stopping.end()
+        assert stopping.off is False
+    stopping.begin(Kind.STOPPED_LIMIT, 2, True)
+    assert stopping.step(estimate(), 50, 50) == []
+    stopping.begin(Kind.STOPPED_MOTION, 2, False)
+    assert stopping.step(MOVING, 0, 50) == []
+    (event,) = stopping.step(estimate(), 50, 50)
+    assert (event.values["category"], event.values["cause"]) == (2, "stopped_motion")

@@ -212,3 +212,25 @@ def test_the_baseline_is_in_the_axes_of_the_flange_at_entry() -> None:
         value.R_BF = turned
         bench.step(NOTHING, value)
     assert bench.last.baseline[:3] == pytest.approx((0.0, -4.0, 0.0), abs=0.5)
+
+
+def test_a_step_in_space_is_taken_off_as_the_mean_of_what_was_felt() -> None:
+    rng = np.random.default_rng(1)
+    step = np.array([6.0, -8.0, 4.0])
+    felt = [(x, y, z) for x, y, z in (step + rng.uniform(-0.5, 0.5, (20, 3))).tolist()]
+    forces: list[Vector] = [(0.0, 0.0, 0.0)] * 2 + felt
+    assert seen(Steps(), forces, (-0.5 * step).tolist()) == [pytest.approx(np.mean(felt[1 : LATER + 1], axis=0))]
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "when", "found"), [(1.51, 1, False), (1.51, SOON - 1, False), (1.51, SOON, True), (1.5, 1, True)]
+)
+def test_an_arm_that_is_shaken_just_then_was_knocked(acceleration: float, when: int, found: bool) -> None:
+    """Beyond 1.5 m/s² within the first ticks, `when` after the step, even in one of them."""
+    steps, forces = Steps(), stepping(20.0)
+    joints = against(forces, -0.5)
+    said = []
+    for tick, force in enumerate(forces):
+        shaken = acceleration if tick == 2 + when else 0.0
+        said.append(steps.step(estimate(felt=joints if tick > 2 else 0.0, acceleration=shaken), force))
+    assert any(step is not None for step in said) is found
