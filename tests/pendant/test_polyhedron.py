@@ -94,3 +94,23 @@ def test_a_vertex_a_hair_off_is_taken_for_convex() -> None:
     moved = tuple((x + 5e-8 * (k % 3), y, z) for k, (x, y, z) in enumerate(CORNERS))
     triangles = tuple(t for a, b, c, d in SQUARES for t in ((a, b, c), (a, c, d)))
     assert polyhedron(moved, triangles)(0.3, 0.0, 0.0)[0] == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize("size", [0.05, 1.0, 40.0])
+@pytest.mark.parametrize(("off", "taken"), [(0.8e-6, True), (1.3e-6, False)])
+def test_a_hair_is_a_millionth_of_the_body_wherever_it_lies(size: float, off: float, taken: bool) -> None:
+    """One corner of a square of its top stands out: so far off the other three's plane, half of it before the mean plane."""
+    corners = np.array(CORNERS) * 5.0 * size
+    corners[7] += (0.0, 0.0, 2.0 * off * size)
+    raised = tuple((x, y, z) for x, y, z in np.add(corners, (700.0, -300.0, 200.0)).tolist())
+    if taken:
+        polyhedron(raised, SQUARES)
+    else:
+        with pytest.raises(ValueError, match=r"in front of it|off its plane"):
+            polyhedron(raised, SQUARES)
+
+
+def test_how_far_a_vertex_lies_in_front_is_said_in_millimetres() -> None:
+    dented = (*TETRAHEDRON[:3], (0.25, 0.25, -0.4))
+    with pytest.raises(ValueError, match=r"^faces\[0\]: a vertex lies 400 mm in front of it,"):
+        polyhedron(dented, SIDES)
