@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pendant.containment import NOBODY, Containment, facts, tether
+from pendant.containment import NOBODY, Containment, _measures, facts, tether
 from pendant.decision import Decision
-from pendant.estimate import Estimate
+from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import Law, Mode, Phase
@@ -366,3 +366,11 @@ def test_areas_that_are_switched_off_have_no_place() -> None:
     bench = Bench(FLOOR, walls__on=False)
     bench.step()
     assert bench.supervisor.places == ()
+
+
+def test_sizes_follow_reach_and_height_along_gravity() -> None:
+    """VW-8: distance of the flange from the base's origin, and its height above it, also on a tilted base."""
+    value = estimate(position=[0.3, -0.4, 1.2], load_mass=1.5)
+    value.g_B = GRAVITY * np.array([0.0, -0.6, -0.8])
+    measures = {Measure.REACH: 1.3, Measure.HEIGHT: -0.24 + 0.96, Measure.PAYLOAD: 1.5}
+    assert _measures(value) == pytest.approx(measures)

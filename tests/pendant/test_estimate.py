@@ -18,6 +18,7 @@ def test_what_is_not_told_is_nothing_and_belongs_to_one_estimate() -> None:
         assert getattr(one, name) is not getattr(other, name)
     for name in ("tcp", "elbow", "F_joints", "a_felt"):
         assert not getattr(one, name).any()
+        assert getattr(one, name).shape == ((6,) if name in ("tcp", "elbow") else (3,))
         assert getattr(one, name) is not getattr(other, name)
     assert one.lost == ()
 
@@ -28,7 +29,9 @@ def test_a_copy_has_the_same_values_in_arrays_of_its_own() -> None:
     for each in fields(Estimate):
         value = getattr(known, each.name)
         if isinstance(value, np.ndarray):
-            setattr(known, each.name, rng.normal(size=value.shape))
+            setattr(known, each.name, rng.normal(size=value.shape if value.size else (6,)))
+        elif isinstance(value, float):
+            setattr(known, each.name, rng.normal())
     copy = known.copy()
     for each in fields(Estimate):
         value = getattr(known, each.name)

@@ -155,3 +155,12 @@ def test_force_limits_may_rise_with_the_load(share: float, force: float, torque:
         module = maintained(start, load_share=share)
         push = estimate(load_mass=3.0, tau_J=40.0, tau_ext=value * torque)
         assert (module.step(push, use_wrench=True) is None) is within
+
+
+def test_a_period_that_begins_anew_is_as_one_that_begins() -> None:
+    """FD-16: also what has been smoothed of the load begins with nothing."""
+    watch, pushed = maintained(), estimate(force=[3.0, 1.0, -5.0], torque=[0.3, 0.2, 0.1])
+    for _ in range(20):
+        watch.step(pushed, True)
+    watch.anew(pushed, True)
+    assert [watch.memory[k] for k in (0, 2)] == [maintained(pushed).memory[k] for k in (0, 2)]

@@ -92,6 +92,7 @@ def test_the_way_back_is_told_where_it_is_switched_on(told: bool) -> None:
     assert [event.kind for event in bench.events] == [Kind.LEFT_PERIOD, Kind.WAY_BACK][: 1 + told]
     if told:
         assert posture_of(bench.events[-1].values) == (0.0,) * 6  # as it was at activation
+        assert posture_of({}) == ()
 
 
 WAYPOINT = Inputs(commands=(Command.REGISTER_WAYPOINT,))

@@ -212,7 +212,8 @@ def test_more_commands_that_are_not_possible() -> None:
     assert [event.values["reason"] for event in bench.last.events] == ["reset first", "reset first"]
     bench.run(60)
     bench.step(command(Command.RESET, Command.EMERGENCY_STOP))
-    assert bench.last.events[0].values["reason"] == "the emergency stop was pressed at the same time"
+    reason = "the emergency stop was pressed at the same time"
+    assert bench.last.events[0].values == {"command": Command.RESET, "mode": Mode.STOP, "reason": reason}
     assert bench.last.mode is Mode.STOP
 
 
