@@ -144,7 +144,7 @@ def test_the_reaction_is_a_move_of_its_own(then: str) -> None:
         assert move.position == pytest.approx((0.0, 0.0, 0.32 if then == "retract" else 0.3))
         assert move.speed == REACTION_SPEED
     assert move.id == number + 1
-    assert bench.last.program is ProgramState.RUNNING
+    assert (bench.last.mode, bench.last.program) == (Mode.RUN, ProgramState.RUNNING)
     done(bench)
     assert bench.last.step == 2
 

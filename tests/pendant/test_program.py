@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.program import JointMove, LinearMove, Move, Program, ProgramState, Wait, misfit
+from pendant.program import LEAST_FORCE, MOST_FORCE, ApplyForce, JointMove, LinearMove, Move, Program, ProgramState, Wait, misfit
 from pendant.sequencer import Sequencer
 
 HOME = (0.0,) * 6
@@ -186,3 +186,11 @@ def test_the_index_only_grows_and_only_by_one(done: list[int]) -> None:
             assert (sequencer.index, sequencer.move, ended) == (before, move, False)
         else:
             assert (sequencer.index, ended) == ((before + 1, False) if before < 2 else (0, True))
+
+
+def test_a_force_to_apply_has_its_size_to_the_ends_of_its_range() -> None:
+    for size in (LEAST_FORCE, MOST_FORCE):
+        assert ApplyForce(force=(0.0, 0.0, -size)).force == (0.0, 0.0, -size)
+    for size in (0.999 * LEAST_FORCE, 1.001 * MOST_FORCE):
+        with pytest.raises(ValueError, match=r"allowed: 1 \.\. 90 N"):
+            ApplyForce(force=(0.0, size, 0.0))

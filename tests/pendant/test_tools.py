@@ -18,7 +18,10 @@ def test_nothing_is_at_the_flange_unless_it_is_said() -> None:
     assert (Equipment().load.mass, Equipment().fixed.mass, BARE.mass, BARE.tcp) == (0.0, 0.0, 0.0, [0.0, 0.0, 0.0])
 
 
-@pytest.mark.parametrize("tool", [BARE, GRIPPER, msgspec.structs.replace(GRIPPER, name="x" * LONGEST, rpy=[7.0, -7.0, 0.0])])
+ONE = msgspec.structs.replace(GRIPPER, name="x")
+
+
+@pytest.mark.parametrize("tool", [BARE, GRIPPER, msgspec.structs.replace(GRIPPER, name="x" * LONGEST, rpy=[7.0, -7.0, 0.0]), ONE])
 def test_a_tool_that_can_be_has_no_problem(tool: Tool) -> None:
     assert tool_problem(tool, 5.0) is None
 
