@@ -393,6 +393,7 @@ def test_one_tick_that_is_like_no_load_begins_it_anew() -> None:
     strays = [(1, 0.8 + 0.09 * (k % 2), 0.0) for k in range(20)]
     assert not any(followed(*strays))
     assert any(followed(*[(1, 0.8 + 0.07 * (k % 2), 0.0) for k in range(20)]))
+    assert followed((5, 0.8, 0.0), (8, 0.95, 0.0)) == [False] * 12 + [True]
 
 
 @pytest.mark.parametrize(
