@@ -111,6 +111,6 @@ def test_a_hair_is_a_millionth_of_the_body_wherever_it_lies(size: float, off: fl
 
 
 def test_how_far_a_vertex_lies_in_front_is_said_in_millimetres() -> None:
-    dented = (*TETRAHEDRON[:3], (0.25, 0.25, -0.4))
-    with pytest.raises(ValueError, match=r"^faces\[0\]: a vertex lies 400 mm in front of it,"):
+    dented = (*TETRAHEDRON[:3], (0.25, 0.25, -0.0994))
+    with pytest.raises(ValueError, match=r"^faces\[0\]: a vertex lies 99.4 mm in front of it,"):
         polyhedron(dented, SIDES)
