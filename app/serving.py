@@ -51,8 +51,10 @@ def serve_until_interrupted(
         signal.signal(number, lambda *_: ended.set())
     notice = threading.Timer(PATIENCE, lambda: typer.echo(COMPILING))
     notice.start()
-    warm_up()
-    notice.cancel()
+    try:
+        warm_up()
+    finally:
+        notice.cancel()
     loop = Loop(lambda: simulate(prepared))
     loop.start()
     try:

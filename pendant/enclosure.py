@@ -33,8 +33,7 @@ class Enclosure:
 
     def step(self, around: Around) -> tuple[Reading, ...]:
         """One tick: every wall that holds."""
-        barriers = self._barriers
-        return (barriers[0].step(around),) if len(barriers) == 1 else tuple([barrier.step(around) for barrier in barriers])
+        return tuple([barrier.step(around) for barrier in self._barriers])
 
     def places(self) -> tuple[Place | None, ...]:
         """Where their shapes lie, in the order of the readings; None for one that has not been anchored yet."""

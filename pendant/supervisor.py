@@ -160,7 +160,7 @@ class Supervisor:
             events.append(Event(Kind.HOLD_SILENT, estimate.tick, values))
         events += self._sensors.step(estimate, self._joints)
         self._enabling.step(inputs, self._silence)
-        robot.grip = self._enabling.grip if self.settings.enabling.on else None
+        self._grip()
         robot.still.step(estimate, self._slow)
         robot.static = robot.still.count >= self._static_ticks
         events += robot.stopping.step(estimate, robot.still.count, self._static_ticks)
@@ -170,6 +170,10 @@ class Supervisor:
         asks = robot.mode is _RUN and not calls.signal.source and self._asks_for_a_hand
         self._free.sense(self._button.held, PROGRAM if asks else calls.signal)
         return wrench
+
+    def _grip(self) -> None:
+        """Of the enabling device, None where none is needed."""
+        self._robot.grip = self._enabling.grip if self.settings.enabling.on else None
 
     @property
     def _asks_for_a_hand(self) -> bool:
@@ -239,7 +243,7 @@ class Supervisor:
 
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
-        self._robot.grip = self._enabling.grip if self.settings.enabling.on else None
+        self._grip()
         self._calls.refresh(self.settings)
         self._publisher.refresh(self.settings)
         self._silence = ticks(self.settings.hold.silence)

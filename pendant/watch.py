@@ -81,7 +81,7 @@ class WrenchMean:
 
     def step(self, estimate: Estimate) -> bool:
         """One tick. Returns whether the wrench is valid in it."""
-        if not (estimate.wrench_valid and math.isfinite(sum(estimate.F_user.tolist()))):  # as `wrench_ok`, without a call
+        if not wrench_ok(estimate):
             self.count = 0
             self._next = 0
             return False

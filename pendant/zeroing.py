@@ -133,7 +133,7 @@ class Steps:
         older, self._older, self._last = self._older, self._last, change
         if self._age:
             return self._judge(estimate, change)
-        x, y, z = change[0] - older[0], change[1] - older[1], change[2] - older[2]
+        x, y, z = _less(change, older)
         if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
             self._age = 1
             self._zero, self._felt = older, _felt(estimate)

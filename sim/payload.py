@@ -35,14 +35,18 @@ class Payload:
         self._model, self._data, self._world = model, data, world
         self._scratch = mujoco.MjData(model)
         self._body = model.body("payload").id
-        self.falling = False
         self._fallen: Array | None = None  # pose (7,) in W
         self._speed = np.zeros(3)  # of the fall, in W [m/s]
+
+    @property
+    def falling(self) -> bool:
+        """It has been dropped, and nothing was attached since."""
+        return self._fallen is not None
 
     def attach(self, load: Load) -> None:
         """Make `load` the true payload from now on; what was attached before is gone."""
         self.load = load
-        self.falling, self._fallen = False, None
+        self._fallen = None
         body = load_body(load)
         values, axes = np.linalg.eigh(body.inertia)
         if np.linalg.det(axes) < 0:
@@ -66,7 +70,7 @@ class Payload:
         position, orientation = self._data.xipos[self._body].copy(), self._data.xquat[self._body].copy()
         self._speed = velocity(position)
         self.attach(Load(mass=0.0))
-        self.falling, self._fallen = True, np.concatenate([position, orientation])
+        self._fallen = np.concatenate([position, orientation])
 
     def fall(self, time: float) -> None:
         """Go on falling for `time` [s], down to the floor."""

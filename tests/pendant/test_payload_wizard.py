@@ -30,6 +30,18 @@ def standing(R: np.ndarray, mass: float = 2.0, centre: tuple[float, float, float
     return value
 
 
+def disturbed(wizard: PayloadWizard, wrench: list[float]) -> list[Event]:
+    """One measurement, in the middle of which a wrench [N, N·m] comes and stays."""
+    value = standing(WRIST[0])
+    wizard.begin(value, TICKS, "")
+    events: list[Event] = []
+    for k in range(TICKS):
+        if k == TICKS // 2:
+            value.w_sensor = np.add(value.w_sensor, wrench)
+        events += wizard.step(value, "", ())
+    return events
+
+
 def measure(wizard: PayloadWizard, value: Estimate, length: int = TICKS, known: tuple[Load, ...] = ()) -> list[Event]:
     events = wizard.begin(value, length, "")
     while wizard.left:
@@ -81,13 +93,7 @@ def test_the_more_postures_there_are_the_nearer_another_may_be() -> None:
 
 def test_steady_is_the_force_not_the_torque() -> None:
     wizard = PayloadWizard()
-    value = standing(WRIST[0])
-    wizard.begin(value, TICKS, "")
-    events: list[Event] = []
-    for k in range(TICKS):
-        if k == TICKS // 2:
-            value.w_sensor = np.add(value.w_sensor, [0.0, 0.0, 0.0, 1.5 * UNSTEADY, 0.0, 0.0])
-        events += wizard.step(value, "", ())
+    events = disturbed(wizard, [0.0, 0.0, 0.0, 1.5 * UNSTEADY, 0.0, 0.0])
     assert [event.kind for event in events] == [Kind.POSTURE_MEASURED]
 
 
@@ -163,13 +169,7 @@ def test_what_comes_in_between_ends_the_measurement() -> None:
 @pytest.mark.parametrize(("force", "kind"), [(0.9 * UNSTEADY, Kind.POSTURE_MEASURED), (1.1 * UNSTEADY, Kind.POSTURE_REFUSED)])
 def test_a_hand_that_comes_in_between_is_noticed(force: float, kind: Kind) -> None:
     wizard = PayloadWizard()
-    value = standing(WRIST[0])
-    wizard.begin(value, TICKS, "")
-    events: list[Event] = []
-    for k in range(TICKS):
-        if k == TICKS // 2:
-            value.w_sensor = np.add(value.w_sensor, [0.0, force, 0.0, 0.0, 0.0, 0.0])
-        events += wizard.step(value, "", ())
+    events = disturbed(wizard, [0.0, force, 0.0, 0.0, 0.0, 0.0])
     assert [event.kind for event in events] == [kind]
     assert wizard.progress.postures == (kind is Kind.POSTURE_MEASURED)
     if kind is Kind.POSTURE_REFUSED:
