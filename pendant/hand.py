@@ -32,6 +32,12 @@ JOINTS_SWING = 0.1
 FELT_BY_JOINTS = 10.0
 """A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
 
+ON_A_LINK = 5.0
+"""And from here on [N] while the flange sensor feels no more than `CARRIED`: it would feel what falls."""
+
+CARRIED = 4.0
+"""Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
+
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
 
 
@@ -118,6 +124,7 @@ class Hand:
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
             by_sensor = math.hypot(sx, sy, sz)
+            felt = felt or (size >= ON_A_LINK and math.hypot(x, y, z) < CARRIED)
             if not felt or by_sensor >= FELT_BY_JOINTS:
                 user, size, felt = self._by_sensor, by_sensor, True
         self.user = user if felt and size >= self._doubt else ORIGIN

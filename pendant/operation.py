@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Kind, Values
-from pendant.hand import Hand
+from pendant.hand import CARRIED, Hand
 from pendant.link_push import LinkPush
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
@@ -51,9 +51,6 @@ CALM = 0.3
 SWUNG = 10  # calm ticks that a swinging one undoes: the step of a payload itself swings for two
 
 MUCH = 0.5  # of the load is missing at least, where the arm swings
-
-CARRIED = 4.0
-"""Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
 
 OLD = 50  # ticks after which such a run begins anew: slow changes are hands
 

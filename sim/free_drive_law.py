@@ -17,8 +17,10 @@ from sim.axis_locks import AxisConstraint
 from sim.balancing import Balancing
 from sim.calibration import Calibration
 from sim.dynamics import Dynamics
+from sim.estimator import TORQUE_BANDWIDTH
 from sim.shaker import Shaker
 from sim.singularity import Singularity
+from sim.transmission_torque import DYNAMICS
 
 Array = NDArray[np.float64]
 
@@ -26,10 +28,13 @@ COMPENSATED = 0.85  # share of the friction estimate that is taken off the hand
 INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
 DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
-BRAKE, BRAKE_SPEED = 0.5, 0.1  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
+BRAKE, BRAKE_SPEED = 1.5, 0.15  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
 FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
+HERE = 0.25  # share of that uncertainty in the posture of entry, where nobody touched the arm
+APART = 0.25 * math.pi  # all of it so far away [rad]: gears err once and twice a turn
 USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
 FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
+LATE, BEGAN = 3, 6  # rows of the memory: the first of three, and that after them
 
 
 class FreeDriveLaw:
@@ -63,9 +68,11 @@ class FreeDriveLaw:
         self.singularity = Singularity(rotor)
         self._shaker = Shaker(rotor[-1], arm.limits.torque[-1])
         self.share = COMPENSATED
-        self._rates = tuple(1.0 - math.exp(-x * TICK) for x in (2.0 * math.pi * HELP_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP))
+        poles = (2.0 * math.pi * HELP_BANDWIDTH, 2.0 * math.pi * TORQUE_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP)
+        self._rates = tuple(1.0 - math.exp(-pole * TICK) for pole in poles)
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
-        self._memory = np.zeros((3, n))  # asked and felt, filtered; what is usual
+        # Asked and felt, filtered; what is usual; transmission torque, `_late`; angles in which free-drive began.
+        self._memory = np.zeros((7, n))
         self._turned = np.eye(3)
 
     def _moving(self, part: str) -> int:
@@ -81,6 +88,8 @@ class FreeDriveLaw:
         """Free-drive begins: what the joints feel now is no hand."""
         self._memory[:] = 0.0
         self._memory[2] = estimate.tau_ext
+        self._memory[LATE:BEGAN] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
+        self._memory[BEGAN] = estimate.q
         self._turned[:] = estimate.R_BF
         self._damping.start()
         self._balancing.start()
@@ -132,9 +141,9 @@ class FreeDriveLaw:
         else:
             hand[:] = 0.0
         if with_friction:
-            felt, uncertain, sliding = estimate.tau_ext, estimate.tau_ext_deviation, estimate.friction
-            rubs = (sliding, estimate.theta_d, friction.terms, friction.warmth)
-            _take_off(hand, felt, uncertain, self._memory, self._rates, *rubs, help * self.share, torque)
+            torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
+            rubs = (estimate.friction, estimate.theta_d, friction.terms, friction.warmth)
+            _take_off(hand, *torques, estimate.q, self._memory, self._rates, *rubs, help * self.share, torque)
         if locks is not None:
             self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
             constraint.hold(torque)
@@ -177,15 +186,21 @@ def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> No
 
 
 @numba.njit(cache=True)
-def _take_off(hand, tau_ext, uncertain, memory, rates, sliding, speed, terms, warmth, most, torque) -> None:
-    smooth, forget, keep = rates
+def _take_off(hand, ways, tau_ext, uncertain, q, memory, rates, sliding, speed, terms, warmth, most, torque) -> None:
+    smooth, lag, forget, keep = rates
+    away = 0.0
+    for i in range(q.size):
+        away = max(away, abs(q[i] - memory[BEGAN, i]))
+    doubt = min(HERE + (1.0 - HERE) * away / APART, 1.0)
     for i in range(torque.size):
         breakaway = terms[i, 0] * warmth[i]
-        unexplained = tau_ext[i] - hand[0, i] - memory[2, i]
+        model = ways[DYNAMICS, i]
+        unexplained = model - _late(model - tau_ext[i], lag, memory, i) - hand[0, i] - memory[2, i]
         memory[0, i] += smooth * (hand[1, i] - memory[0, i])
         memory[1, i] += smooth * (unexplained - memory[1, i])
         ask, felt = memory[0, i], memory[1, i]
-        over = abs(felt) - FELT * breakaway - uncertain[i]
+        least = FELT * breakaway + doubt * uncertain[i]
+        over = abs(felt) - least
         usual = memory[2, i] + (keep if over > 0.0 else forget) * unexplained
         # As the gears' errors are learned, what seemed usual must go as well.
         memory[2, i] = min(max(usual, -USUAL * uncertain[i]), USUAL * uncertain[i])
@@ -194,5 +209,19 @@ def _take_off(hand, tau_ext, uncertain, memory, rates, sliding, speed, terms, wa
         size = max(abs(ask) - DEAD_ZONE * breakaway, 0.0)
         share = min(size / (INTENT * breakaway), 1.0) if breakaway > 0.0 else 1.0
         torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
-        # A joint of which nothing is asked comes to rest sooner than by its friction alone.
-        torque[i] -= (1.0 - share) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
+        # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless something pushes it on.
+        along = felt if speed[i] > 0.0 else -felt
+        pushed = min(max(along / least, 0.0), 1.0) if least > 0.0 else 0.0
+        torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
+
+
+@numba.njit(cache=True)
+def _late(measured, lag, memory, i) -> float:
+    """What a joint's gear bears, as late as the rigid model, which sees accelerations through the filter of the output angle.
+
+    Without that, links that swing on their springs pass for a hand, and the help for it keeps them swinging.
+    """
+    for k in range(LATE, LATE + 3):
+        memory[k, i] += lag * (measured - memory[k, i])
+        measured = memory[k, i]
+    return measured

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.estimate import Estimate
-from pendant.hand import FELT_BY_JOINTS, JOINTS_SWING, LED, LED_SETTLING, OFFSET, SETTLING, SWING, Hand
+from pendant.hand import CARRIED, FELT_BY_JOINTS, JOINTS_SWING, LED, LED_SETTLING, OFFSET, ON_A_LINK, SETTLING, SWING, Hand
 from pendant.modes import TICK
 from pendant.pose import Vector
 from tests.pendant.estimates import estimate
@@ -75,6 +75,28 @@ def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
     hand = Hand(estimate(), ZEROS)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=3.0)) == pytest.approx((0.0, 20.0, 0.0), abs=1e-3)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=16.0)) == pytest.approx((16.0, 0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force", "user"),
+    [
+        (1.001 * ON_A_LINK, 0.0, "joints"),
+        (0.999 * ON_A_LINK, 0.0, "sensor"),
+        (1.001 * ON_A_LINK, 0.999 * CARRIED, "joints"),
+        (1.001 * ON_A_LINK, CARRIED, "sensor"),
+        (1.001 * FELT_BY_JOINTS, CARRIED, "joints"),
+    ],
+)
+def test_a_gentle_push_on_a_link_counts_while_the_sensor_feels_nothing(felt: float, force: float, user: str) -> None:
+    """VW-5: the tether follows who leads the arm by its elbow; what falls from the flange, the sensor would feel."""
+    hand = Hand(estimate(), ZEROS)
+    found = after(hand, 2.0, estimate(felt=[0.0, felt, 0.0], force=force))
+    assert found == pytest.approx((0.0, felt, 0.0) if user == "joints" else (force, 0.0, 0.0), abs=1e-3)
+    assert after(Hand(estimate(), ZEROS), 2.0, estimate(felt=[0.0, 0.9 * FELT_BY_JOINTS, 0.0]), use_wrench=False) == (
+        0.0,
+        0.0,
+        0.0,
+    )
 
 
 def test_a_payload_that_the_joints_feel_is_payload_like() -> None:

@@ -8,10 +8,11 @@ from pendant.modes import Law, Mode, Phase
 from pendant.settings import Settings, apply
 from sim.adaptive_friction import AdaptiveFriction
 from sim.frames import joint_frames, rotation
-from sim.free_drive_law import COMPENSATED, DEAD_ZONE, INTENT, FreeDriveLaw
-from sim.scenario import Scenario
+from sim.free_drive_law import APART, BRAKE, BRAKE_SPEED, COMPENSATED, DEAD_ZONE, FELT, HERE, INTENT, FreeDriveLaw
+from sim.scenario import Load, Scenario
+from sim.touch import Pull
 from tests.sim.arms import UR5E
-from tests.sim.bench import Bench, push
+from tests.sim.bench import CENTRE, Bench, push
 from tests.sim.control import EXACT, N, decision, dynamics, estimate
 
 Q = np.array(UR5E.chain.home)
@@ -72,6 +73,62 @@ def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -
     np.testing.assert_allclose((helped - plain)[full], expected[full])
     none = np.abs(ask) < DEAD_ZONE * BREAKAWAY
     assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
+
+
+def felt(torque: np.ndarray, away: float = 0.0, uncertain: float = 4.0, speed: float = 0.0) -> np.ndarray:
+    """Torque beyond gravity where the joints alone have felt `torque` for a moment, so far from the posture of entry [rad]."""
+    module, nothing = law(), np.zeros(N)
+    there = Q + np.array([0.0, 0.0, away, 0.0, 0.0, 0.0])
+    ways = np.stack([torque, nothing, nothing])
+    unsure, pace = np.full(N, uncertain), np.full(N, speed)
+    seen = estimate(q=there, R_BF=R, tau_ext=torque, tau_ways=ways, tau_ext_deviation=unsure, theta_d=pace)
+    for _ in range(60):
+        out = module.torque(seen, decision(Law.FREE, gain=1.0), JACOBIAN, AdaptiveFriction(UR5E), True)
+    return out - MODEL.gravity(there)
+
+
+def test_a_hand_on_a_link_counts_beyond_doubt_which_grows_with_the_way_from_entry() -> None:
+    """AF-7: at entry nobody touched the arm, so what the joints feel in that posture since is somebody."""
+    uncertain = 4.0
+    for away, doubt in ((0.0, HERE), (0.5 * APART, 0.5 * (1.0 + HERE)), (APART, 1.0), (2.0 * APART, 1.0)):
+        least = FELT * BREAKAWAY + doubt * uncertain
+        assert np.abs(felt(0.98 * least, away, uncertain)).max() < 1e-9, away
+        assert (felt(1.3 * least + 0.5 * BREAKAWAY, away, uncertain) > 0.8 * COMPENSATED * BREAKAWAY).all(), away
+
+
+def test_a_joint_of_which_nothing_is_asked_is_braked_unless_something_pushes_it_on() -> None:
+    least = FELT * BREAKAWAY + HERE * 4.0
+    speed = 2.0 * BRAKE_SPEED
+    full = BRAKE * BREAKAWAY * np.tanh(2.0)
+    np.testing.assert_allclose(felt(np.zeros(N), speed=speed), -full, rtol=1e-6)
+    np.testing.assert_allclose(felt(np.zeros(N), speed=-speed), full, rtol=1e-6)
+    np.testing.assert_allclose(felt(-0.5 * least, speed=speed), -full, rtol=1e-6)
+    eased = felt(0.5 * least, speed=speed)
+    assert (eased < -0.4 * full).all()
+    assert (eased > -0.7 * full).all()
+
+
+def test_who_leads_the_arm_by_its_elbow_leads_it_smoothly() -> None:
+    """AF-7: links that swing on their springs passed for a hand, and what was done for it kept the arm shaking at 30 Hz."""
+    load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
+    posture = [1.28, -0.96, 1.89, -1.99, 1.32, -2.17]
+    bench = Bench(Scenario(seed=9, posture=posture, payload_true=load, payload_configured=load))
+    bench.enter()
+    body = bench.plant.model.body("elbow").id
+    target = bench.plant.data.xpos[body].copy()
+    round_base = np.cross([0.0, 0.0, 1.0], target)
+    round_base /= np.linalg.norm(round_base)
+    speeds, forces = [], []
+    for k in range(500):
+        target += round_base * 0.1 * 0.002 * min(k / 100.0, 1.0)
+        bench.run(0.002, Pull("elbow", CENTRE, tuple(target), 300.0))
+        speeds.append(bench.plant.qd[0])
+        forces.append(np.array(bench.plant.hands.touched[0][2]) @ round_base)
+    late = np.array(speeds[300:])
+    smooth = np.convolve(late, np.ones(17) / 17.0, mode="same")[20:-20]  # over a period of that shaking
+    assert np.std(late[20:-20] - smooth) < 0.01
+    assert np.mean(forces[250:]) < 25.0
+    assert bench.mode is Mode.FREE_DRIVE
 
 
 def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None:
