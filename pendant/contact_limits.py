@@ -36,7 +36,9 @@ class ContactLimits(NamedTuple):
     mass: float  # configured [kg]
 
 
-def limits(use: ContactUse, mass: float, effective_mass: float, speed: float, mode: Mode, link: bool = False) -> ContactLimits:
+def limits(
+    use: ContactUse, mass: float, effective_mass: float, speed: float, mode: Mode, link: bool = False, lever: float = 0.0
+) -> ContactLimits:
     """The thresholds of one source now.
 
     Args:
@@ -46,18 +48,20 @@ def limits(use: ContactUse, mass: float, effective_mass: float, speed: float, mo
         speed: of the tool centre point [m/s].
         mode: robot mode.
         link: the source is the joints and the part a link.
+        lever: of the carried mass: the angular acceleration's noise counts with it [m].
     """
     scale = (1.0 + use.speed_share * speed) / use.sensitivity
     if mode is Mode.FREE_DRIVE:
         scale *= use.free_drive_factor
-    noise_f, noise_a = use.force_noise, use.acceleration_noise
+    # Of the three axes of a turning, each point feels two.
+    noise_f, noise_a = use.force_noise, (use.acceleration_noise**2 + 2.0 / 3.0 * (use.turn_noise * lever) ** 2) ** 0.5
     slow_force = use.slow_force + use.slow_payload * mass
     if link:
         noise_f, noise_a, slow_force = use.link_force_noise, use.link_acceleration_noise, use.link_force
     pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
     noisy = use.noise_limit * pair
     hard = use.hard_limit * pair * scale
-    # The acceleration of a load off the axis comes later than its force: when the arm vibrates, they lie against each other.
+    # The acceleration of a load off the axis comes half a tick later than its force: in vibration they lie against each other.
     mismatch = scale * use.hard_payload * mass
     margin = use.link_margin if link else use.payload_error * mass
     return ContactLimits(

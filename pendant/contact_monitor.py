@@ -121,17 +121,18 @@ class ContactMonitor:
         self._kept.clear()
 
     def _limit(self, index: int, signal: Signal, speed: float, use: ContactUse, mode: Mode) -> ContactLimits:
-        key = (use, mode, signal.mass, signal.effective_mass, speed if use.speed_share else 0.0)
+        key = (use, mode, signal.mass, signal.lever, signal.effective_mass, speed if use.speed_share else 0.0)
         limit = self._limits[index]
         if limit is None or key != self._keys[index]:
             links = SOURCES[index].in_base
-            limit = limits(use, signal.mass, signal.effective_mass, speed, mode, links)
+            limit = limits(use, signal.mass, signal.effective_mass, speed, mode, links, signal.lever)
             self._keys[index], self._limits[index] = key, limit
         return limit
 
     def _contact(self, finding: Finding, source: Source, tick: int, look_back: bool) -> Contact:
         steps = finding.steps if look_back else 0
-        now, pose = self.now(), self._poses.at(steps)
+        # A force is the mean of its tick, angles are of its end, when the contact is there: where it began, it was not yet.
+        now, pose = self.now(), self._poses.at(steps + look_back)
         force, acceleration = finding.force, finding.acceleration
         if not source.in_base:
             force, acceleration = turned(now.R_BF, force), turned(now.R_BF, acceleration)

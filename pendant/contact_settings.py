@@ -34,13 +34,14 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     angle: Annotated[float, _number(0.0, 0.95, "", "CD-0", "minus the cosine beyond which directions are opposite")] = 0.3
     force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", "noise of the flange force, each axis")] = 0.15
     acceleration_noise: Annotated[float, _number(0.01, 2.0, "m/s²", "CD-0", "noise of the acceleration, each axis")] = 0.1
+    turn_noise: Annotated[float, _number(0.0, 20.0, "rad/s²", "CD-0", "noise of the angular acceleration, each axis")] = 1.5
     link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", "noise of the force on a link")] = 3.0
     link_acceleration_noise: Annotated[float, _number(0.02, 5.0, "m/s²", "CD-2", "noise of a link's acceleration")] = 0.2
     link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", "slow rule: force on a link")] = 60.0
     link_margin: Annotated[float, _number(0.0, 100.0, "kg", "CD-11", "force on a link that a wrong model may explain")] = 20.0
     noise_limit: Annotated[float, _number(1.0, 6.0, "", "CD-0", "differences within so many deviations are noise")] = 3.0
     hard_limit: Annotated[float, _number(2.0, 20.0, "", "CD-4", "difference rule: deviations of force, acceleration")] = 4.0
-    hard_payload: Annotated[float, _number(0.0, 5.0, "N/kg", "CD-11", "difference rule: force more for each kg carried")] = 0.9
+    hard_payload: Annotated[float, _number(0.0, 5.0, "N/kg", "CD-11", "difference rule: force more for each kg carried")] = 0.4
     ratio_share: Annotated[float, _number(0.05, 1.0, "", "CD-5", "ratio's threshold, a share of the payload")] = 0.5
     ratio_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-5", "ratio rule: least acceleration difference")] = 1.0
     value_force: Annotated[float, _number(1.0, 50.0, "N", "CD-3", "instant rule: force")] = 8.0

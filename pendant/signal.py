@@ -26,6 +26,7 @@ class Signal(NamedTuple):
     mass: float = 0.0  # configured, of what the force accelerates [kg]
     effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]
     saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size
+    lever: float = 0.0  # over which a measured angular acceleration moves the acceleration to the load's centre [m]
 
 
 class Signals(msgspec.Struct, frozen=True, gc=False):

@@ -1,7 +1,5 @@
 """Force and acceleration for the contact detectors: from the sensors at the flange, and from the joints (CD-2)."""
 
-import math
-
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +7,7 @@ from numpy.typing import NDArray
 from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
 from pendant.modes import TICK
-from pendant.signal import Signals
+from pendant.signal import Signal, Signals
 from sim.chain import Body
 from sim.cholesky import factor, solve
 from sim.dynamics import Dynamics
@@ -18,9 +16,6 @@ from sim.sensors import Sample
 
 Array = NDArray[np.float64]
 
-TURN_BANDWIDTH = 60.0
-"""Of the angular acceleration that moves a measured acceleration to the load's centre [Hz]: its delay is half a tick more than
-the force's, its noise that of the accelerometer."""
 MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
@@ -39,9 +34,8 @@ class ContactSources:
 
     def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
         self._dynamics, self._reach = dynamics, reach
-        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
-        self._turns = np.zeros((2, 2, 3))  # tool side, arm side: last gyro value, smoothed angular acceleration
-        self._out = np.zeros((4, 12))  # a signal a row, in the order of its fields
+        self._turn = np.full(3, np.nan)  # angular speed a tick ago, not a number where it is not known
+        self._out = np.zeros((4, len(Signal._fields)))  # a signal a row
         self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
         n = dynamics.recursion.origins.shape[0]
         self._before, self._started = np.zeros((2, 3, n)), False  # Jacobians of the two points, a tick ago
@@ -51,7 +45,7 @@ class ContactSources:
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
         self._load, self._com = load, np.array(load.com)
-        self._out[:2, 9] = load.mass
+        self._out[:2, 9], self._out[:2, 12] = load.mass, np.linalg.norm(load.com)
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.
@@ -70,7 +64,7 @@ class ContactSources:
         rigid, out = self._dynamics.recursion, self._out
         flange = pair and use.flange
         _read(
-            pair, flange, links, sample.values, self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns,
+            pair, flange, links, sample.values, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turn,
             rigid.origins, rigid.jacobian, self._links, self._before, self._started, estimate.tau_ext, estimate.qd, estimate.qdd,
             out,
         )  # fmt: skip
@@ -91,33 +85,51 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 
 
 @numba.njit(cache=True)
-def _read(tool, arm_side, links, values, smoothing, com, R, gravity, reach, turns, origins, flange, points, before, started,
+def _read(tool, arm_side, links, values, com, R, gravity, reach, turn, origins, flange, points, before, started,
           tau_ext, qd, qdd, out) -> None:  # fmt: skip
     """All sources that are on, into the rows of `out`. One kernel: each array that is handed over costs as much as its work."""
     rest = values[3 * qd.size :]
     wrench = rest[:6]
     if tool:
-        _transfer(wrench, rest[12:15], rest[15:18], turns[0], smoothing, com, R, gravity, reach, out[0])
-    if arm_side:
-        _transfer(wrench, rest[6:9], rest[9:12], turns[1], smoothing, com, R, gravity, reach, out[1])
+        moved = _to_load(rest[9:12], rest[15:18], turn, com)
+        _transfer(wrench, rest[12:15], moved, R, gravity, reach, out[0])
+        if arm_side:
+            _transfer(wrench, rest[6:9], moved, R, gravity, reach, out[1])
+    else:
+        turn[:] = np.nan
     if links:
         _derive(origins, flange, points, before, started, tau_ext, qd, qdd, gravity, out[2:])
 
 
 @numba.njit(cache=True)
-def _transfer(wrench, acceleration, gyro, turns, smoothing, com, R, gravity, reach, out) -> None:
-    """Force, specific force at the load's centre, and gravity, each (3,) in F, into `out`."""
+def _to_load(arm_side, tool_side, before, com):
+    """Acceleration (3,) of the load's centre against the flange [m/s²]; puts the angular speed into `before` [rad/s].
+
+    Both gyros feel the same turning, for the flange sensor gives way along its axes and does not turn: their mean has so little
+    noise that its difference needs no smoothing. Smoothed, the load's turning came later than its force, and an arm that
+    vibrates at 60 Hz laid the two against each other like a contact.
+    """
+    turn, change, moved = np.empty(3), np.zeros(3), np.empty(3)
     for k in range(3):
-        turns[1, k] += smoothing * ((gyro[k] - turns[0, k]) / TICK - turns[1, k])
-        turns[0, k] = gyro[k]
+        turn[k] = 0.5 * (arm_side[k] + tool_side[k])
+        if not np.isnan(before[k]):
+            change[k] = (turn[k] - before[k]) / TICK
+        before[k] = turn[k]
+    # w x (w x c) = w (w·c) - c w²
+    along = turn[0] * com[0] + turn[1] * com[1] + turn[2] * com[2]
+    square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        tangential = turns[1, i] * com[j] - turns[1, j] * com[i]
-        # w x (w x c) = w (w·c) - c w²
-        along = gyro[0] * com[0] + gyro[1] * com[1] + gyro[2] * com[2]
-        square = gyro[0] * gyro[0] + gyro[1] * gyro[1] + gyro[2] * gyro[2]
+        moved[k] = change[i] * com[j] - change[j] * com[i] + turn[k] * along - com[k] * square
+    return moved
+
+
+@numba.njit(cache=True)
+def _transfer(wrench, acceleration, moved, R, gravity, reach, out) -> None:
+    """Force, specific force at the load's centre, and gravity, each (3,) in F, into `out`."""
+    for k in range(3):
         out[k] = wrench[k]
-        out[3 + k] = acceleration[k] + tangential + gyro[k] * along - com[k] * square
+        out[3 + k] = acceleration[k] + moved[k]
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
     out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= reach else 0.0
 

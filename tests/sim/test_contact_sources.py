@@ -5,10 +5,11 @@ import pytest
 
 from app.library import load_arm, load_tool
 from pendant.contact_monitor import SOURCES
-from pendant.inputs import NOTHING, Inputs
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.program import JointMove, Program
 from pendant.settings import Settings, apply
 from pendant.signal import Signal
-from sim.changes import SensorFault
+from sim.changes import Friction, SensorFault
 from sim.desk import Wishes
 from sim.scenario import Load, Scenario
 from sim.simulation import Simulation
@@ -35,6 +36,14 @@ def mean(sim: Simulation, source: int, ticks: int, wishes: Wishes = IDLE) -> np.
     return np.mean(rows, axis=0).reshape(3, 3)
 
 
+def move(sim: Simulation, way: list[float]) -> None:
+    """A joint move by `way` [rad], until it is in full swing."""
+    goal = tuple((np.array(ARM.chain.home) + way).tolist())
+    sim.tick(Wishes(Inputs(program=Program(steps=(JointMove(q=goal),))), (), ()))
+    for k in range(450):
+        sim.tick(Wishes(Inputs(commands=(Command.START_PROGRAM,)), (), ()) if k == 150 else IDLE)
+
+
 def test_at_rest_force_is_mass_times_acceleration_in_the_flange() -> None:
     sim = simulation(flange=True)
     for source in (0, 1):
@@ -59,6 +68,43 @@ def test_a_force_against_the_tool_is_one_of_the_arm_the_other_way() -> None:
     assert R @ (after[0] - before[0]) == pytest.approx([0.0, -20.0, 0.0], abs=1.0)
     change, acceleration = R @ (first[0] - before[0]), R @ (first[1] - before[1])
     assert change[1] < 0.0 < acceleration[1]  # opposite
+
+
+def test_a_load_off_the_axis_that_is_shaken_keeps_its_force_along_its_acceleration() -> None:
+    """CD-0: a jump of friction lets the arm vibrate at 60 Hz; a turning that is known late would look like a contact's force."""
+    load = Load(mass=4.0, com=[-0.08, 0.03, 0.05])
+    scenario = Scenario(tool=TOOL, payload_true=load, payload_configured=load, mismatch="nominal", seed=3)
+    sim = Simulation(ARM, scenario, Settings())
+    for sensor in ("force_torque", "accelerometer", "gyro"):
+        sim.tick(Wishes(NOTHING, (), (SensorFault(sensor=sensor, noise_factor=0.0),)))
+    move(sim, [1.0, 0.3, -0.3, 1.0, 1.0, 1.0])
+    rows = []
+    for changes in ((Friction(factor=1.4),), *((),) * 40):
+        sim.tick(Wishes(NOTHING, (), changes))
+        signal = sim.snapshot().estimate.signals.each()[0]
+        assert signal is not None
+        rows.append([*signal[:6], signal.mass, signal.lever])
+    table = np.array(rows)
+    force, acceleration, mass = table[:, :3], table[:, 3:6], table[0, 6]
+    assert np.ptp(acceleration, axis=0).max() > 2.0
+    contact = force - mass * acceleration
+    assert np.linalg.norm(contact - contact[0], axis=1).max() < 6.5  # with a turning smoothed at 60 Hz 9.8 N
+    assert table[0, 7] == pytest.approx(0.09, abs=0.01)  # of tool and load together
+
+
+def test_after_an_outage_a_turning_is_no_jump() -> None:
+    sim = simulation()
+    sim.tick(Wishes(NOTHING, (), (SensorFault(sensor="gyro", outage=True),)))
+    move(sim, [1.5, 0.0, 0.0, 0.0, 0.0, 1.5])
+    sim.tick(Wishes(NOTHING, (), (SensorFault(sensor="gyro", noise_factor=0.0),)))
+    accelerations = []
+    for _ in range(10):
+        sim.tick(IDLE)
+        signal = sim.snapshot().estimate.signals.each()[0]
+        if signal is not None:
+            accelerations.append(signal[3:6])
+    assert len(accelerations) > 5
+    assert np.ptp(np.array(accelerations), axis=0).max() < 1.5
 
 
 @pytest.mark.parametrize(("source", "part", "point"), [(2, "shoulder", (-0.425, 0.0, 0.138)), (3, "elbow", (-0.392, 0.0, 0.0))])
