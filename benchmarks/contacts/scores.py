@@ -48,6 +48,12 @@ def truth_of(recording: Recording) -> tuple[int, np.ndarray]:
     return int(np.searchsorted(times, 0.0)) + 1, times
 
 
+def _at_onset(recording: Recording, first: int, times: np.ndarray) -> np.ndarray:
+    """p_BT (3,) at the true onset, between begin and end of its tick: encoders saw them in the rows `first` - 1 and `first`."""
+    begin, end = np.array(recording.tip[first - 1]), np.array(recording.tip[first])
+    return end - (end - begin) * times[first - 1] / (1000.0 * TICK)
+
+
 def delay_of(ticks: list[float]) -> float:
     """Delay of the first alarm [ms]; infinite where there is none, or one before the onset."""
     return ticks[0] if ticks and ticks[0] >= 0.0 else math.inf
@@ -82,7 +88,7 @@ def score(case: Approach) -> Outcome:
         a = np.array(recording.acceleration)
         gone = float(np.linalg.norm(a[row - 10 : row].mean(axis=0) - a[max(0, first - 22) : first - 2].mean(axis=0)))
         right = contact.change is Change.GAINED or (contact.change is Change.CLAMPING and gone < DIED_OUT)
-        pose = 1000.0 * math.dist(contact.pose.p_BT, recording.tip[first - 1])
+        pose = 1000.0 * math.dist(contact.pose.p_BT, _at_onset(recording, first, times))
     return Outcome(
         case,
         delay,
