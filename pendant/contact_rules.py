@@ -25,6 +25,8 @@ MEAN = 20
 """Samples of the stored means that it is held against, q."""
 LAGS = (20, 60, 200)
 """Ages of the stored means that the newest is held against (CD-8): steep changes show early, flat ones in the long run."""
+OBJECT = 1.25
+"""The statistical rule's limit of the force on the object, over the confidence interval: a wrong payload has no noise."""
 DIED_OUT = 0.25
 """Change of the acceleration that is none any more [m/s²]: with a larger one a contact has been gained, and is no clamping."""
 
@@ -70,20 +72,21 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
     along = dot >= 0.0 and limit.opposite
     if along and (ff > 4.0 * limit.noise_force_sq or dot * dot > limit.deviation_sq * aa):
         return NOTHING
-    clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit)
+    clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit.clear_force, limit)
     if along or ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
         return Hard(clear, False, clear)
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
     return Hard(difference or clear, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa, clear)
 
 
-def _clear(ff: float, aa: float, dot: float, limit: ContactLimits) -> bool:
+def _clear(ff: float, aa: float, dot: float, least: float, limit: ContactLimits) -> bool:
+    """The change of the contact force, F - m·A, lies against A and is beyond `least` [N] and what a wrong payload explains."""
     mass = limit.mass
     against = dot - mass * aa  # F - m·A along A
     if against >= 0.0 and limit.opposite:
         return False
     square = ff - 2.0 * mass * dot + mass * mass * aa
-    size = limit.clear_force + limit.payload_margin * aa**0.5
+    size = least + limit.payload_margin * aa**0.5
     return square > size * size and against * against > limit.cosine_sq * square * aa
 
 
@@ -114,23 +117,32 @@ def values(history: History, limit: ContactLimits) -> tuple[bool, bool]:
 
 
 def statistical(history: History, limit: ContactLimits) -> bool:
-    """The newest `NEW` samples against mean and confidence interval of the `OLD` before them (CD-6, eq. 9, 10)."""
+    """The newest `NEW` samples against mean and confidence interval of the `OLD` before them (CD-6, eq. 9, 10).
+
+    While an arm that is moved carries a heavy load, that load's m·A hides which way an object pushes; then the contact force,
+    F - m·A, shows it (CD-0).
+    """
     if history.clean < NEW + OLD:
         return False
     nfx, nfy, nfz, nax, nay, naz = history.mean(0, NEW)
     old = history.mean(NEW, OLD)
     ofx, ofy, ofz, oax, oay, oaz = old
-    fx, fy, fz = nfx - ofx, nfy - ofy, nfz - ofz
     ax, ay, az = nax - oax, nay - oay, naz - oaz
-    dot = fx * ax + fy * ay + fz * az
-    if dot >= 0.0 and limit.opposite:
-        return False
-    ff, aa = fx * fx + fy * fy + fz * fz, ax * ax + ay * ay + az * az
-    if dot * dot < limit.cosine_sq * ff * aa:
+    aa = ax * ax + ay * ay + az * az
+    error = limit.confidence_sq * (1.0 / NEW + 1.0 / OLD)
+    if aa <= error * limit.acceleration_variance:
         return False
     force, acceleration = history.variances(NEW, OLD, old)
-    error = limit.confidence_sq * (1.0 / NEW + 1.0 / OLD)
-    return ff > error * max(force, limit.force_variance) and aa > error * max(acceleration, limit.acceleration_variance)
+    force, acceleration = max(force, limit.force_variance), max(acceleration, limit.acceleration_variance)
+    if aa <= error * acceleration:
+        return False
+    fx, fy, fz = nfx - ofx, nfy - ofy, nfz - ofz
+    dot = fx * ax + fy * ay + fz * az
+    ff = fx * fx + fy * fy + fz * fz
+    if (dot < 0.0 or not limit.opposite) and dot * dot >= limit.cosine_sq * ff * aa and ff > error * force:
+        return True
+    mass = limit.mass
+    return _clear(ff, aa, dot, OBJECT * (error * (force + mass * mass * acceleration)) ** 0.5, limit)
 
 
 class Slow(NamedTuple):
