@@ -61,7 +61,7 @@ def limits(
     pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
     noisy = use.noise_limit * pair
     hard = use.hard_limit * pair * scale
-    # The acceleration of a load off the axis comes half a tick later than its force: in vibration they lie against each other.
+    # The acceleration of a load off the axis comes up to a tick later than its force: in vibration they lie against each other.
     mismatch = scale * use.hard_payload * mass
     margin = use.link_margin if link else use.payload_error * mass
     return ContactLimits(

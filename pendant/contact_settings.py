@@ -34,7 +34,7 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     angle: Annotated[float, _number(0.0, 0.95, "", "CD-0", "minus the cosine beyond which directions are opposite")] = 0.3
     force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", "noise of the flange force, each axis")] = 0.15
     acceleration_noise: Annotated[float, _number(0.01, 2.0, "m/s²", "CD-0", "noise of the acceleration, each axis")] = 0.1
-    turn_noise: Annotated[float, _number(0.0, 20.0, "rad/s²", "CD-0", "noise of the angular acceleration, each axis")] = 1.5
+    turn_noise: Annotated[float, _number(0.0, 20.0, "rad/s²", "CD-0", "noise of the angular acceleration, each axis")] = 1.2
     link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", "noise of the force on a link")] = 3.0
     link_acceleration_noise: Annotated[float, _number(0.02, 5.0, "m/s²", "CD-2", "noise of a link's acceleration")] = 0.2
     link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", "slow rule: force on a link")] = 60.0

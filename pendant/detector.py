@@ -16,8 +16,8 @@ BEFORE = 10
 """Samples of the mean that a change is measured from."""
 LONGEST = 60
 """Ticks before a sighting in which its first suspicious sample is looked for."""
-SUSPICIOUS = 1.5
-"""Deviations of noise beyond which a sample belongs to the change."""
+SUSPICIOUS = 2.0
+"""Deviations of noise beyond which a sample belongs to the change: one in forty that does not, does by chance."""
 SETTLED = 10
 """Ticks over which a settled force hardly changes (CD-9a)."""
 CALM = 6

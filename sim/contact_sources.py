@@ -1,5 +1,7 @@
 """Force and acceleration for the contact detectors: from the sensors at the flange, and from the joints (CD-2)."""
 
+import math
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,9 @@ from sim.sensors import Sample
 
 Array = NDArray[np.float64]
 
+TURN_BANDWIDTH = 150.0
+"""Of the angular acceleration that moves a measured acceleration to the load's centre [Hz]: it is there a tick after the
+force at the most, its noise at a load's usual distance within that of the accelerometer."""
 MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
@@ -34,7 +39,8 @@ class ContactSources:
 
     def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
         self._dynamics, self._reach = dynamics, reach
-        self._turn = np.full(3, np.nan)  # angular speed a tick ago, not a number where it is not known
+        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        self._turns = np.full((2, 3), np.nan)  # angular speed a tick ago, not a number where it is not known; its change
         self._out = np.zeros((4, len(Signal._fields)))  # a signal a row
         self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
         n = dynamics.recursion.origins.shape[0]
@@ -64,7 +70,7 @@ class ContactSources:
         rigid, out = self._dynamics.recursion, self._out
         flange = pair and use.flange
         _read(
-            pair, flange, links, sample.values, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turn,
+            pair, flange, links, sample.values, self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns,
             rigid.origins, rigid.jacobian, self._links, self._before, self._started, estimate.tau_ext, estimate.qd, estimate.qdd,
             out,
         )  # fmt: skip
@@ -85,35 +91,37 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 
 
 @numba.njit(cache=True)
-def _read(tool, arm_side, links, values, com, R, gravity, reach, turn, origins, flange, points, before, started,
+def _read(tool, arm_side, links, values, smoothing, com, R, gravity, reach, turns, origins, flange, points, before, started,
           tau_ext, qd, qdd, out) -> None:  # fmt: skip
     """All sources that are on, into the rows of `out`. One kernel: each array that is handed over costs as much as its work."""
     rest = values[3 * qd.size :]
     wrench = rest[:6]
     if tool:
-        moved = _to_load(rest[9:12], rest[15:18], turn, com)
+        moved = _to_load(rest[9:12], rest[15:18], turns[0], turns[1], smoothing, com)
         _transfer(wrench, rest[12:15], moved, R, gravity, reach, out[0])
         if arm_side:
             _transfer(wrench, rest[6:9], moved, R, gravity, reach, out[1])
     else:
-        turn[:] = np.nan
+        turns[0] = np.nan
     if links:
         _derive(origins, flange, points, before, started, tau_ext, qd, qdd, gravity, out[2:])
 
 
 @numba.njit(cache=True)
-def _to_load(arm_side, tool_side, before, com):
-    """Acceleration (3,) of the load's centre against the flange [m/s²]; puts the angular speed into `before` [rad/s].
+def _to_load(arm_side, tool_side, before, change, smoothing, com):
+    """Acceleration (3,) of the load's centre against the flange [m/s²]; `before` and `change` are kept from tick to tick.
 
     Both gyros feel the same turning, for the flange sensor gives way along its axes and does not turn: their mean has so little
-    noise that its difference needs no smoothing. Smoothed, the load's turning came later than its force, and an arm that
-    vibrates at 60 Hz laid the two against each other like a contact.
+    noise that its difference needs little smoothing. With more, the load's turning came so much later than its force that an
+    arm which vibrates at 60 Hz laid the two against each other like a contact.
     """
-    turn, change, moved = np.empty(3), np.zeros(3), np.empty(3)
+    turn, moved = np.empty(3), np.empty(3)
     for k in range(3):
         turn[k] = 0.5 * (arm_side[k] + tool_side[k])
-        if not np.isnan(before[k]):
-            change[k] = (turn[k] - before[k]) / TICK
+        if np.isnan(before[k]):
+            change[k] = 0.0
+        else:
+            change[k] += smoothing * ((turn[k] - before[k]) / TICK - change[k])
         before[k] = turn[k]
     # w x (w x c) = w (w·c) - c w²
     along = turn[0] * com[0] + turn[1] * com[1] + turn[2] * com[2]

@@ -123,10 +123,10 @@ def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
 
 
 def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
-    """Two gyros of 0.003 rad/s, whose mean is differentiated over a tick: 1.5 rad/s², of which a point feels two axes (CD-0)."""
+    """The mean of two gyros of 0.003 rad/s, its difference smoothed at 150 Hz: 1.2 rad/s²; a point feels two axes (CD-0)."""
     near, far = limits(USE, 2.0, 2.0, 0.0, Mode.RUN), limits(USE, 2.0, 2.0, 0.0, Mode.RUN, lever=0.1)
     assert near.acceleration_variance == pytest.approx(0.1**2)
-    assert far.acceleration_variance == pytest.approx(0.1**2 + 2.0 / 3.0 * 0.15**2)
+    assert far.acceleration_variance == pytest.approx(0.1**2 + 2.0 / 3.0 * 0.12**2)
     assert far.noise_acceleration_sq == pytest.approx(18.0 * far.acceleration_variance)
     assert far.clear_force > near.clear_force
 

@@ -194,10 +194,10 @@ def test_what_it_reports_of_a_step_in_space(mass: float) -> None:
 
 
 def test_the_first_suspicious_sample_of_a_ramp_is_the_first_beyond_the_noise() -> None:
-    """CD-14: 1.5 deviations of F - m·A, 0.15 N and 0.1 m/s² of 1 kg: 0.27 N, which 0.05 N a tick reach with the sixth."""
+    """CD-14: 2 deviations of F - m·A, 0.15 N and 0.1 m/s² of 1 kg: 0.36 N, which 0.05 N a tick reach with the eighth."""
     stream = signals(400, arm=1e6, push=ramp(400, START, 0.05, way=(0.0, -0.6, 0.8)), noise=0.0)
     (tick, finding), *_ = found(stream, ONLY[Rule.SLOW])
-    assert tick - finding.steps == START + 6
+    assert tick - finding.steps == START + 8
 
 
 def heard(push: np.ndarray) -> Iterator[tuple[int, Detector, Finding | None]]:

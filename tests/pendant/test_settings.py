@@ -271,7 +271,7 @@ CONTACT_NUMBERS = {
     "angle": (0.3, 0.0, 0.95, "", "CD-0", True),
     "force_noise": (0.15, 0.02, 2.0, "N", "CD-0", True),
     "acceleration_noise": (0.1, 0.01, 2.0, "m/s²", "CD-0", True),
-    "turn_noise": (1.5, 0.0, 20.0, "rad/s²", "CD-0", True),
+    "turn_noise": (1.2, 0.0, 20.0, "rad/s²", "CD-0", True),
     "link_force_noise": (3.0, 0.1, 50.0, "N", "CD-2", True),
     "link_acceleration_noise": (0.2, 0.02, 5.0, "m/s²", "CD-2", True),
     "link_force": (60.0, 1.0, 200.0, "N", "CD-2", True),
