@@ -139,7 +139,7 @@ class Activation:
             outcome = attempt.first()
         else:
             static = around.still.count >= ticks(settings.static.time)  # an arm that a hand has left still swings
-            outcome = attempt.step(signal, around.hand_off and static)
+            outcome = attempt.step(signal, around.touched, around.hand_off and static)
         self.phase = attempt.phase
         if outcome is Outcome.CANCELLED:
             self.end()

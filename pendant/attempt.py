@@ -32,7 +32,21 @@ class Outcome(StrEnum):
 class Attempt:
     """Activation period, then feedback and confirmation where they are asked for, then hands off."""
 
-    __slots__ = ("_absent", "_by_hand", "_fresh", "_gap", "_run", "_settings", "_whole", "left", "phase", "source", "total")
+    __slots__ = (
+        "_absent",
+        "_by_hand",
+        "_fresh",
+        "_gap",
+        "_off",
+        "_run",
+        "_settings",
+        "_untouched",
+        "_whole",
+        "left",
+        "phase",
+        "source",
+        "total",
+    )
 
     def __init__(self, signal: Presence, settings: Settings) -> None:
         """It begins in the first tick of `signal`; `settings` stay as they are to its end."""
@@ -41,8 +55,10 @@ class Attempt:
         self._by_hand = signal.by_hand
         self._whole = signal.whole
         self._gap = 0  # ticks without the signal
-        self._absent = 0
+        self._absent = 0  # ticks without a signal
+        self._off = 0  # and without a hand that is felt
         self._fresh = False  # a signal of now began after the feedback
+        self._untouched = False  # and a hand that gives it was off the arm before
         self._run = 0  # ticks of the confirmation
         self.phase = Phase.ACTIVATION
         self.left = self.total = ticks(settings.activation.period)
@@ -66,10 +82,16 @@ class Attempt:
         """The tick in which it begins."""
         return self._activated() if self.left == 0 else Outcome.GOES_ON
 
-    def step(self, signal: Presence, hand_off: bool) -> Outcome:
-        """A later tick: the signal of now, and whether no hand is felt."""
-        present = bool(signal.source)
-        self._absent = 0 if present else self._absent + 1
+    def step(self, signal: Presence, touched: bool, hand_off: bool) -> Outcome:
+        """A later tick.
+
+        Args:
+            signal: of now.
+            touched: a hand is felt on the arm, be it less than a signal.
+            hand_off: none has been felt for as long as it takes, and the arm stands.
+        """
+        self._absent = 0 if signal.source else self._absent + 1
+        self._off = 0 if signal.source or touched else self._off + 1
         if self.phase is Phase.ACTIVATION:
             return self._count(signal)
         if self.phase is Phase.FEEDBACK:
@@ -107,21 +129,22 @@ class Attempt:
         """The feedback has ended: from now on a confirmation counts, if it begins now."""
         self.phase = Phase.CONFIRM
         self.left = self.total = ticks(self._settings.handshake.window)
-        self._fresh = self._absent >= ABSENT
+        self._fresh, self._untouched = self._absent >= ABSENT, self._off >= ABSENT
         return Outcome.GOES_ON
 
     def _confirm(self, signal: Presence) -> Outcome:
         self.left = max(self.left - 1, 0)
-        if self._absent >= ABSENT:
-            self._fresh = True
-        if self._fresh and signal.source in CONFIRMING:
+        self._fresh = self._fresh or self._absent >= ABSENT
+        # A pull that only weakens for a while, as a cable's does, has not left the arm: it is the first one, still held.
+        self._untouched = self._untouched or self._off >= ABSENT
+        if (self._untouched if signal.by_hand else self._fresh) and signal.source in CONFIRMING:
             self._run += 1
             if signal.whole or self._run > ticks(self._settings.handshake.hold):
                 self._by_hand = signal.by_hand
                 return self._hands_off()
             return Outcome.GOES_ON
         if self._run > 0:  # too short: the next one must be new, too
-            self._run, self._fresh = 0, False
+            self._run, self._fresh, self._untouched = 0, False, False
         return Outcome.UNCONFIRMED if self.left == 0 else Outcome.GOES_ON
 
     def _hands_off(self) -> Outcome:

@@ -15,7 +15,7 @@ from pendant.watch import joints_ok
 class Calls:
     """One tick at a time; nothing is computed for sources that are off."""
 
-    __slots__ = ("_leaving", "_sources", "commands", "feeling", "force", "hand_off", "signal")
+    __slots__ = ("_leaving", "_sources", "commands", "feeling", "force", "hand_off", "signal", "touched")
 
     def __init__(self, n: int) -> None:
         """`n` joints."""
@@ -25,12 +25,13 @@ class Calls:
         self.signal = NONE
         self.commands: tuple[Command, ...] = ()
         self.hand_off = True  # no hand is felt on the arm (FD-8a)
+        self.touched = False  # one is in this tick, be it less than a signal
         self.force = 0.0  # change of the force at the flange from the untouched state [N]
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._sources.memory, self._leaving, self.hand_off, self.force)
+        return (self._sources.memory, self._leaving, self.hand_off, self.touched, self.force)
 
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
@@ -67,6 +68,7 @@ class Calls:
             running = state is ProgramState.RUNNING
             self.signal = self._sources.step(estimate, wrench, joints_ok(estimate), holding, running, use)
             self.hand_off = self._sources.hand_off(settings.let_go, wrench)
+            self.touched = self._sources.touched
             self.force = self._sources.force()
             push = self._sources.pushed()
             if push is not None:

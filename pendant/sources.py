@@ -125,13 +125,18 @@ class Sources:
 
     def hand_off(self, use: LetGo, wrench_ok: bool) -> bool:
         """No hand has been felt for as long as it takes (FD-8a). One tick, while that is asked."""
-        touched = self._joints.present or self._turn.present
+        touched = self._joints.touched or self._turn.present
         if wrench_ok and not touched:
             x, y, z, tx, ty, tz = self._wrench.change
             torque = math.sqrt(tx * tx + ty * ty + tz * tz)
             touched = max(math.sqrt(x * x + y * y + z * z), LEVER * torque) >= use.force
         self._off = 0 if touched else self._off + 1
         return self._off > ticks(use.time)
+
+    @property
+    def touched(self) -> bool:
+        """A hand was felt when `hand_off` was asked last, be it less than a signal."""
+        return self._off == 0
 
     def force(self) -> float:
         """Change of the force at the flange [N]."""

@@ -218,7 +218,7 @@ class Supervisor:
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
         robot, calls, free = self._robot, self._calls, self._free
         changing = self._tooling.fitting.mass if self._tooling.changing else None
-        felt, guided, shaken = (calls.hand_off, calls.force), self._sequencer.guiding, self._haptics.busy
+        felt, guided, shaken = (calls.hand_off, calls.touched, calls.force), self._sequencer.guiding, self._haptics.busy
         around = Surroundings(
             estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, changing, guided, shaken
         )

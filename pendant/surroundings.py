@@ -17,7 +17,8 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     still: Stillness
     mean: WrenchMean  # of F_user
     grip: Grip | None = None  # of the enabling device, None where none is needed
-    hand_off: bool = True  # no hand is felt (FD-8a)
+    hand_off: bool = True  # no hand has been felt for as long as it takes (FD-8a)
+    touched: bool = False  # one is felt in this tick, be it less than a signal (FD-8)
     felt: float = 0.0  # change of the force at the flange from the untouched state [N]
     changing: float | None = None  # the configured payload by now, while it is being changed [kg]
     guided: bool = False  # a step of a program asks for free-drive (CD-15)

@@ -17,8 +17,8 @@ def outcomes(feedback: float, *course: tuple[int, Presence]) -> tuple[Attempt, l
     settings = apply(Settings(), {"handshake.on": True, "handshake.feedback": feedback, "activation.period": 0.02})
     attempt = Attempt(BUTTON, settings)
     attempt.first()
-    assert [attempt.step(BUTTON, False) for _ in range(10)] == [Outcome.GOES_ON] * 9 + [Outcome.CONFIRM]
-    return attempt, [attempt.step(signal, False) for count, signal in course for _ in range(count)]
+    assert [attempt.step(BUTTON, False, False) for _ in range(10)] == [Outcome.GOES_ON] * 9 + [Outcome.CONFIRM]
+    return attempt, [attempt.step(signal, False, False) for count, signal in course for _ in range(count)]
 
 
 @pytest.mark.parametrize(("feedback", "held"), [(0.2, 0), (0.0, 0), (0.1, 50), (0.2, 1), (0.0, 700)])
@@ -29,6 +29,20 @@ def test_a_confirmation_is_new_after_an_absence(feedback: float, held: int, abse
     _, said = outcomes(feedback, (held, BUTTON), (absent, NONE), (HOLD, BUTTON), (1, BUTTON))
     assert set(said[:-1]) == {Outcome.GOES_ON}
     assert said[-1] is (Outcome.READY if new or absent >= ABSENT else Outcome.GOES_ON)
+
+
+@pytest.mark.parametrize(("off", "new"), [(ABSENT, True), (ABSENT - 1, False)])
+def test_a_hand_confirms_after_it_was_off(off: int, new: bool) -> None:
+    """FD-8: to the tick; it counts from the feedback on, as the signal's own absence does."""
+    settings = apply(Settings(), {"handshake.on": True, "handshake.feedback": 0.0, "activation.period": 0.02})
+    push = Presence("push", by_hand=True)
+    attempt = Attempt(push, settings)
+    attempt.first()
+    assert [attempt.step(push, True, False) for _ in range(10)][-1] is Outcome.CONFIRM
+    course = [(300, NONE, True), (off, NONE, False), (HOLD, push, True), (1, push, True)]
+    said = [attempt.step(signal, touched, False) for count, signal, touched in course for _ in range(count)]
+    assert set(said[:-1]) == {Outcome.GOES_ON}
+    assert said[-1] is (Outcome.LET_GO if new else Outcome.GOES_ON)
 
 
 @pytest.mark.parametrize("short", [1, 2, HOLD])

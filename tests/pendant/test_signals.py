@@ -267,6 +267,43 @@ def test_too_short_a_confirmation_is_none_and_a_push_must_let_go() -> None:
     assert bench.last.phase is Phase.SEQUENCE
 
 
+PULLS = {
+    "push": ({"force": 20.0}, {"force": 4.0}, {"force": 2.0}),
+    "twist": ({"torque": 4.0}, {"torque": 0.8}, {"torque": 0.5}),
+    "joints": ({"tau_ext": 9.0, "wrench_valid": False}, {"tau_ext": 2.5, "wrench_valid": False}, {"wrench_valid": False}),
+}
+"""Of a source: a pull, one that is no signal but still felt, and a hand that is off."""
+
+
+@pytest.mark.parametrize("name", PULLS)
+def test_a_pull_that_weakens_and_comes_back_is_no_confirmation(name: str) -> None:
+    """FD-8: a cable that pulls, now more, now less, is the first push, still held. FD-8a: a hand is off below 3 N."""
+    pull, less, off = PULLS[name]
+    valid = {key: value for key, value in pull.items() if key == "wrench_valid"}
+    bench = Bench(valid, handshake__on=True, **{f"signals__{name}__on": True})
+    bench.run(1.1, **pull)
+    assert bench.kinds[-1] is Kind.CONFIRM_ASKED
+    bench.run(0.6, **pull)
+    bench.run(0.5, **less)
+    bench.run(0.5, **pull)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(0.5, **off)
+    bench.run(0.4, **pull)
+    assert bench.last.phase is Phase.LET_GO
+
+
+def test_the_pendant_confirms_while_a_hand_rests_on_the_arm() -> None:
+    """FD-8: its button was let go; a push would have to begin off the arm."""
+    bench = confirmed(signals__push__on=True)
+    bench.run(0.002, LET_GO)
+    bench.run(1.0, force=6.0)
+    bench.run(0.4, force=20.0)
+    assert bench.last.phase is Phase.CONFIRM
+    bench.run(0.3, force=6.0)
+    bench.run(0.21, HOLD, force=6.0)
+    assert bench.last.phase is Phase.SEQUENCE
+
+
 @pytest.mark.parametrize("phase", [Phase.FEEDBACK, Phase.CONFIRM])
 def test_the_deactivation_signal_and_another_mode_end_an_attempt(phase: Phase) -> None:
     """FD-1, FD-17."""
