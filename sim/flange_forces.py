@@ -15,7 +15,10 @@ from sim.sensors import Sample
 
 Array = NDArray[np.float64]
 
-TURN_BANDWIDTH = 20.0  # of the angular acceleration, which is the gyro's difference [Hz]
+TURN_BANDWIDTH = 60.0
+"""Of the angular acceleration, which is the gyro's difference [Hz]. The wrists of a guided arm swing at 40 to 60 Hz: what a load
+needs there and is not known of in time would seem a hand's, be helped, and make them swing more."""
+
 DAMPING = 0.1  # lever arm below which the joints feel no force [m]
 
 

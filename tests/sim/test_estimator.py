@@ -1,16 +1,19 @@
 """The estimator against analytic motion, the plant's truth and known pushes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from pendant.inputs import Inputs
-from pendant.modes import Mode
+from pendant.modes import TICK, Mode
 from sim import calibration
 from sim.chain import Body, chain
 from sim.changes import AttachPayload, SensorFault
 from sim.desk import Wishes
 from sim.dynamics import Dynamics
 from sim.estimator import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, Estimator, tracking_gains
+from sim.flange_forces import FlangeForces
 from sim.frames import joint_frames, rotation_from_rpy
 from sim.scenario import Load, Scenario
 from sim.sensors import Sample
@@ -294,6 +297,26 @@ def test_inertia_of_a_payload_in_fast_motion_is_no_user_force(accelerometer: boo
     assert fastest > 1.5
     assert inertial > 20.0
     assert worst < (4.0 if accelerometer else 0.5 * inertial), "accelerations of the joints come late, by their filter"
+
+
+@pytest.mark.parametrize(("frequency", "most"), [(10.0, 0.25), (30.0, 0.6), (45.0, 0.75)])
+def test_a_load_that_swings_with_the_wrists_is_mostly_no_user_force(frequency: float, most: float) -> None:
+    """FD-3: the share of its inertia that is taken for a hand's, in the modes of a guided arm, about the flange's origin."""
+    rigid, mass, lever = chain(UR5E), 3.0, 0.1
+    load = Body(mass, np.array([0.0, 0.0, lever]), np.zeros((3, 3)))
+    dynamics = Dynamics(rigid, rigid.links, load, FLOOR, UR5E.chain.elbow)
+    dynamics.update(np.array(BENT))
+    forces, turning = FlangeForces(dynamics), 2.0 * np.pi * frequency
+    off = 0.0
+    for k in range(300):
+        wrench, gyro = np.zeros(6), np.array([0.1 * np.sin(turning * TICK * k), 0.0, 0.0])
+        needed = mass * lever * 0.1 * turning * np.cos(turning * TICK * k)
+        wrench[1], wrench[3] = -needed, lever * needed
+        still = sample(np.zeros(6), np.zeros(6))
+        seen = replace(still, wrench=wrench, gyro_tool=gyro, wrench_valid=True, acceleration_valid=True)
+        forces.update(seen, np.array(BENT), np.zeros((3, 6)), np.zeros(6))
+        off = max(off, float(np.linalg.norm(forces.F_user[:3]))) if k > 100 else 0.0
+    assert off < most * mass * lever * 0.1 * turning
 
 
 def test_a_lost_flange_sensor_means_no_user_force() -> None:
