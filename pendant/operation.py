@@ -14,7 +14,7 @@ from pendant.hand import CARRIED, Hand
 from pendant.link_push import LinkPush
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
-from pendant.pose import flat, norm, turned_back
+from pendant.pose import ORIGIN, Vector, flat, norm, turned_back
 from pendant.residual import Split
 from pendant.settings import Settings, ticks
 from pendant.soft_limits import Damping, SoftLimits
@@ -78,11 +78,11 @@ class Operation:
         "_joints",
         "_level",
         "_link",
+        "_missed",
         "_monitor",
         "_offset",
         "_on",
         "_rated",
-        "_shares",
         "_since",
         "_soft",
         "_stepped",
@@ -117,7 +117,7 @@ class Operation:
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
         self._link = LinkPush(self._since.torques, rated)
-        self._shares = [0.0] * (STEP + 1)  # of the load that the sensor misses, in the last ticks
+        self._missed: list[Vector] = [ORIGIN] * (STEP + 1)  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
         self._stepped = 0  # ticks since a step, 0: none
@@ -130,7 +130,7 @@ class Operation:
         """All of its state, to compare."""
         own = (
             self._alone,
-            tuple(self._shares),
+            tuple(self._missed),
             self._calm,
             self._level,
             self._stepped,
@@ -216,16 +216,16 @@ class Operation:
         mx, my, mz = rx - ox, ry - oy, rz - oz  # what is missing of it
         square = nx * nx + ny * ny + nz * nz
         share = (mx * nx + my * ny + mz * nz) / max(square, 1e-9)
-        shares = self._shares
-        before = shares[0]
-        shares[:-1] = shares[1:]
-        shares[-1] = share
+        missed = self._missed
+        bx, by, bz = missed.pop(0)
+        missed.append((mx, my, mz))
         calm = self._calm >= SWUNG
         swings = abs(square - weight * weight) > CALM * weight * weight
         self._calm = max(self._calm - SWUNG, 0) if swings else min(self._calm + 1, 3 * SWUNG)
         across = norm((mx - share * nx, my - share * ny, mz - share * nz))
         if not self._stepped:
-            jump = share - before
+            # Of the force alone: a hand's, which stays, becomes another share of what a swinging load needs.
+            jump = share - (bx * nx + by * ny + bz * nz) / max(square, 1e-9)
             began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
             began = began and abs(share) >= STAYS * abs(jump) and (calm or abs(share) >= MUCH)
             self._stepped = int(began and self._like(share, across, square))

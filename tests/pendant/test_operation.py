@@ -270,6 +270,17 @@ def test_a_hand_does_not_swing_with_the_load() -> None:
     assert free.until(loaded(force=[0.0, 0.0, -15.0], needed=[0.0, 0.0, need]) for need in needs) is None
 
 
+@pytest.mark.parametrize("ticks", [6, 9, 20])
+@pytest.mark.parametrize("size", [8.0, 12.0, 18.0])
+def test_a_steady_hand_is_no_drop_while_the_load_swings_into_its_direction(size: float, ticks: int) -> None:
+    """FD-19: its share of what the load needs steps, its force does not."""
+    along, across = [-20.0, 0.0, 2.0], [2.0, 0.0, 20.0]
+    free = Free()
+    assert free.until(loaded(force=[-size * min(k / 50, 1.0), 0.0, 0.0]) for k in range(100)) is None
+    needs = [along if k // ticks % 2 else across for k in range(400)]
+    assert free.until(loaded(force=[-size, 0.0, 0.0], needed=need) for need in needs) is None
+
+
 def test_what_changes_slowly_with_the_load_is_a_hand() -> None:
     slow = [2.0 * G * (1.0 + 0.4 * k / 300) for k in range(300)]
     free = Free()
