@@ -117,7 +117,7 @@ class Operation:
         self._allowed = ticks(self._on.time)
         self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
         self._link = LinkPush(self._since.torques, rated)
-        self._missed: list[Vector] = [ORIGIN] * (STEP + 1)  # force that the sensor misses, in the last ticks, axes of F [N]
+        self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
         self._stepped = 0  # ticks since a step, 0: none

@@ -219,6 +219,15 @@ def test_a_hand_comes_slower_than_a_drop() -> None:
     assert free.until([loaded(force=[0.0, 0.0, 20.0 * min(k / 20, 1.0)]) for k in range(300)]) is None
 
 
+def test_the_fastest_grab_along_the_weight_is_no_drop() -> None:
+    """FD-19: what a payload misses comes within two ticks; three quarters of it, grabbed within 10 ms, come in five."""
+    ramp = [0.13, 0.28, 0.44, 0.6, 0.72]
+    free = Free()
+    assert free.until([loaded(mass=4.0, needed=[0.0, 0.0, 40.0])] * 60) is None
+    shares = [*ramp, *[0.74] * 40]
+    assert free.until(loaded(force=[0.0, 0.0, 40.0 * s], needed=[0.0, 0.0, 40.0], mass=4.0) for s in shares) is None
+
+
 def test_a_knock_gives_the_help_back() -> None:
     free = Free()
     free.until([loaded()] * 10)
