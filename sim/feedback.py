@@ -20,9 +20,13 @@ Array = NDArray[np.float64]
 
 BANDWIDTH = 12.0  # of the position loop round the rotor alone [Hz]
 DAMPING_RATIO = 1.25
-INTEGRAL_TIME = 0.1  # of the output-side integral [s]
+INTEGRAL_TIME = 0.1  # of the output-side integral, at least [s]
 """With `sim.torque_feedback.SUPPORT` these keep every mode above 6 Hz inside a circle of 0.993 a tick, for link inertias from
 bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and two ticks of delay, sticking or sliding."""
+
+SLOWER = 10.8
+"""Of that integral, times a joint's own frequency [rad]. The integral of an angle that swings lags by a quarter of a turn: it
+drives the swing on, the more the slower it is. A heavy arm on soft springs swung by itself at 4 Hz."""
 
 PRESLIDING = 0.4e-3
 """Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
@@ -57,7 +61,8 @@ class Feedback:
         omega = 2.0 * math.pi * bandwidth
         stiffness = rotor * omega**2
         compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness)
-        integral_gain = TICK * stiffness / INTEGRAL_TIME
+        swing = np.sqrt(1.0 / (compliance * _heaviest(arm, dynamics)))
+        integral_gain = TICK * stiffness / np.maximum(INTEGRAL_TIME, SLOWER / swing)
         damping = 2.0 * DAMPING_RATIO * rotor * omega
         self._gains = np.stack([stiffness, damping, compliance, integral_gain])
         self._rotor, self._damping = rotor, damping
@@ -137,6 +142,14 @@ class Feedback:
         if use.tcp_speed:
             force += TCP_DAMPING * (at_tcp @ (then.qd - estimate.qd))
         torque += at_tcp.T @ force
+
+
+def _heaviest(arm: Arm, dynamics: Dynamics) -> Array:
+    """Inertia (n,) that a joint moves at home with the largest payload, whatever is configured now [kg·m²]."""
+    home = np.array(arm.chain.home)
+    ways = dynamics.update(home)[2][:3].copy()
+    missing = max(arm.payload - dynamics.load.mass, 0.0)
+    return dynamics.mass(home).diagonal() + missing * np.sum(ways**2, axis=0)
 
 
 @numba.njit(cache=True)

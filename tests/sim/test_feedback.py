@@ -5,12 +5,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from pendant.estimate import Estimate
+from pendant.modes import TICK
 from pendant.settings import JointControl
 from sim.feedback import Feedback
 from sim.moves import Reference
 from sim.references import DELAY
+from sim.torque_feedback import SUPPORT
 from tests.sim.arms import UR5E
 from tests.sim.control import EXACT, N, dynamics, estimate
 
@@ -131,8 +134,10 @@ def test_the_integral_keeps_its_value_while_it_is_told_to_wait() -> None:
         torque = np.zeros(N)
         module.add(resting(np.full(N, 0.01)), ZERO, estimate(), only("q"), FREE, waits, torque, None, ZERO, ZERO)
         pushes.append(torque)
-    step = 0.002 * ROTOR * OMEGA**2 / 0.1 * 0.01
-    np.testing.assert_allclose(pushes, np.outer([1, 1, 1, 2], step))
+    np.testing.assert_allclose(pushes, np.outer([1, 1, 1, 2], pushes[0]))
+    times = 0.002 * ROTOR * OMEGA**2 * 0.01 / pushes[0]
+    np.testing.assert_allclose(times[3:], 0.1)
+    assert ((times[:3] > 0.11) & (times[:3] < 0.17)).all(), "slower where the arm swings slowly"
 
 
 def moving(q: np.ndarray, speed: float) -> Reference:
@@ -198,3 +203,38 @@ def test_switches_may_change_from_tick_to_tick() -> None:
         sums.append(float(torque.sum()))
     assert sums[0] == sums[2] > 0.0
     assert sums[1] == 0.0
+
+
+@pytest.mark.parametrize(("softer", "damped"), [(1.0, 0.2), (0.5, 0.1)], ids=["as filed", "half as stiff"])
+def test_a_heavy_arm_on_its_springs_does_not_swing_by_itself(softer: float, damped: float) -> None:
+    """Poles of the loop round one joint, stretched out with the largest payload: rotor, spring and all it moves.
+
+    J theta'' = S tau - tau - K theta - D theta' - K_i z,    M q'' = tau = k (theta - q),    z' = q
+    """
+    spring = UR5E.transmissions
+    names = ("stiffness", "hysteresis_stiffness")
+    arm = replace(UR5E, transmissions=replace(spring, **{name: [softer * x for x in getattr(spring, name)] for name in names}))
+    model = dynamics()
+    stretched = np.array([0.0, 0.0, 0.0, 0.0, -1.57, 0.0])
+    ways = model.update(stretched)[2][:3].copy()
+    inertia = model.mass(stretched).diagonal() + arm.payload * np.sum(ways**2, axis=0)
+
+    def asked(seen: Estimate, *names: str, ticks: int = 1) -> np.ndarray:
+        module, torques = Feedback(arm, EXACT, model, TCP), []
+        for _ in range(ticks):
+            torques.append(np.zeros(N))
+            module.add(STANDING, ZERO, seen, only(*names), FREE, False, torques[-1], None, ZERO, ZERO)
+        return torques[-1] - (torques[-2] if ticks > 1 else 0.0)
+
+    way = np.full(N, -0.01)
+    stiffness, damping = asked(estimate(theta=way), "theta") / 0.01, asked(estimate(theta_d=way), "theta_speed") / 0.01
+    integral = asked(estimate(q=way), "q", ticks=3) / 0.01 / TICK
+    for i in range(N):
+        k, J = 1.0 / COMPLIANCE[i] * softer, ROTOR[i]
+        loop = np.zeros((5, 5))  # theta, theta', q, q', z
+        loop[0, 1] = loop[2, 3] = loop[4, 2] = 1.0
+        loop[1] = [-(stiffness[i] + (1.0 - SUPPORT) * k) / J, -damping[i] / J, (1.0 - SUPPORT) * k / J, 0.0, -integral[i] / J]
+        loop[3, [0, 2]] = k / inertia[i], -k / inertia[i]
+        poles = np.linalg.eigvals(loop)
+        swings = poles[np.abs(poles) < 2.0 * math.pi * 10.0]
+        assert (-swings.real / np.abs(swings)).min() > damped, UR5E.chain.joints[i]
