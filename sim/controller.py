@@ -122,6 +122,11 @@ class Controller:
         feeding_back = use.torque_feedback and use.from_deflection
         if feeding_back:
             measured = estimate.tau_ways[DEFLECTION]
+            bent = [joint for sensor, joint in estimate.lost if sensor == "output_encoder"]
+            if bent:
+                # Nobody sees their springs bend: the motor's own torque, fed back, would drive them.
+                measured = measured.copy()
+                measured[bent] = desired[bent]
             if references.fresh or not self._fed_back:
                 self.torque_feedback.start(measured, desired)
             self.torque_feedback.add(measured, desired, torque)

@@ -40,7 +40,7 @@ def test_a_program_goes_on_without_output_encoders_or_currents(sensor: str, chan
         bench.tick()
         worst = max(worst, missed(bench))
     assert bench.mode is Mode.RUN
-    assert worst < (0.01 if channel is None else 0.003)
+    assert worst < 0.003
     assert bench.estimate.degraded
     assert not bench.estimate.joints_valid
     lost = [event for event in bench.events if event.kind is Kind.JOINT_SENSOR_LOST]

@@ -31,7 +31,7 @@ SESSION: dict[str, Any] = {
     "timeline": [
         {"at": 0.5, "do": "press", "control": "free_drive"},
         {"after": "mode FREE_DRIVE", "delay": 0.1, "do": "push", "for": 0.2, "force": [0.0, 12.0, 0.0]},
-        {"after": "mode FREE_DRIVE", "delay": 0.5, "do": "tap", "control": "emergency_stop"},
+        {"after": "mode FREE_DRIVE", "delay": 0.4, "do": "tap", "control": "emergency_stop"},
     ],
 }
 
