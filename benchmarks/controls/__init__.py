@@ -1,0 +1,1 @@
+"""Runs of the joint control, of which its bench makes rows."""
