@@ -70,6 +70,15 @@ def test_one_joint_at_the_limit_or_unknown_begins_the_count_again(joint: int, sp
     assert (still.joint, still.speed) == expected
 
 
+def test_the_limit_is_each_joints_own() -> None:
+    """Together they may be as fast as they like."""
+    still, creeping = Stillness(), estimate()
+    creeping.qd[:] = 0.009
+    for count in range(1, 5):
+        still.step(creeping, 0.01)
+        assert still.count == count
+
+
 def test_what_is_not_valid_is_not_still() -> None:
     still = Stillness()
     still.step(estimate(), 0.01)
