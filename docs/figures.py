@@ -18,9 +18,9 @@ Rows without a bar are in the files of the benches only. Where a bench was run i
 one. Times are of the machine that ran them: compare them with each other. To remake this page:
 
 ```
-make bench SEED=11000
-make bench SEED=12000
-make bench SEED=13000
+make bench SEED=14000
+make bench SEED=15000
+make bench SEED=16000
 python -m docs.figures
 ```
 
