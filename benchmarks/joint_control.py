@@ -73,7 +73,7 @@ def tracking_rows(report: Report, label: str, results: list[Result]) -> None:
         peaks = max(other.peak for _, other in pairs) / max(ours.peak for ours, _ in pairs)
         report.row(f"{label}: {law} over ours, highest peaks", peaks, "times", at_least=bar)
     for joint, name in enumerate(load_arm("ur5e").chain.joints):
-        mine = {law: np.array([result.joints[:, joint] for result in results if result.case.law == law]) for law in LAWS}
+        mine = {law: np.array([result.missed[:, joint] for result in results if result.case.law == law]) for law in LAWS}
         report.row(
             f"{label}: tracking error RMS, {name}: {', '.join(LAWS)}", listed(rms_of(x[:, 0]) for x in mine.values()), "mrad"
         )

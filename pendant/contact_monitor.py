@@ -132,7 +132,7 @@ class ContactMonitor:
     def _contact(self, finding: Finding, source: Source, tick: int, look_back: bool) -> Contact:
         steps = finding.steps if look_back else 0
         # A force is the mean of its tick, angles are of its end, when the contact is there: where it began, it was not yet.
-        now, pose = self.now(), self._poses.at(steps + look_back)
+        now, pose = self.now(), self._poses.at(steps + 1 if look_back else 0)
         force, acceleration = finding.force, finding.acceleration
         if not source.in_base:
             force, acceleration = turned(now.R_BF, force), turned(now.R_BF, acceleration)

@@ -99,7 +99,7 @@ class Controller:
         joints keep the static torque of the last one.
         """
         lost = set(estimate.lost)
-        blind = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"]
+        blind = _without("motor_encoder", estimate)
         everywhere = not blind or any(("output_encoder", joint) in lost for joint in blind)
         static = self._dynamics.gravity(estimate.q)
         which = slice(None) if everywhere else blind
@@ -122,7 +122,7 @@ class Controller:
         feeding_back = use.torque_feedback and use.from_deflection
         if feeding_back:
             measured = estimate.tau_ways[DEFLECTION]
-            bent = [joint for sensor, joint in estimate.lost if sensor == "output_encoder"]
+            bent = _without("output_encoder", estimate)
             if bent:
                 # Nobody sees their springs bend: the motor's own torque, fed back, would drive them.
                 measured = measured.copy()
@@ -136,6 +136,11 @@ class Controller:
         waits = decision.law is _BRAKE and self._followed and estimate.touched
         self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
         return torque
+
+
+def _without(sensor: str, estimate: Estimate) -> list[int]:
+    """Joints that have lost that sensor."""
+    return [joint for name, joint in estimate.lost if name == sensor]
 
 
 _OFF, _FREE, _BRAKE, _FOLLOW = Law.OFF, Law.FREE, Law.BRAKE, Law.FOLLOW  # looked up in every tick

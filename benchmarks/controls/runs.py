@@ -56,11 +56,19 @@ class Result(NamedTuple):
     friction: Array  # sum of its errors [N·m]²
     true_friction: Array
     inside: float  # share of samples within the stated uncertainty
-    tracking: float  # RMS over all joints [mrad]
-    peak: float  # [mrad]
-    joints: Array  # the same of each joint (2, n)
+    missed: Array  # of each joint's tracking error, RMS and peak (2, n) [mrad]
     torques: Array  # (4, n) mean error of the three ways and the fusion [N·m]²
     running: float  # share of the ticks in RUN
+
+    @property
+    def tracking(self) -> float:
+        """Tracking error, RMS over all joints [mrad]."""
+        return float(np.sqrt(np.mean(self.missed[0] ** 2)))
+
+    @property
+    def peak(self) -> float:
+        """Largest tracking error [mrad]."""
+        return float(self.missed[1].max())
 
 
 def steps(name: str, arm: Arm, rng: np.random.Generator) -> tuple[JointMove | Wait, ...]:
@@ -155,8 +163,6 @@ class Score:
             np.nansum(np.square(self.friction), axis=0),
             np.nansum(np.square(self.true), axis=0),
             float(np.nanmean(self.inside)),
-            float(np.sqrt(np.mean(missed**2))),
-            float(np.abs(missed).max()),
             np.stack([np.sqrt(np.mean(missed**2, axis=0)), np.abs(missed).max(axis=0)]),
             np.mean(np.square(self.torques), axis=0),
             float(np.mean(self.modes)),
