@@ -27,7 +27,7 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
     )
     motor_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "torque of a motor")] = Limit(max=0.9, on=False)
     joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", "external torque of a joint")] = Limit(max=0.04)
-    payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force as of a wrong payload")] = Limit(max=5.3)
+    payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force as of a wrong payload")] = Limit(max=5.8)
     payload_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque as of a wrong payload")] = Limit(max=1.5)
     user_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", "force that is none of a payload")] = Limit(max=12.0)
     user_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", "torque that is none of a payload")] = Limit(max=1.5)

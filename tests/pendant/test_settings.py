@@ -180,7 +180,7 @@ LIMITS = {
         "joint_acceleration": (5.0, 0.5, 50.0, "rad/s²", "FD-9"),
         "motor_torque": (0.9, 0.01, 1.0, "of rated", "FD-9"),
         "joint_torque": (0.04, 0.01, 1.0, "of rated", "FD-9"),
-        "payload_force": (5.3, 1.0, 50.0, "N", "FD-9"),
+        "payload_force": (5.8, 1.0, 50.0, "N", "FD-9"),
         "payload_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
         "user_force": (12.0, 1.0, 50.0, "N", "FD-9"),
         "user_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
