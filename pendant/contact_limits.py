@@ -9,6 +9,8 @@ LIGHTEST = 0.3
 """Carried mass below which the ratio's threshold does not follow it: a bare flange has hardly any [kg] (CD-5)."""
 ARM_SHARE = 0.3
 """Of the effective mass: a contact's ratio is minus the whole of it, so no threshold goes beyond this share (CD-5)."""
+OLDER = 16
+"""Samples before the newest, whose mean a clear difference is measured from: they add little noise to the newest's (CD-9)."""
 
 
 class ContactLimits(NamedTuple):
@@ -16,7 +18,6 @@ class ContactLimits(NamedTuple):
 
     noise_force_sq: float  # difference of two samples: below, it is noise (CD-0) [N²]
     noise_acceleration_sq: float  # [m²/s⁴]
-    deviation_sq: float  # one deviation of the difference of two samples of the force [N²]
     opposite: bool  # directions must be opposite (CD-0)
     cosine_sq: float  # of the angle limit
     force_sq: float  # difference rule (CD-4) [N²]
@@ -67,12 +68,11 @@ def limits(
     return ContactLimits(
         (noisy * noise_f) ** 2,
         (noisy * noise_a) ** 2,
-        (pair * noise_f) ** 2,
         use.opposite,
         use.angle**2,
         (hard * noise_f + mismatch) ** 2,
         (hard * noise_a) ** 2,
-        scale * use.clear_limit * pair * (noise_f * noise_f + mass * mass * noise_a * noise_a) ** 0.5,
+        scale * use.clear_limit * ((1.0 + 1.0 / OLDER) * (noise_f * noise_f + mass * mass * noise_a * noise_a)) ** 0.5,
         (use.clear_acceleration * scale) ** 2,
         scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
         (use.ratio_acceleration * scale) ** 2,

@@ -7,7 +7,7 @@ saturated force has no size; its changes alone are looked at.
 
 from typing import NamedTuple
 
-from pendant.contact_limits import ContactLimits
+from pendant.contact_limits import OLDER, ContactLimits
 from pendant.history import History, Six
 from pendant.word import Word
 
@@ -46,22 +46,16 @@ class Hard(NamedTuple):
 
     difference: bool  # difference rule
     ratio: bool  # ratio rule
-    clear: bool  # the difference needs no second tick
 
 
-NOTHING = Hard(False, False, False)
+NOTHING = Hard(False, False)
 
 
-def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
-    """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `age` ticks.
-
-    Clear is a change of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an
-    acceleration that free motion never changes so fast in the opposite direction. A hard contact is felt by the accelerometer
-    before the force has come to its sensor: where a change of F is within twice its noise, it may lie along A by a deviation.
-    """
-    if history.count <= age:
+def hard(history: History, limit: ContactLimits) -> Hard:
+    """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `STEP` ticks."""
+    if history.count <= STEP:
         return NOTHING
-    new, old = history.sample(0), history.sample(age)
+    new, old = history.sample(0), history.sample(STEP)
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
     aa = ax * ax + ay * ay + az * az
@@ -69,14 +63,28 @@ def hard(history: History, limit: ContactLimits, age: int = STEP) -> Hard:
         return NOTHING
     dot = fx * ax + fy * ay + fz * az
     ff = fx * fx + fy * fy + fz * fz
-    along = dot >= 0.0 and limit.opposite
-    if along and (ff > 4.0 * limit.noise_force_sq or dot * dot > limit.deviation_sq * aa):
+    if (dot >= 0.0 and limit.opposite) or ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
         return NOTHING
-    clear = aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, limit.clear_force, limit)
-    if along or ff < limit.noise_force_sq or dot * dot < limit.cosine_sq * ff * aa:
-        return Hard(clear, False, clear)
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
-    return Hard(difference or clear, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa, clear)
+    return Hard(difference, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa)
+
+
+def clear(history: History, limit: ContactLimits) -> bool:
+    """A difference so clear that the newest sample tells it by itself, held against all of the `OLDER` older ones (CD-9).
+
+    It is one of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an acceleration
+    that free motion never changes so much in the opposite direction. The force itself may still lie along the acceleration: a
+    hard contact is felt by the accelerometer before it has come to the force's sensor.
+    """
+    if history.count <= OLDER:
+        return False
+    new, old = history.sample(0), history.mean(1, OLDER)
+    fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
+    ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
+    aa = ax * ax + ay * ay + az * az
+    if aa <= limit.clear_acceleration_sq:
+        return False
+    return _clear(fx * fx + fy * fy + fz * fz, aa, fx * ax + fy * ay + fz * az, limit.clear_force, limit)
 
 
 def _clear(ff: float, aa: float, dot: float, least: float, limit: ContactLimits) -> bool:

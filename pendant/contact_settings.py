@@ -29,8 +29,8 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     misses: Annotated[float, _number(0.0, 10.0, "", "CD-9", "ticks among the confirming ones that may not; 0: in a row")] = 0.0
     look_back: Annotated[bool, _switch("CD-14", "the pose at contact is that of the first suspicious sample")] = True
     retrospective: Annotated[bool, _switch("CD-9", "a clear difference is confirmed on older samples at once")] = True
-    clear_limit: Annotated[float, _number(4.0, 20.0, "", "CD-9", "clear difference: deviations of the contact force")] = 6.0
-    clear_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-9", "clear difference: acceleration")] = 1.0
+    clear_limit: Annotated[float, _number(4.0, 20.0, "", "CD-9", "clear difference: deviations of the contact force")] = 5.0
+    clear_acceleration: Annotated[float, _number(0.2, 10.0, "m/s²", "CD-9", "clear difference: acceleration")] = 0.7
     angle: Annotated[float, _number(0.0, 0.95, "", "CD-0", "minus the cosine beyond which directions are opposite")] = 0.3
     force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", "noise of the flange force, each axis")] = 0.15
     acceleration_noise: Annotated[float, _number(0.01, 2.0, "m/s²", "CD-0", "noise of the acceleration, each axis")] = 0.1

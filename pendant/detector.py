@@ -6,7 +6,7 @@ from typing import NamedTuple
 from pendant.confirmation import Confirmation
 from pendant.contact import Change
 from pendant.contact_limits import ContactLimits
-from pendant.contact_rules import NEW, STEP, Rule, contact_force, hard, slow, statistical, values
+from pendant.contact_rules import NEW, STEP, Rule, clear, contact_force, hard, slow, statistical, values
 from pendant.contact_settings import ContactUse
 from pendant.history import History, Six
 from pendant.pose import Vector
@@ -134,16 +134,12 @@ class Detector:
         counts, misses, hard_count = self._counts, int(use.misses), int(use.hard_count)
         seen: list[tuple[Rule, int, bool]] = []
         change = hard(self.history, limit)
-        clear = change.clear and use.retrospective and self._confirmed(limit, hard_count)
-        if use.difference and (counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses) or clear):
+        difference = counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses)
+        if use.difference and (difference or (use.retrospective and clear(self.history, limit))):
             seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
         if use.ratio and counts[Rule.RATIO].step(change.ratio or of_values, hard_count, misses):
             seen.append((Rule.RATIO, STEP + hard_count, False))
         return seen
-
-    def _confirmed(self, limit: ContactLimits, count: int) -> bool:
-        """A clear difference against one sample is clear against those before it, too: `count` in all (CD-9)."""
-        return all(hard(self.history, limit, STEP + older).clear for older in range(1, count))
 
     def _look_back(self, rule: Rule, length: int, limit: ContactLimits) -> _Sighting:
         """Find the first suspicious sample: the change's direction is known now, so go back while samples lie in it."""

@@ -66,7 +66,7 @@ def alone(recording: Recording, rule: Rule, times: np.ndarray) -> float:
     for row, (signal, *_) in enumerate(recording.signals):
         assert signal is not None
         detector.sense(signal)
-        limit = limits(use, signal.mass, signal.effective_mass, recording.speed[row], Mode.RUN)
+        limit = limits(use, signal.mass, signal.effective_mass, recording.speed[row], Mode.RUN, lever=signal.lever)
         if detector.step(use, limit) is not None:
             return delay_of([float(times[row])])
     return math.inf
@@ -152,7 +152,7 @@ def cost(case: Approach) -> float:
     signals = [signals[0] for signals in recording.signals]
     first = signals[0]
     assert first is not None
-    limit = limits(use, first.mass, first.effective_mass, 0.0, Mode.RUN)
+    limit = limits(use, first.mass, first.effective_mass, 0.0, Mode.RUN, lever=first.lever)
     times = []
     for _ in range(9):
         detector = Detector()

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendant.contact import Change
+from pendant.contact_limits import OLDER
 from pendant.contact_rules import NEW, Rule
 from pendant.detector import CALM, GONE, PATIENCE, SETTLED, SILENCE, Detector, Finding
 from pendant.signal import Signal
@@ -172,8 +173,8 @@ def test_without_older_samples_a_clear_change_needs_a_second_tick() -> None:
     push = np.zeros((60, 3))
     push[30:] = [30.0, 0.0, 0.0]
     stream = signals(60, push=push, noise=0.0)
-    assert found(stream[26:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # at once: four samples before it
-    assert found(stream[27:], ONLY[Rule.DIFFERENCE])[0][0] == 4  # three: one tick later
+    assert found(stream[30 - OLDER :], ONLY[Rule.DIFFERENCE])[0][0] == OLDER  # at once: enough samples before it
+    assert found(stream[31 - OLDER :], ONLY[Rule.DIFFERENCE])[0][0] == OLDER  # one less: one tick later
 
 
 @pytest.mark.parametrize("mass", [0.5, 2.0])
