@@ -19,6 +19,9 @@ from mutmut.state import state
 OTHERS = 2.0
 """s: what the tests of other modules may last together, by their durations without a mutant."""
 
+COLLECTION = 10.0
+"""s: what it may take until the tests begin."""
+
 ENDLESS = 3.0
 """A mutant has no end where its tests take this many times as long as without it, in processor time."""
 
@@ -36,6 +39,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     chosen = [item for item, total in zip(others, spent, strict=True) if total <= OTHERS]
     config.hook.pytest_deselected(items=others[len(chosen) :])
     items[:] = [*sorted(own, key=lambda item: lasts[item.nodeid]), *chosen]
-    seconds = 1.0 + sum(lasts[item.nodeid] for item in items)
+    limit = COLLECTION + ENDLESS * sum(lasts[item.nodeid] for item in items)
     _, most = resource.getrlimit(resource.RLIMIT_CPU)
-    resource.setrlimit(resource.RLIMIT_CPU, (ceil(time.process_time() + ENDLESS * seconds), most))
+    resource.setrlimit(resource.RLIMIT_CPU, (ceil(time.process_time() + limit), most))
