@@ -22,7 +22,7 @@ class ContactLimits(NamedTuple):
     cosine_sq: float  # of the angle limit
     force_sq: float  # difference rule (CD-4) [N²]
     acceleration_sq: float  # [m²/s⁴]
-    clear_force: float  # contact force that needs no second tick, for a payload that is right (CD-9) [N]
+    clear_sq: float  # over the variance of the contact force: beyond, it needs no second tick (CD-9)
     clear_acceleration_sq: float  # [m²/s⁴]
     ratio: float  # ratio rule: beyond minus this (CD-5) [kg]
     ratio_acceleration_sq: float  # its second threshold [m²/s⁴]
@@ -72,7 +72,7 @@ def limits(
         use.angle**2,
         (hard * noise_f + mismatch) ** 2,
         (hard * noise_a) ** 2,
-        scale * use.clear_limit * ((1.0 + 1.0 / OLDER) * (noise_f * noise_f + mass * mass * noise_a * noise_a)) ** 0.5,
+        (1.0 + 1.0 / OLDER) * (use.clear_limit * scale) ** 2,
         (use.clear_acceleration * scale) ** 2,
         scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
         (use.ratio_acceleration * scale) ** 2,

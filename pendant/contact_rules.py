@@ -9,10 +9,16 @@ from typing import NamedTuple
 
 from pendant.contact_limits import OLDER, ContactLimits
 from pendant.history import History, Six
+from pendant.pose import Vector
 from pendant.word import Word
 
 STEP = 3
 """Ticks between the two samples of a difference (CD-4)."""
+LATE = 1.5
+"""Ticks by which what a load's turning adds to its acceleration is late at most: half a tick, for it is the difference of two
+mean angular speeds, a third for its filter, and the rest of the tick where it begins suddenly."""
+RESTLESS = 2.0
+"""Share of the variance of its changes from tick to tick that counts as variance of the acceleration."""
 HEAVIEST = 5
 """Sightings that one of the slow rule counts for at most."""
 NEW = 5
@@ -70,21 +76,40 @@ def hard(history: History, limit: ContactLimits) -> Hard:
 
 
 def clear(history: History, limit: ContactLimits) -> bool:
-    """A difference so clear that the newest sample tells it by itself, held against all of the `OLDER` older ones (CD-9).
+    """A difference so clear that the newest sample tells it by itself, held against all of the `OLDER` before it (CD-9).
 
     It is one of the contact force, F - m·A, far beyond its noise and what a wrong payload explains, against an acceleration
     that free motion never changes so much in the opposite direction. The force itself may still lie along the acceleration: a
     hard contact is felt by the accelerometer before it has come to the force's sensor.
+
+    What the load's turning adds to the acceleration is known late, and an arm that vibrates would lay force and acceleration
+    against each other by that. So the acceleration counts as uncertain as it was restless before, and the difference has to be
+    as clear with what the turning would add `LATE` ticks later, if it went on changing.
     """
     if history.count <= OLDER:
         return False
     new, old = history.sample(0), history.mean(1, OLDER)
-    fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
-    aa = ax * ax + ay * ay + az * az
-    if aa <= limit.clear_acceleration_sq:
+    if ax * ax + ay * ay + az * az <= limit.clear_acceleration_sq:
         return False
-    return _clear(fx * fx + fy * fy + fz * fz, aa, fx * ax + fy * ay + fz * az, limit.clear_force, limit)
+    f = (new[0] - old[0], new[1] - old[1], new[2] - old[2])
+    restless = max(limit.acceleration_variance, history.variances(1, OLDER, old)[1], RESTLESS * _turning(history))
+    least = (limit.clear_sq * (limit.force_variance + limit.mass * limit.mass * restless)) ** 0.5
+    late = (ax + LATE * new.sx, ay + LATE * new.sy, az + LATE * new.sz)
+    return _lies_against(f, (ax, ay, az), least, limit) and _lies_against(f, late, least, limit)
+
+
+def _turning(history: History) -> float:
+    """Mean square, of one axis, of the changes of what the turning adds, before the newest sample [m²/s⁴]."""
+    before = (history.sample(age) for age in range(1, OLDER + 1))
+    return sum(s.sx * s.sx + s.sy * s.sy + s.sz * s.sz for s in before) / (3.0 * OLDER)
+
+
+def _lies_against(f: Vector, a: Vector, least: float, limit: ContactLimits) -> bool:
+    """`_clear` of a change of the force and one of the acceleration that is large enough."""
+    aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
+    ff, dot = f[0] * f[0] + f[1] * f[1] + f[2] * f[2], f[0] * a[0] + f[1] * a[1] + f[2] * a[2]
+    return aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, least, limit)
 
 
 def _clear(ff: float, aa: float, dot: float, least: float, limit: ContactLimits) -> bool:

@@ -40,7 +40,8 @@ class ContactSources:
     def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
         self._dynamics, self._reach = dynamics, reach
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
-        self._turns = np.full((2, 3), np.nan)  # angular speed a tick ago, not a number where it is not known; its change
+        self._turns = np.zeros((3, 3))  # a tick ago: angular speed; its change; what the turning added to the acceleration
+        self._turns[0] = np.nan  # not known yet
         self._out = np.zeros((4, len(Signal._fields)))  # a signal a row
         self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
         n = dynamics.recursion.origins.shape[0]
@@ -98,9 +99,10 @@ def _read(tool, arm_side, links, values, smoothing, com, R, gravity, reach, turn
     wrench = rest[:6]
     if tool:
         moved = _to_load(rest[9:12], rest[15:18], turns[0], turns[1], smoothing, com)
-        _transfer(wrench, rest[12:15], moved, R, gravity, reach, out[0])
+        _transfer(wrench, rest[12:15], moved, turns[2], R, gravity, reach, out[0])
         if arm_side:
-            _transfer(wrench, rest[6:9], moved, R, gravity, reach, out[1])
+            _transfer(wrench, rest[6:9], moved, turns[2], R, gravity, reach, out[1])
+        turns[2] = moved
     else:
         turns[0] = np.nan
     if links:
@@ -133,12 +135,13 @@ def _to_load(arm_side, tool_side, before, change, smoothing, com):
 
 
 @numba.njit(cache=True)
-def _transfer(wrench, acceleration, moved, R, gravity, reach, out) -> None:
-    """Force, specific force at the load's centre, and gravity, each (3,) in F, into `out`."""
+def _transfer(wrench, acceleration, moved, before, R, gravity, reach, out) -> None:
+    """Force, specific force at the load's centre, gravity, and the change since `before` of what is `moved`, each (3,) in F."""
     for k in range(3):
         out[k] = wrench[k]
         out[3 + k] = acceleration[k] + moved[k]
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
+        out[13 + k] = moved[k] - before[k]
     out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= reach else 0.0
 
 
