@@ -83,13 +83,18 @@ def test_a_load_off_the_axis_that_is_shaken_keeps_its_force_along_its_accelerati
         sim.tick(Wishes(NOTHING, (), changes))
         signal = sim.snapshot().estimate.signals.each()[0]
         assert signal is not None
-        rows.append([*signal[:6], signal.mass, signal.lever])
+        rows.append([*signal[:6], signal.mass, signal.lever, signal.sx, signal.sy, signal.sz])
     table = np.array(rows)
     force, acceleration, mass = table[:, :3], table[:, 3:6], table[0, 6]
     assert np.ptp(acceleration, axis=0).max() > 2.0
     contact = force - mass * acceleration
     assert np.linalg.norm(contact - contact[0], axis=1).max() < 6.5  # with a turning smoothed at 60 Hz 9.8 N
     assert table[0, 7] == pytest.approx(0.09, abs=0.01)  # of tool and load together
+    # What is left is the turning's: it lies along its changes, which say how late it is known.
+    changes, left = mass * table[1:, 8:].ravel(), (contact - contact[0])[1:].ravel()
+    late = float(changes @ left / (changes @ changes))
+    assert late == pytest.approx(0.65, abs=0.15)  # half a tick, and the filter
+    assert np.linalg.norm(left - late * changes) < 0.7 * np.linalg.norm(left)
 
 
 def test_after_an_outage_a_turning_is_no_jump() -> None:
