@@ -128,9 +128,9 @@ def _run(simulation: Simulation, move: LinearMove | JointMove, case: Approach, s
     plant = simulation.plant
     simulation.tick(Wishes(Inputs(program=Program(steps=(move,))), (), ()))
     for _ in range(SETTLE):
+        if plant.data.ncon:  # the block stands in the arm, and would push it away
+            return None
         simulation.tick(IDLE)
-    if plant.data.ncon:
-        return None
     recording, wish = Recording(), START
     gap = before = np.inf
     tool, block = (plant.model.geom(name).id for name in ("shape/tool", "object/block"))
