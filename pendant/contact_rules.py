@@ -89,14 +89,14 @@ def clear(history: History, limit: ContactLimits) -> bool:
     if history.count <= OLDER:
         return False
     new, old = history.sample(0), history.mean(1, OLDER)
-    ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
-    if ax * ax + ay * ay + az * az <= limit.clear_acceleration_sq:
-        return False
     f = (new[0] - old[0], new[1] - old[1], new[2] - old[2])
+    a = (new[3] - old[3], new[4] - old[4], new[5] - old[5])
+    if not _lies_against(f, a, 0.0, limit):  # most often; how restless it was takes a look at all samples
+        return False
     restless = max(limit.acceleration_variance, history.variances(1, OLDER, old)[1], RESTLESS * _turning(history))
     least = (limit.clear_sq * (limit.force_variance + limit.mass * limit.mass * restless)) ** 0.5
-    late = (ax + LATE * new.sx, ay + LATE * new.sy, az + LATE * new.sz)
-    return _lies_against(f, (ax, ay, az), least, limit) and _lies_against(f, late, least, limit)
+    late = (a[0] + LATE * new.sx, a[1] + LATE * new.sy, a[2] + LATE * new.sz)
+    return _lies_against(f, a, least, limit) and _lies_against(f, late, least, limit)
 
 
 def _turning(history: History) -> float:

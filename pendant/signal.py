@@ -27,7 +27,7 @@ class Signal(NamedTuple):
     effective_mass: float = 1.4  # of the arm behind the contact part, at this posture [kg]
     saturated: float = 0.0  # not 0: the force is at the end of its sensor's range, which says nothing of its size
     lever: float = 0.0  # over which a measured angular acceleration moves the acceleration to the load's centre [m]
-    sx: float = 0.0  # change within the tick of what that turning adds, which is known up to a tick late [m/s²]
+    sx: float = 0.0  # change within the tick of what that turning adds, known up to a tick and a half late [m/s²]
     sy: float = 0.0
     sz: float = 0.0
 
