@@ -25,9 +25,9 @@ BARS = {  # p95 of the combination [ms] by stiffness [N/m] and speed [m/s]; None
 FORCE_BARS = {(1e4, 0.1): 15.0, (1e4, 0.25): 25.0, (1e3, 0.25): 15.0}  # median at detection [N]
 HARD = 2e5
 POSE_TICKS = 2.0
-FAST, MORE = 0.25, 4
-"""At this speed [m/s] so many times the approaches: a tick is more than half of a median there, and where in a tick a contact
-begins is chance."""
+FAST, PARTS = 0.25, (0.0, 0.25, 0.5, 0.75)
+"""At this speed [m/s] a tick is more than half of a median, and where in it a contact begins is chance. So each approach is made
+once more for every one of these parts of a tick that the block stands farther away: the onsets cover the tick evenly."""
 HAND_TRANSIENT = 280.0  # ISO/TS 15066, hand and fingers, transient contact [N]
 
 
@@ -43,12 +43,13 @@ def measure(report: Report) -> None:
     seeds = range(seed, seed + count)
     tuning, scoring, seconds = (30, 50, 120.0) if full else (4, 8, 15.0)  # an hour; five hours over three seed bases
     cases = [
-        Approach(stiffness, speed, angle, payload, at)
+        Approach(stiffness, speed, angle, payload, at, farther=farther)
         for stiffness, row in BARS.items()
         for speed in row
         for angle in (0, 50, 80)
         for payload in (0.0, 2.0, 5.0)
-        for at in range(seed, seed + count * (MORE if speed == FAST else 1))
+        for at in seeds
+        for farther in (PARTS if speed == FAST else PARTS[:1])
     ]
     outcomes = spread(score, cases)
     quiets = spread(quiet, [Free(100 + k, seconds, True) for k in range(tuning)])

@@ -40,6 +40,7 @@ class Approach(NamedTuple):
     payload: float  # configured; the true one is up to 20 % off [kg]
     seed: int
     react: str = ""  # what the program does at the contact; nothing: it goes on
+    farther: float = 0.0  # how much farther the block stands [ticks of travel]
 
 
 @cache
@@ -92,7 +93,7 @@ def _attempt(case: Approach, q: Array, rng: np.random.Generator) -> Recording | 
     way = R @ [np.sin(angle) * np.cos(around), np.sin(angle) * np.sin(around), np.cos(angle)]
     acceleration = 0.5 if case.speed > 0.03 else 0.2
     rise = case.speed * (case.speed / acceleration + 0.1) / 2 + 0.2 * case.speed + 0.3 * case.speed * (case.speed < 0.03)
-    gap = rise + 0.1 * case.speed * rng.uniform(1.0, 2.0)
+    gap = rise + 0.1 * case.speed * rng.uniform(1.0, 2.0) + case.farther * case.speed * TICK
     cap = p + R @ [0.0, 0.0, TOOL.length - TOOL.radius]
     # The box stands a little out along the tool, so that the tip's cap meets it and not the shaft.
     out = R[:, 2] - (R[:, 2] @ way) * way
