@@ -79,6 +79,7 @@ def one(at: int, **values: object) -> list[Tick]:
         (path(-0.1, N, payload=DOWN), True, [N]),
         (path(1.01 * MOVED, N, payload=DOWN), False, [N]),
         (path(0.99 * MOVED, N, payload=DOWN), False, []),
+        ([Tick(z=MOVED, payload=(0.0, 0.0, -4.0))] * N, False, [N]),  # to the limit itself, in one tick
         (path(0.1, N, payload=(0.0, 0.0, -0.99 * RESIDUAL)), False, []),
         (path(0.1, N, payload=(0.0, 0.0, -1.01 * RESIDUAL)), False, [N]),
         # up and down again: where it began
@@ -136,6 +137,7 @@ def test_user_moves_once_pushed_away_from_the_wall_by_the_step() -> None:
     anchor, moved = run(Policy.USER, path(0.0473, 43, user=PUSH))
     assert moved == [19, 38]
     assert anchor.local == (1.0, 0.0, pytest.approx(0.0418))
+    assert run(Policy.USER, [Tick(z=0.02, user=PUSH)])[1] == [1], "the step itself is enough"
 
 
 @pytest.mark.parametrize(

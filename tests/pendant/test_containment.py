@@ -313,6 +313,19 @@ def test_what_cannot_be_told_is_refused_and_not_drawn() -> None:
     assert containment.places() == ()
 
 
+def test_a_wall_has_no_place_before_its_first_step() -> None:
+    """VW-6: joints that are not valid put it off, and pictures ask all the same."""
+    early = Wall(name="early", shape=Sphere(radius=0.05), anchored_at=Start.ACTIVATION)
+    containment = Containment((early, FLOOR), {})
+    containment.begin(Start.ACTIVATION, Walls(tether=False))
+    assert containment.places() == ()
+    containment.step(estimate(), *NOBODY)
+    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    assert [border.name for border, _ in containment.places()] == ["early"]
+    containment.step(estimate(), *NOBODY)
+    assert [border.name for border, _ in containment.places()] == ["early", "floor"]
+
+
 def test_without_any_border_it_does_nothing() -> None:
     containment = Containment((), {"world": HERE})
     before = containment.memory

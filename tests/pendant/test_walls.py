@@ -99,6 +99,7 @@ def test_ranges(name: str, low: float, high: float) -> None:
         ),
         ({"size": {"measure": "reach", "low": -math.inf, "high": 0.2}}, "low: -inf is not allowed"),
         ({"size": {"measure": "reach", "low": math.nan, "high": 0.2}}, "low: nan is not allowed"),
+        ({"size": {"measure": "reach", "low": -1.5e308, "high": 1.5e308}}, "low: -1.5e+308 is not allowed"),  # no span
         ({"policy": "sometimes"}, "Invalid enum value 'sometimes' - at `$.policy`"),
         ({"keep_out": True}, "Object contains unknown field `keep_out`"),
         ({"name": ""}, "Expected `str` of length >= 1 - at `$.name`"),
