@@ -41,7 +41,7 @@ class Enclosure:
 
 
 def worst(readings: tuple[Reading, ...]) -> Reading | None:
-    """The reading with the gravest consequence, the one furthest out among equals; None when nothing follows."""
+    """The reading with the gravest consequence, among equals the first of those furthest out; None when nothing follows."""
     gravest = None
     for reading in readings:
         consequence = reading.consequence

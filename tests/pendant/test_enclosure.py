@@ -260,6 +260,9 @@ def test_the_gravest_counts_and_among_equals_the_one_furthest_out() -> None:
         found = worst(enclosure.step(around((x, 0.0, 0.0))))
         assert found is not None
         assert found.border.name == name
+    found = worst(entered(*[Area(name=name, reference="gone", shape=BALL) for name in "ab"]).step(around()))
+    assert found is not None
+    assert found.border.name == "a", "of two that cannot be told"
 
 
 # A mass of 3 kg under the walls, a steady force of a wrong payload and a hand; stiction as an arm has it.
