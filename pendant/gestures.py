@@ -23,7 +23,7 @@ class PatternSignal:
         """One tick of the push that it is made of. True in the tick in which it is whole."""
         longest = ticks(use.longest)
         if present is self._present:
-            self._length = min(self._length + 1, longest + 1)
+            self._length = min(self._length, longest) + 1
             return False
         good = ticks(use.shortest) <= self._length <= longest
         self._present, self._length = present, 1
@@ -88,7 +88,7 @@ class TapSignal:
         """One tick; `acceleration` beyond gravity [m/s²]. True in the tick in which it is whole."""
         longest = ticks(use.longest)
         if acceleration > use.threshold:
-            self._length = min(self._length + self._quiet + 1, longest + 1)
+            self._length = min(self._length + self._quiet, longest) + 1
             self._quiet = 0
             return False
         if self._length == 0:
