@@ -62,10 +62,9 @@ def cylinder(radius: float, height: float) -> Field:
     def field(x: float, y: float, z: float) -> Signed:
         rho = math.sqrt(x * x + y * y)
         out, up = rho - radius, abs(z) - half
-        if out <= 0.0 and up <= 0.0:
+        if out <= 0.0 or up <= 0.0:
             distance, along, across = (up, 1.0, 0.0) if up >= out else (out, 0.0, 1.0)
         else:
-            out, up = max(out, 0.0), max(up, 0.0)
             distance = math.hypot(out, up)
             along, across = up / distance, out / distance
         return _round(x, y, rho, distance, across, math.copysign(along, z))
