@@ -183,6 +183,13 @@ def test_periods_are_published_together_and_only_while_they_run() -> None:
     assert bench.step().periods == ()
 
 
+def test_a_payload_that_changes_leaves_free_drive_as_it_is_where_nothing_was_refused() -> None:
+    free = Bench().supervisor._free
+    before = free.memory
+    free.forget()
+    assert free.memory == before
+
+
 def test_any_number_of_joints() -> None:
     supervisor = Supervisor(apply(Settings(), {"sequence.on": False}), 7)
     value = estimate(n=7)

@@ -14,7 +14,7 @@ from pendant.events import Event, Kind
 from pendant.hand import SWING, Hand
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, Mode
-from pendant.operation import CERTAIN, LEAST, Ending, Operation, way_back
+from pendant.operation import CERTAIN, LEAST, SWINGS, Ending, Operation, way_back
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
@@ -401,7 +401,10 @@ def test_what_is_missing_follows_the_load_for_eight_ticks() -> None:
     """FD-19."""
     assert followed((8, 0.8, 0.0)) == [False] * 7 + [True]
     assert not any(followed((20, 0.8, 0.0), low=HIGH / 1.9)), "the load hardly swings"
+    assert not any(followed((20, 0.8, 0.0), low=1.001 * HIGH / (SWINGS * SWINGS)))
+    assert followed((8, 0.8, 0.0), low=HIGH / (SWINGS * SWINGS))[-1]
     assert followed((8, -0.5, 0.0))[-1], "half of the load is enough"
+    assert followed((8, -0.5, 0.0), weight=2.0 * LEAST)[-1], "if that is 4 N"
 
 
 def test_one_tick_that_is_like_no_load_begins_it_anew() -> None:
@@ -414,10 +417,20 @@ def test_one_tick_that_is_like_no_load_begins_it_anew() -> None:
     assert not any(followed(*strays))
     assert any(followed(*[(1, 0.8 + 0.07 * (k % 2), 0.0) for k in range(20)]))
     assert followed((5, 0.8, 0.0), (8, 0.95, 0.0)) == [False] * 12 + [True]
+    assert followed((4, 0.5625, 0.0), (4, 0.625, 0.0))[-1], "a tenth is not more than a tenth"
 
 
 @pytest.mark.parametrize(
-    ("share", "across", "like"), [(0.6, 6.1, True), (0.6, 6.3, False), (1.15, 0.0, True), (-1.15, 0.0, True), (1.16, 0.0, False)]
+    ("share", "across", "like"),
+    [
+        (0.6, 6.1, True),
+        (0.6, 6.3, False),
+        (1.0, 9.0, True),
+        (1.0, 9.01, False),
+        (1.15, 0.0, True),
+        (-1.15, 0.0, True),
+        (1.16, 0.0, False),
+    ],
 )
 def test_a_share_of_the_load_lies_along_it_and_is_hardly_more_than_all(share: float, across: float, like: bool) -> None:
     """FD-19: of 20 N, 0.35 of what is missing may lie across it, and 2 N of noise."""

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from pendant import payload_fit
 from pendant.load import Load
 from pendant.payload_fit import GAIN, LEAST, LIGHT, TOLERATED, Finding, Posture, least_angle, nearest, solve
 
@@ -177,6 +178,16 @@ def test_less_than_the_tool_means_another_tool() -> None:
 def test_a_little_less_than_nothing_is_nothing() -> None:
     finding = found(postures(WRIST, (0.85, (0.0, 0.0, 0.05))), Load(mass=0.9, com=[0.0, 0.0, 0.05]))
     assert (finding.mass, finding.centre, finding.centre_deviation) == (0.0, (0.0, 0.0, 0.0), 0.0)
+
+
+def test_what_is_at_its_limit_is_within_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Largest residuals, least spread and mass, each made what these postures have."""
+    made = noisy(0.4)
+    finding, spread = found(made), payload_fit._spread(np.array([posture.a for posture in made]))
+    at = {"MISFIT_FORCE": finding.force_fit, "MISFIT_TORQUE": finding.torque_fit, "LIGHT": finding.mass, "SPREAD": spread}
+    for name, value in at.items():
+        monkeypatch.setattr(payload_fit, name, value)
+    assert found(made) == finding
 
 
 @pytest.mark.parametrize(("mass", "has_centre"), [(0.9 * LIGHT, False), (1.1 * LIGHT, True)])

@@ -128,3 +128,12 @@ def test_each_stop_is_measured_anew() -> None:
     assert stopping.step(MOVING, 0, 50) == []
     (event,) = stopping.step(estimate(), 50, 50)
     assert (event.values["category"], event.values["cause"]) == (2, "stopped_motion")
+
+
+def test_a_stop_that_is_measured_is_as_one_that_had_nothing_to_measure() -> None:
+    moving, standing = Stopping(), Stopping()
+    moving.begin(Kind.EMERGENCY_STOP, 1, False)
+    standing.begin(Kind.EMERGENCY_STOP, 1, True)
+    assert moving.memory != standing.memory
+    assert len(moving.step(estimate(), 50, 50)) - len(standing.step(estimate(), 50, 50)) == 1
+    assert moving.memory == standing.memory

@@ -6,13 +6,15 @@ import pytest
 
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.modes import Law, Mode, Safety
+from pendant.modes import Law, Mode, Phase, Safety
 from pendant.program import JointMove, Program, ProgramState, Wait
 from pendant.settings import Row, Settings, apply, describe, value_of
+from pendant.shapes import Sphere
 from pendant.supervisor import Supervisor
+from pendant.walls import Start, Wall
 from tests.pendant.estimates import estimate
 from tests.pendant.oracle import PROGRAM, WRONG
-from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+from tests.pendant.test_freedrive import HOLD, JOINTS, LET_GO, Bench
 from tests.pendant.test_settings import other
 
 START = Bench().supervisor.settings
@@ -288,6 +290,17 @@ def test_a_running_period_keeps_its_length_and_the_next_one_is_the_new() -> None
     bench.step(Inputs(settings={"free_drive.period": 10.0}))
     assert bench.run(1498).mode is Mode.FREE_DRIVE
     assert bench.step().mode is Mode.TEACH
+
+
+def test_a_wall_that_holds_before_free_drive_is_not_felt() -> None:
+    """HF-1, VW-6: one that is anchored as the button is pressed, while the arm is still held."""
+    bench = Bench(haptics__on=True)
+    early = Wall(name="early", shape=Sphere(radius=0.1), anchored_at=Start.ACTIVATION, activation_size=0.3, band=0.01)
+    bench.supervisor = Supervisor(bench.supervisor.settings, 6, JOINTS, borders=(early,))
+    bench.step(HOLD)
+    decision = bench.step(HOLD, estimate(position=0.029))
+    assert (decision.phase, decision.law, decision.walls[0].near > 0.0) == (Phase.ACTIVATION, Law.HOLD, True)
+    assert decision.shake is None
 
 
 def test_equal_states_decide_equally() -> None:

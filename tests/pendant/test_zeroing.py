@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 
 from pendant.events import Kind
+from pendant.hand import Hand
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
 from pendant.pose import Vector
-from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, NOISE, QUIET, SLOW, SLOW_TURN, SOON, STRAY, Drift, Steps
+from pendant.watch import WrenchMean
+from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, MOVED, NOISE, QUIET, SLOW, SLOW_TURN, SOON, STRAY, Drift, Steps, Zero
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench
 
 PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
 WINDOW = 0.1  # [s]
+TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
 
 
 def seen(steps: Steps, forces: list[Vector], felt: list[float] | None = None) -> list[Vector]:
@@ -32,13 +35,13 @@ def against(steps: list[Vector], share: float) -> list[float]:
     return [share * (now - then) for now, then in zip(steps[-1], steps[0], strict=True)]
 
 
-@pytest.mark.parametrize("size", [1.001 * JUMP, 5.0, -20.0, 60.0])
-def test_a_step_that_the_joints_feel_the_other_way_is_the_sensors(size: float) -> None:
-    forces = stepping(size)
+@pytest.mark.parametrize(("size", "before"), [(JUMP, 0.0), (5.0, 0.0), (-20.0, 0.0), (60.0, 0.0), (20.0, QUIET)])
+def test_a_step_that_the_joints_feel_the_other_way_is_the_sensors(size: float, before: float) -> None:
+    forces = stepping(size, before=before)
     assert seen(Steps(), forces, against(forces, 2.0 * ANSWER)) == [(0.0, 0.0, pytest.approx(size))]
 
 
-@pytest.mark.parametrize("share", [0.99 * ANSWER, 0.0, 0.5, 1.0])
+@pytest.mark.parametrize("share", [ANSWER, 0.99 * ANSWER, 0.0, 0.5, 1.0])
 def test_a_step_that_the_joints_feel_or_do_not_is_a_hands(share: float) -> None:
     forces = stepping(20.0)
     assert seen(Steps(), forces, against(forces, share)) == []
@@ -197,7 +200,7 @@ def test_help_that_comes_soon_shakes_the_flange_later_than_a_hand_does(quiet: in
     assert any(step is not None for step in found) is told
 
 
-@pytest.mark.parametrize(("share", "told"), [(0.99, True), (1.01, False)])
+@pytest.mark.parametrize(("share", "told"), [(0.99, True), (1.0, True), (1.01, False)])
 def test_the_sensors_noise_does_not_hide_a_small_step(share: float, told: bool) -> None:
     stray = share * (STRAY * 5.0 + NOISE)
     forces: list[Vector] = [(0.0, 0.0, 0.0)] * 2 + [(0.0, 0.0, 5.0)] * 2 + [(stray, 0.0, 5.0), (-stray, 0.0, 5.0)] * 3
@@ -206,12 +209,40 @@ def test_the_sensors_noise_does_not_hide_a_small_step(share: float, told: bool) 
 
 def test_the_baseline_is_in_the_axes_of_the_flange_at_entry() -> None:
     bench = Bench(free_drive__period=30.0).in_period()
-    turned = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # by 90° about z since then
     for tick in range(1000):
         value = estimate(force=[0.004 * tick, 0.0, 0.0])
-        value.R_BF = turned
+        value.R_BF = TURNED
         bench.step(NOTHING, value)
     assert bench.last.baseline[:3] == pytest.approx((0.0, -4.0, 0.0), abs=0.5)
+
+
+@pytest.mark.parametrize(("speed", "given_back"), [(MOVED, False), (1.001 * MOVED, True), (-1.001 * MOVED, True)])
+def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(speed: float, given_back: bool) -> None:
+    force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
+    before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
+    after.R_BF = TURNED  # since entry
+    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero.begin(before, True, mean)
+    for value in [before] * 50 + [after] * 51:
+        mean.step(value)
+        assert zero.step(value, hand, mean, True) is None
+    gone = (-0.2, -0.1, 0.05, -0.02, -0.01, 0.03)  # axes of the flange, and of B at entry
+    assert zero.baseline == pytest.approx(gone)
+    hand.step(after, True)
+    assert hand.change == pytest.approx((0.0,) * 3)
+    assert zero.step(after, hand, mean, False) is None
+    hand.step(after, True)
+    assert zero.baseline == pytest.approx((0.0,) * 6 if given_back else gone)
+    assert hand.change == pytest.approx(force if given_back else (0.0,) * 3)
+
+
+def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
+    zero, mean = Zero(), WrenchMean()
+    mean.step(estimate(force=3.0))
+    zero.begin(estimate(), True, mean)
+    assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    zero.leave()
+    assert zero.memory == Zero().memory
 
 
 def test_a_step_in_space_is_taken_off_as_the_mean_of_what_was_felt() -> None:
