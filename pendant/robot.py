@@ -122,10 +122,9 @@ class Robot:
         self.stopping.begin(kind, TABLE[kind].category, self.static)
 
     def reset(self, safety: Safety) -> None:
-        """Out of STOP, into `safety`."""
+        """Out of STOP, into `safety`. The arm stands, so that `law` ends the braking."""
         self.mode = Mode.TEACH
         self.safety = safety
-        self.braking = False
         self.stopping.end()
 
     def pause_program(self, tick: int, events: list[Event]) -> None:
