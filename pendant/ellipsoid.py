@@ -13,7 +13,7 @@ import math
 from pendant.pose import Vector
 from pendant.solids import Field, Signed
 
-ON_PLANE = 1e-12  # of the shortest half-axis: a point this near to the plane of the others counts as this far from it
+ON_PLANE = 1e-12  # of the shortest half-axis: a point this near to a plane of symmetry counts as this far from it
 CLOSE = 1e-9  # relative: the last step of the root finding, whose error is about its square
 
 
@@ -23,10 +23,10 @@ def ellipsoid(radii: Vector) -> Field:
     least = min(radii)
     aa, bb, cc = a * a, b * b, c * c
     ra, rb, rc = aa - least * least, bb - least * least, cc - least * least
-    fa, fb, fc = (ON_PLANE * least if radius == least else 0.0 for radius in radii)
+    floor = ON_PLANE * least
 
     def field(px: float, py: float, pz: float) -> Signed:
-        u, v, w = max(abs(px), fa), max(abs(py), fb), max(abs(pz), fc)
+        u, v, w = max(abs(px), floor), max(abs(py), floor), max(abs(pz), floor)
         au, bv, cw = a * u, b * v, c * w
         x = max(au - ra, bv - rb, cw - rc)  # one term is 1 there: at or below the root
         step = x
