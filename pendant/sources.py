@@ -96,6 +96,8 @@ class Sources:
             self._settle(estimate, holding, running)
         found = NONE
         pushing = use.push.on or use.push.told or use.pattern.on
+        if not (pushing and wrench_ok):
+            self._told = 0
         if pushing or use.twist.on or use.force_step.on:
             if wrench_ok:
                 found = self._by_wrench(estimate, pushing, use)
@@ -169,7 +171,6 @@ class Sources:
         """What was felt at the flange is over: its sensor is not valid, or the load is another."""
         self._wrench.restart()
         self._push.present = self._twist.present = self._step.present = False
-        self._told = 0
 
     def _by_wrench(self, estimate: Estimate, pushing: bool, use: Signals) -> Presence:
         change = self._wrench.step(estimate.F_user.tolist())
