@@ -40,3 +40,19 @@ def test_a_push_counts_from_the_tick_in_which_it_is_asked_for() -> None:
     bench.run(10, "joints.on", force=20.0)
     told = [told for _, told in bench.run(2 * TOLD_AFTER, "push.told", force=20.0)]
     assert told == [tick == TOLD_AFTER for tick in range(1, 2 * TOLD_AFTER + 1)]
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "felt"),
+    [("push", "twist", {"force": 13.0}), ("twist", "push", {"torque": 2.6}), ("force_step", "push", {"force": 8.5})],
+)
+def test_what_was_over_with_the_sensor_is_not_back_when_it_is_asked_for_again(
+    name: str, other: str, felt: dict[str, float]
+) -> None:
+    """FD-5, FD-12: what would be enough to stay is not enough to come."""
+    bench = Bench()
+    bench.run(100, f"{other}.on")
+    bench.run(2, f"{other}.on", wrench=False)
+    bench.run(100, f"{other}.on")
+    bench.run(100, f"{other}.on", **felt)
+    assert not any(signal.source for signal, _ in bench.run(100, f"{name}.on", **felt))
