@@ -8,6 +8,7 @@ from pendant.settings import Settings, apply
 from pendant.sources import NONE, Presence
 
 BUTTON = Presence("button")
+PUSH = Presence("push", by_hand=True)
 ABSENT, HOLD, WINDOW = 100, 100, 1500
 """0.2 s of absence make a signal a new one, 0.2 s of it confirm, 3 s there is time to [ticks]."""
 
@@ -31,24 +32,25 @@ def test_a_confirmation_is_new_after_an_absence(feedback: float, held: int, abse
     assert said[-1] is (Outcome.READY if new or absent >= ABSENT else Outcome.GOES_ON)
 
 
+@pytest.mark.parametrize("feedback", [0.0, 0.2, 0.4])
 @pytest.mark.parametrize(("off", "new"), [(ABSENT, True), (ABSENT - 1, False)])
-def test_a_hand_confirms_after_it_was_off(off: int, new: bool) -> None:
-    """FD-8: to the tick; it counts from the feedback on, as the signal's own absence does."""
-    settings = apply(Settings(), {"handshake.on": True, "handshake.feedback": 0.0, "activation.period": 0.02})
-    push = Presence("push", by_hand=True)
-    attempt = Attempt(push, settings)
+def test_a_hand_confirms_after_it_was_off(feedback: float, off: int, new: bool) -> None:
+    """FD-8: to the tick; it counts from the feedback on, as the signal's own absence does, and may end with it."""
+    settings = apply(Settings(), {"handshake.on": True, "handshake.feedback": feedback, "activation.period": 0.02})
+    attempt = Attempt(PUSH, settings)
     attempt.first()
-    assert [attempt.step(push, True, False) for _ in range(10)][-1] is Outcome.CONFIRM
-    course = [(300, NONE, True), (off, NONE, False), (HOLD, push, True), (1, push, True)]
+    assert [attempt.step(PUSH, True, False) for _ in range(10)][-1] is Outcome.CONFIRM
+    course = [(200 - off, NONE, True), (off, NONE, False), (HOLD, PUSH, True), (1, PUSH, True)]
     said = [attempt.step(signal, touched, False) for count, signal, touched in course for _ in range(count)]
     assert set(said[:-1]) == {Outcome.GOES_ON}
     assert said[-1] is (Outcome.LET_GO if new else Outcome.GOES_ON)
 
 
+@pytest.mark.parametrize("signal", [BUTTON, PUSH])
 @pytest.mark.parametrize("short", [1, 2, HOLD])
-def test_one_that_was_too_short_leaves_the_next_to_be_new_too(short: int) -> None:
+def test_one_that_was_too_short_leaves_the_next_to_be_new_too(short: int, signal: Presence) -> None:
     """FD-8."""
-    attempt, said = outcomes(0.2, (100, NONE), (short, BUTTON), (1, NONE), (3 * HOLD, BUTTON))
+    attempt, said = outcomes(0.2, (100, NONE), (short, signal), (1, NONE), (3 * HOLD, signal))
     assert set(said) == {Outcome.GOES_ON}
     assert attempt.phase is Phase.CONFIRM
 

@@ -129,11 +129,14 @@ def test_an_arm_that_does_not_come_to_rest_is_held_after_two_seconds() -> None:
     assert bench.last.law is Law.BRAKE
 
 
-@pytest.mark.parametrize(("way", "held"), [(0.0099, False), (0.0101, True)])
+@pytest.mark.parametrize(("way", "held"), [(0.0099, False), (0.01, False), (math.nextafter(0.01, 1.0), True), (0.0101, True)])
 def test_one_that_goes_too_far_is_held_at_once(way: float, held: bool) -> None:
-    """10 mm from where it was beyond its limit, at 3 mm."""
-    bench = balanced()
-    bench.step(NOTHING, sinking(0.003 + way))
+    """10 mm from where its load was found beyond the limit."""
+    bench = Bench(sequence__on=True, sequence__compensate=True)
+    heavy = estimate(force=HEAVIER)
+    bench.run(60, NOTHING, heavy)
+    bench.run(501, HOLD, heavy)
+    bench.step(LET_GO, sinking(way, HEAVIER))
     assert (Kind.NOT_COMPENSATED in kinds(bench)) is held
     assert (bench.last.law is Law.BRAKE) is held
 

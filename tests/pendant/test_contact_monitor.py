@@ -136,6 +136,14 @@ def test_the_ratio_is_told_of_a_hard_contact() -> None:
     assert contact.ratio == pytest.approx(-2.0, abs=0.2)
 
 
+@pytest.mark.parametrize(("lever", "seen"), [(0.0, True), (0.3, True), (0.5, False)])
+def test_what_turning_adds_to_the_noise_is_told_from_a_contact(lever: float, seen: bool) -> None:
+    """CD-0: 0.5 m of 1.2 rad/s² add 0.5 m/s² to the noise, and 4.2 times of it hide a change of 2 m/s²; 0.3 m do not."""
+    use = msgspec.structs.replace(USE, slow=False, statistical=False, retrospective=False)
+    stream = [signal._replace(lever=lever) for signal in signals(120, push=ramp(120, START, 6.0, top=6.0), noise=0.0)]
+    assert bool(run(0, [*stream], use)) is seen
+
+
 @pytest.mark.parametrize(
     ("mode", "speed", "seen"), [(Mode.RUN, 0.0, True), (Mode.FREE_DRIVE, 0.0, False), (Mode.RUN, 1.0, False)]
 )

@@ -4,15 +4,13 @@ import msgspec
 import numpy as np
 import pytest
 
-from pendant.contact_limits import OLDER, limits
+from pendant.contact_limits import OLDER
 from pendant.contact_rules import LAGS, MEAN, NEW, OLD, STEP, clear, contact_force, hard, slow, statistical, values
 from pendant.contact_settings import ContactUse
 from pendant.history import History
-from pendant.modes import Mode
 from pendant.signal import Signal
 from tests.pendant.contacts import USE, limit
 
-PAIR = 2.0**0.5
 BIAS = (1.0, 2.0, 3.0, 0.0, 0.0, 9.81)
 
 
@@ -153,38 +151,39 @@ def test_without_an_angle_limit_what_is_clear_still_lies_against_the_acceleratio
     assert clear(across, limit(msgspec.structs.replace(use, opposite=False), mass=0.0))
 
 
-def test_the_ratio_follows_payload_and_posture() -> None:
-    assert limits(USE, 2.0, 10.0, 0.0, Mode.RUN).ratio == pytest.approx(1.0)  # half of the payload
-    assert limits(USE, 0.0, 10.0, 0.0, Mode.RUN).ratio == pytest.approx(0.15)  # half of the least one
-    assert limits(USE, 5.0, 1.0, 0.0, Mode.RUN).ratio == pytest.approx(0.3)  # 0.3 of the arm's effective mass
+def test_without_an_angle_limit_a_value_across_is_still_none() -> None:
+    """CD-0: opposite is less than across."""
+    use = msgspec.structs.replace(USE, angle=0.0)
+    across, against = (12.0, 12.0, 0.0, -4.0, 4.0, 0.0), (12.0, 12.0, 0.0, -4.0, 3.5, 0.0)
+    assert values(history(across), limit(use, mass=0.0)) == (False, False)
+    assert values(history(against), limit(use, mass=0.0)) == (True, True)
 
 
-def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
-    base = limits(USE, 1.0, 2.0, 0.5, Mode.RUN)
-    gentle = limits(msgspec.structs.replace(USE, sensitivity=2.0), 1.0, 2.0, 0.5, Mode.RUN)
-    fast = limits(msgspec.structs.replace(USE, speed_share=1.0), 1.0, 2.0, 0.5, Mode.RUN)
-    guided = limits(USE, 1.0, 2.0, 0.5, Mode.FREE_DRIVE)
-    for other, factor in ((gentle, 0.5), (fast, 1.5), (guided, 3.0)):
-        assert other.slow_force == pytest.approx(factor * base.slow_force)
-        assert other.ratio == pytest.approx(factor * base.ratio)
-        assert other.force_sq == pytest.approx(factor**2 * base.force_sq)
-        assert other.confidence_sq == pytest.approx(factor**2 * base.confidence_sq)
-        assert other.value_force == pytest.approx(factor * base.value_force)
-    assert base.noise_force_sq == pytest.approx((3.0 * PAIR * 0.15) ** 2)
+@pytest.mark.parametrize(
+    ("force", "acceleration", "mass", "expected"),
+    [
+        ((8.0, 1.0), (-4.0, 0.0), 0.0, (False, True)),  # 8 N along the axis, more in space
+        ((8.5, 1.0), (-4.0, 0.0), 0.0, (True, True)),
+        ((12.0, 0.0), (-3.0, 0.0), 0.0, (False, False)),  # 3 m/s²
+        ((12.0, 0.0), (-3.5, 0.0), 0.0, (True, True)),
+        ((12.0, 0.0), (-8.0, 0.0), 1.0, (True, False)),  # -0.5 kg, with the payload's own 1 kg
+        ((12.5, 0.0), (-8.0, 0.0), 1.0, (True, True)),
+    ],
+)
+def test_values_at_their_thresholds_are_not_beyond_them(
+    force: tuple[float, float], acceleration: tuple[float, float], mass: float, expected: tuple[bool, bool]
+) -> None:
+    """CD-3, CD-5: without gravity, where all of it is exact."""
+    (fx, fy), (ax, ay) = force, acceleration
+    now = history((fx + mass * ax, fy + mass * ay, 0.0, ax, ay, 0.0, 0.0, 0.0, 0.0, mass))
+    assert values(now, limit(mass=mass)) == expected
 
 
-def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
-    """The mean of two gyros of 0.003 rad/s, its difference smoothed at 150 Hz: 1.2 rad/s²; a point feels two axes (CD-0)."""
-    near, far = limits(USE, 2.0, 2.0, 0.0, Mode.RUN), limits(USE, 2.0, 2.0, 0.0, Mode.RUN, lever=0.1)
-    assert near.acceleration_variance == pytest.approx(0.1**2)
-    assert far.acceleration_variance == pytest.approx(0.1**2 + 2.0 / 3.0 * 0.12**2)
-    assert far.noise_acceleration_sq == pytest.approx(18.0 * far.acceleration_variance)
-
-
-def test_a_link_has_its_own_thresholds() -> None:
-    on_link = limits(USE, 0.0, 2.0, 0.0, Mode.RUN, True)
-    assert (on_link.slow_force, on_link.payload_margin) == (60.0, 20.0)
-    assert on_link.force_variance == pytest.approx(9.0)
+@pytest.mark.parametrize(("side", "seen"), [(0.375, False), (0.625, True)])
+def test_instant_is_along_one_axis_however_low_the_thresholds(side: float, seen: bool) -> None:
+    """CD-3: 0.5 N and 0.5 m/s². Along x both are beyond, and parallel; along y the force is `side`, against 4 m/s²."""
+    use = msgspec.structs.replace(USE, sensitivity=4.0, value_force=2.0, value_acceleration=2.0)
+    assert values(history((0.625, side, 0.0, 0.625, -4.0, 0.0)), limit(use, mass=0.0))[0] is seen
 
 
 @pytest.mark.parametrize(
