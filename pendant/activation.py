@@ -103,10 +103,10 @@ class Activation:
         if known or (around.mode is Mode.RUN and around.still.count == 0):
             self._stored.forget()
         elif self.phase is Phase.OFF and self._stored.due(estimate.tick):
-            if joints_ok(estimate):
-                self._stored.keep(estimate, around.wrench_ok, around.mean)
-            else:
+            if not joints_ok(estimate):
                 self._stored.forget()
+            elif around.still.count > 0:  # an arm that a stop leaves braking is not held yet
+                self._stored.keep(estimate, around.wrench_ok, around.mean)
 
     def forget(self) -> None:
         """The configured payload changes: what was stored is no more."""

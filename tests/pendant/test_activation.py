@@ -3,7 +3,9 @@
 import pytest
 
 from pendant.events import Event, Kind
+from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
+from pendant.program import Program, Wait
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
 
@@ -69,3 +71,23 @@ def test_entry_is_refused_unless_the_arm_was_static(ago: int, entered: bool) -> 
     if not entered:
         values = {"joint": "elbow", "value": 0.0123, "limit": 0.01, "time": 0.1}
         assert bench.last.events == (Event(Kind.REFUSED_MOVING, bench.tick, values),)
+
+
+@pytest.mark.parametrize("braking", [0, 1, 40])
+@pytest.mark.parametrize(("rested", "there"), [(229, False), (230, True), (260, True)])
+def test_an_arm_whose_program_is_stopped_on_its_way_is_compared_with_a_state_at_rest(
+    braking: int, rested: int, there: bool
+) -> None:
+    """FD-9: the state must be 0.5 s old, 250 ticks, of which the button is held for 21; none of before or of braking counts."""
+    bench = Bench(sequence__on=True, sequence__stored=True, sequence__age=0.5, activation__period=0.04)
+    bench.run(300)
+    bench.step(Inputs(program=Program(name="rest", steps=(Wait(duration=60.0),))))
+    bench.step(Inputs(commands=(Command.START_PROGRAM,)))
+    bench.run(3, NOTHING, estimate(qd=0.3))
+    bench.step(Inputs(commands=(Command.STOP_PROGRAM,)), estimate(qd=0.3))
+    assert bench.last.mode is Mode.TEACH
+    bench.run(braking, NOTHING, estimate(qd=0.3))
+    bench.run(rested)
+    bench.run(21, HOLD)
+    assert (bench.last.phase is Phase.SEQUENCE) is there
+    assert there or bench.last.events[-1].kind is Kind.REFUSED_NOT_STORED
