@@ -146,7 +146,7 @@ class Detector:
         history, mass = self.history, limit.mass
         count = history.count
         start = min(length, count - 1)
-        before = history.mean(start, max(1, min(BEFORE, count - start)))
+        before = history.mean(start, min(BEFORE, count - start))
         rest, now = contact_force(before, mass), contact_force(history.mean(0, min(2, count)), mass)
         ux, uy, uz = now[0] - rest[0], now[1] - rest[1], now[2] - rest[2]
         size = math.sqrt(ux * ux + uy * uy + uz * uz) or 1.0

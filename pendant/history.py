@@ -12,6 +12,11 @@ SUMMED = 256
 
 Six = tuple[float, float, float, float, float, float]
 
+NO_SUM: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""Where sums begin anew; of their squares: NO_SQUARES."""
+
+NO_SQUARES = (0.0, 0.0)
+
 
 class History:
     """The last samples of one source; age 0 is the newest.
@@ -25,8 +30,8 @@ class History:
 
     def __init__(self) -> None:
         self._samples: list[Signal] = [Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
-        self._sums: list[Six] = [(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * SIZE
-        self._squares: list[tuple[float, float]] = [(0.0, 0.0)] * SIZE
+        self._sums: list[Six] = [NO_SUM] * SIZE
+        self._squares: list[tuple[float, float]] = [NO_SQUARES] * SIZE
         self._at = 0  # where the newest stands
         self._behind = 0  # newest samples that are not in the sums yet
         self.count = 0  # samples since the last gap, at most SIZE - 1
@@ -47,8 +52,8 @@ class History:
         if behind > SUMMED:  # nobody listened for long
             self.shorten(SUMMED)
             behind = self.count
-            self._sums[(self._at - behind) & MASK] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-            self._squares[(self._at - behind) & MASK] = (0.0, 0.0)
+            self._sums[(self._at - behind) & MASK] = NO_SUM
+            self._squares[(self._at - behind) & MASK] = NO_SQUARES
         sx, sy, sz, tx, ty, tz = self._sums[(self._at - behind) & MASK]
         ff, aa = self._squares[(self._at - behind) & MASK]
         for age in range(behind - 1, -1, -1):
@@ -62,8 +67,8 @@ class History:
 
     def gap(self) -> None:
         """A sample is missing: what was before it counts no more."""
-        self._sums[self._at] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        self._squares[self._at] = (0.0, 0.0)
+        self._sums[self._at] = NO_SUM
+        self._squares[self._at] = NO_SQUARES
         self.count = self.clean = self._behind = 0
 
     def shorten(self, length: int) -> None:

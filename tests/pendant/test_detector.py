@@ -6,8 +6,6 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from pendant.contact import Change
 from pendant.contact_limits import OLDER
@@ -53,41 +51,6 @@ def test_all_rules_asked_for_is_stricter_than_any() -> None:
     assert not every_rule or every_rule[0][0] > any_rule
 
 
-def test_more_sensitive_is_sooner_and_less_is_later() -> None:
-    stream = signals(400, push=ramp(400, START, 0.3))
-    ticks = [found(stream, msgspec.structs.replace(USE, sensitivity=value))[0][0] for value in (2.0, 1.0, 0.25)]
-    assert ticks == sorted(ticks)
-    assert ticks[0] < ticks[2]
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.integers(0, 9), st.floats(0.5, 5.0), st.floats(-0.2, 0.2), st.floats(0.3, 2.0), st.floats(2.0, 30.0))
-def test_free_motion_of_a_wrong_payload_is_no_contact(seed: int, mass: float, wrong: float, rate: float, size: float) -> None:
-    """Fast to and fro, the tool turning in gravity: dF and dA stay parallel, whatever the payload weighs."""
-    t = np.arange(800) * 0.002
-    motion = size * np.sin(2 * np.pi * rate * t)[:, None] * np.array([0.6, -0.5, 0.62])
-    gravity = 9.81 * np.stack([np.sin(rate * t), np.zeros_like(t), -np.cos(rate * t)], axis=1)
-    assert found(signals(800, mass=mass * (1 + wrong), believed=mass, motion=motion, gravity=gravity, seed=seed)) == []
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.integers(0, 9), st.lists(st.floats(-8.0, 8.0), min_size=3, max_size=3))
-def test_a_constant_bias_changes_nothing(seed: int, bias: list[float]) -> None:
-    plain = signals(500, push=ramp(500, START, 1.0, top=20.0), seed=seed)
-    biased = [s._replace(fx=s.fx + bias[0], fy=s.fy + bias[1], fz=s.fz + bias[2]) for s in plain]
-    first, second = found(plain), found(biased)
-    assert [(tick, f.change, f.rule, f.steps) for tick, f in first] == [(tick, f.change, f.rule, f.steps) for tick, f in second]
-    assert len(first) == 1
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.integers(0, 9), st.floats(-2.0, 2.0))
-def test_a_slow_drift_changes_nothing(seed: int, drift: float) -> None:
-    """Up to 2 N a minute, four times what the arms' files allow."""
-    stream = [s._replace(fx=s.fx + drift / 60.0 * 0.002 * k) for k, s in enumerate(signals(1500, seed=seed))]
-    assert found(stream) == []
-
-
 def test_kinds_gained_resistance_and_lost() -> None:
     n = 2400
     push = ramp(n, START, 5.0, top=20.0)
@@ -109,12 +72,6 @@ def test_a_slow_squeeze_is_clamping() -> None:
     seen = found(signals(600, arm=1e6, push=ramp(600, START, 0.1)))
     assert seen[0][1].change is Change.CLAMPING
     assert seen[0][1].rule is Rule.SLOW
-
-
-def test_it_is_silent_until_the_force_has_settled() -> None:
-    n = START + SILENCE + 400
-    seen = found(signals(n, push=ramp(n, START, 0.6)))
-    assert len([tick for tick, _ in seen if tick < START + 200]) == 1
 
 
 def test_a_contact_that_went_too_gently_is_over_after_a_while() -> None:
@@ -144,21 +101,6 @@ def test_a_gap_in_the_signal_makes_it_begin_anew() -> None:
     assert detector.step(USE, limit()) is None
     assert not detector.touching
     assert not detector.silent
-
-
-def test_it_finds_what_lies_in_any_direction() -> None:
-    rng = np.random.default_rng(4)
-    for _ in range(10):
-        way = rng.normal(size=3)
-        way /= np.linalg.norm(way)
-        (_, finding), *_ = found(signals(250, push=ramp(250, START, 8.0, way=tuple(way))))
-        assert np.dot(finding.force, way) > 0.9 * np.linalg.norm(finding.force)
-        assert np.dot(finding.acceleration, way) < 0.0
-        assert finding.ratio < 0.0
-
-
-def test_gravity_is_that_of_the_earth() -> None:
-    assert np.linalg.norm(GRAVITY) == 9.81
 
 
 def test_a_clear_change_is_confirmed_on_older_samples_at_once() -> None:
@@ -201,6 +143,34 @@ def test_the_first_suspicious_sample_of_a_ramp_is_the_first_beyond_the_noise() -
     assert tick - finding.steps == START + 8
 
 
+@pytest.mark.parametrize(("rule", "count", "told"), [(Rule.DIFFERENCE, 2.0, 5), (Rule.INSTANT, 1.0, 1), (Rule.INSTANT, 2.0, 2)])
+def test_no_change_is_looked_for_before_a_gap(rule: Rule, count: float, told: int) -> None:
+    """CD-4, CD-14: 20, 25, 30 N ... from the first sample on that is there; ten times as much was before the gap."""
+    use, stream = msgspec.structs.replace(ONLY[rule], hard_count=count), signals(5, push=ramp(5, -4, 5.0), noise=0.0)
+    detector, findings = Detector(), []
+    for signal in signals(40, push=ramp(40, 0, 200.0, top=200.0), noise=0.0):
+        detector.sense(signal)
+    detector.sense(None)
+    for signal in stream[:told]:
+        detector.sense(signal)
+        findings.append(detector.step(use, limit()))
+    *none, finding = findings
+    assert none == [None] * (told - 1)
+    assert finding is not None
+    assert finding.force == pytest.approx((5.0 * (told - 1), 0.0, 0.0))
+    assert finding.steps == max(told - 2, 0)
+
+
+@pytest.mark.parametrize(("ways", "steps"), [((-60.0, 20.0, 20.0), 1), ((20.0, 20.0, 20.0), 2), ((20.0, 20.0, -60.0), 0)])
+def test_a_force_that_swings_round_began_where_it_turned(ways: tuple[float, float, float], steps: int) -> None:
+    """CD-14: what the newest two samples show."""
+    use = msgspec.structs.replace(ONLY[Rule.DIFFERENCE], retrospective=False, hard_count=3.0)
+    push = np.zeros((START + 3, 3))
+    push[START:, 0] = ways
+    ((tick, finding),) = found(signals(START + 3, push=push, noise=0.0), use)
+    assert (tick, finding.steps) == (START + 2, steps)
+
+
 def heard(push: np.ndarray) -> Iterator[tuple[int, Detector, Finding | None]]:
     """Tick by tick, without noise."""
     detector = Detector()
@@ -226,11 +196,29 @@ def test_it_listens_again_six_ticks_after_what_was_ten_ticks_apart_is_the_same()
             break
 
 
+@pytest.mark.parametrize(("late", "changes"), [(-1, 1), (0, 1), (1, 2)])
+def test_a_change_up_to_the_tick_in_which_it_would_listen_again_prolongs_the_silence(late: int, changes: int) -> None:
+    """CD-9a: it is the same event; a tick later it is another."""
+    push = ramp(300, START, 50.0, top=50.0)
+    push[START + SETTLED + NEW + CALM + late :, 0] += 10.0
+    assert len([finding for _, _, finding in heard(push) if finding is not None]) == changes
+
+
 def test_a_force_that_never_settles_keeps_it_silent_for_half_a_second() -> None:
     """CD-9a."""
     silent = [detector.silent for _, detector, _ in heard(ringing(START + SILENCE + 20, START))]
     begun = silent.index(True)
     assert silent[begun:].index(False) == SILENCE
+
+
+@pytest.mark.parametrize(("without", "touching"), [(NEW - 1, True), (NEW, False)])
+def test_after_the_silence_a_force_that_has_just_gone_is_no_contact(without: int, touching: bool) -> None:
+    """CD-9a: gone in all of the newest samples."""
+    end = START + SILENCE
+    push = ringing(end + 1, START)
+    push[end + 1 - without :] = 0.0
+    *_, (_, detector, _) = heard(push)
+    assert (detector.silent, detector.touching) == (False, touching)
 
 
 def test_a_change_of_a_contact_that_never_settles_is_judged_in_the_end() -> None:
@@ -244,6 +232,28 @@ def test_a_change_of_a_contact_that_never_settles_is_judged_in_the_end() -> None
             break
     assert begun is not None
     assert (tick - begun, finding.change) == (PATIENCE, Change.RESISTANCE)  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(("high", "change"), [(3, Change.LOST), (4, Change.RESISTANCE)])
+def test_a_change_is_judged_by_its_last_fifteen_ticks(high: int, change: Change) -> None:
+    """CD-13: of 20 N, 17.5 N count, of which 6.1 N are small; of 30 N in 3 of 15 ticks 4.7 N count, in 4 of them 6.5 N."""
+    judged = 500 + PATIENCE
+    push = ramp(judged + 1, START, 20.0, top=20.0)
+    push[500:] = ringing(judged + 1, 500)[500:]
+    push[judged - 20 : judged - (SETTLED + NEW) + 1 + high] = [30.0, 0.0, 0.0]
+    push[judged - (SETTLED + NEW) + 1 + high :] = 0.0
+    *_, (_, _, finding) = heard(push)
+    assert finding is not None
+    assert finding.change is change
+
+
+def test_a_knock_on_a_contact_that_has_gone_unseen_leaves_none() -> None:
+    """CD-13: there was nothing any more, and there is nothing again; what is known of the contact is not over yet."""
+    push = ramp(800, START, 2.0, top=2.0)
+    push[300:700, 0], push[700:] = np.linspace(2.0, 0.7, 400), [0.7, 0.0, 0.0]
+    push[700:706, 0] = 30.0
+    changes = [finding.change for _, _, finding in heard(push) if finding is not None]
+    assert changes == [Change.GAINED, Change.LOST]
 
 
 def test_a_small_rest_is_a_lost_contact_and_the_next_is_gained() -> None:
