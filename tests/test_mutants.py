@@ -1,11 +1,15 @@
 """The sum of a mutation run."""
 
 import json
+import sys
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
-from tests.mutant_order import chosen
+from tests.mutant_order import call_straight, chosen
 from tests.mutants import TABLES, main, second_trial, summary
 
 CODES = {
@@ -72,3 +76,42 @@ def test_tests_of_the_mutants_own_module_come_first_and_of_the_others_the_quicke
     others = {"tests/pendant/test_b.py::test_x": 1.5, "tests/pendant/test_b.py::test_y": 0.4, "tests/sim/test_c.py::test_z": 0.2}
     order = chosen([*own, *others], "a", own | others)
     assert [name.rpartition("::")[2] for name in order] == ["x]", "test_long", "test_z", "test_y"]
+
+
+def detour(function: Callable[..., str]) -> Callable[..., str]:
+    """A function as mutmut puts it in place of another."""
+
+    @wraps(function)
+    def _trampoline_wrapper(*self: object) -> str:
+        return f"round {function(*self)}"
+
+    return _trampoline_wrapper
+
+
+def test_all_functions_but_the_mutants_are_called_straight(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Arm:
+        pass
+
+    def f() -> str:
+        return "f"
+
+    def g(self: Arm) -> str:
+        return "g"
+
+    def h(self: Arm) -> str:
+        return "h"
+
+    module, user = ModuleType("pendant.a"), ModuleType("tests.a")
+    Arm.__module__ = f.__module__ = g.__module__ = h.__module__ = "pendant.a"
+    f.__qualname__, g.__qualname__, h.__qualname__ = "f", "Arm.g", "Arm.h"
+    for name, value in {"f": detour(f), "Arm": Arm, "Other": str}.items():
+        setattr(module, name, value)
+    Arm.g, Arm.h, user.f = detour(g), detour(h), module.f  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "pendant.a", module)
+    monkeypatch.setitem(sys.modules, "tests.a", user)
+
+    call_straight("pendant.a.xǁArmǁg__mutmut_3")
+    assert [module.f(), user.f(), Arm().g(), Arm().h()] == ["f", "f", "round g", "h"]  # type: ignore[attr-defined]
+    module.f = detour(f)  # type: ignore[attr-defined]
+    call_straight("pendant.a.x_f__mutmut_3")
+    assert [module.f(), Arm().g()] == ["round f", "g"]  # type: ignore[attr-defined]
