@@ -65,7 +65,7 @@ class FreeArm:
         estimate = around.estimate
         self._zero, self._containment, self._zones = zero, containment, zones
         self._hand = Hand(estimate, zero.baseline)
-        self._operation = Operation(estimate, settings, zero.baseline, joints, rated)
+        self._operation = Operation(estimate, settings, zero.baseline, joints, rated, around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = False
         self.user: Vector = ORIGIN

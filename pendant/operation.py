@@ -11,6 +11,7 @@ from typing import NamedTuple
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Kind, Values
 from pendant.hand import CARRIED, Hand
+from pendant.hidden_drop import LEAST, HiddenDrop
 from pendant.link_push import LinkPush
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
@@ -27,9 +28,6 @@ CERTAIN = 4
 
 LASTS = 10
 """And for so many, where less than half of the load is missing: then a residual that swings with the arm is as large."""
-
-LEAST = 4.0
-"""Smallest step that is looked at [N]."""
 
 NOTHING_FOLLOWS = (0, math.inf, -math.inf, math.inf, 0.0)
 """Ticks, least and most share, least and most of the square of what the load needs."""
@@ -75,6 +73,7 @@ class Operation:
         "_alone",
         "_calm",
         "_followed",
+        "_hidden",
         "_joints",
         "_level",
         "_link",
@@ -98,6 +97,7 @@ class Operation:
         baseline: tuple[float, ...],
         joints: tuple[str, ...],
         rated: tuple[float, ...],
+        held: float,
     ) -> None:
         """
         Args:
@@ -106,6 +106,7 @@ class Operation:
             baseline: mean of F_user before entry, axes of B [N, N·m]; zeros without a sensor.
             joints: names, base to flange.
             rated: torque of each joint [N·m].
+            held: configured payload without the tool, what may drop [kg].
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
@@ -122,6 +123,7 @@ class Operation:
         self._level = 0.0  # of the share after a step
         self._stepped = 0  # ticks since a step, 0: none
         self._followed = NOTHING_FOLLOWS
+        self._hidden = HiddenDrop(held)
         self.suspect = False
         self.damping: Damping | None = None
 
@@ -140,7 +142,7 @@ class Operation:
             self._twist,
             self._since,
         )
-        return (*own, self._monitor.memory, self._soft.memory, self._link.memory)
+        return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._link.memory)
 
     def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
         """One tick; its joint values are finite.
@@ -157,6 +159,7 @@ class Operation:
                 return lost
         else:
             self._stepped, self._followed, self.suspect = 0, NOTHING_FOLLOWS, False
+            self._hidden.forget()
         soft = self._soft
         if soft.pushed:
             soft.step(estimate, norm(hand.user), self._torque(estimate) if use_wrench else 0.0)
@@ -236,7 +239,11 @@ class Operation:
             self._stepped += 1
         else:
             self._stepped = 0
-        self.suspect = self._stepped > 0
+        hidden = self._hidden.step((mx, my, mz), (bx, by, bz), (nx, ny, nz), mass)
+        self.suspect = self._stepped > 0 or self._hidden.ticks > 0
+        if hidden:
+            held = self._hidden.held
+            return Ending(Kind.STOPPED_PAYLOAD, {"mass": -held, "force": held * GRAVITY})
         certain = CERTAIN if abs(self._level) >= MUCH else LASTS
         if self._stepped <= certain and not self._follows(share, across, square, weight):
             return None

@@ -217,11 +217,11 @@ class Supervisor:
 
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
         robot, calls, free = self._robot, self._calls, self._free
-        changing = self._tooling.fitting.mass if self._tooling.changing else None
-        felt, guided, shaken = (calls.hand_off, calls.touched, calls.force), self._sequencer.guiding, self._haptics.busy
-        around = Surroundings(
-            estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, changing, guided, shaken
-        )
+        fitting = self._tooling.fitting
+        changing = fitting.mass if self._tooling.changing else None
+        felt = (calls.hand_off, calls.touched, calls.force)
+        besides = (changing, self._sequencer.guiding, self._haptics.busy, fitting.load.mass)
+        around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *besides)
         trying = free.phase is not _OFF
         for event in free.step(around, self.settings):
             robot.follow(event, events)

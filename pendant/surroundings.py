@@ -23,6 +23,7 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     changing: float | None = None  # the configured payload by now, while it is being changed [kg]
     guided: bool = False  # a step of a program asks for free-drive (CD-15)
     shaken: bool = False  # haptic feedback moves the arm: not what a hand does (FD-19)
+    payload: float = 0.0  # configured, without the tool [kg]
 
     @property
     def enabled(self) -> bool:

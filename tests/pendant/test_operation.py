@@ -12,9 +12,10 @@ from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.hand import SWING, Hand
+from pendant.hidden_drop import LASTS, LEAST
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, Mode
-from pendant.operation import CERTAIN, LEAST, SWINGS, Ending, Operation, way_back
+from pendant.operation import CERTAIN, SWINGS, Ending, Operation, way_back
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
@@ -30,10 +31,10 @@ TWO = [0.0, 0.0, 2.0 * G]  # what 2 kg need at rest
 class Free:
     """A free-drive that is watched."""
 
-    def __init__(self, baseline: tuple[float, ...] = ZEROS, **changes: float | bool) -> None:
+    def __init__(self, baseline: tuple[float, ...] = ZEROS, held: float = 0.0, **changes: float | bool) -> None:
         settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
         self.hand = Hand(estimate(), baseline)
-        self.operation = Operation(estimate(), settings, baseline, JOINTS, RATED)
+        self.operation = Operation(estimate(), settings, baseline, JOINTS, RATED, held)
         self.ticks = 0
 
     def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False) -> Ending | None:
@@ -162,7 +163,7 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
 
 def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
     settings = Settings()
-    operation = Operation(elbow(5.0), settings, ZEROS, JOINTS, RATED)
+    operation = Operation(elbow(5.0), settings, ZEROS, JOINTS, RATED, 0.0)
     hand = Hand(elbow(5.0), ZEROS)
     assert any(operation.step(elbow(5.0), hand, True, False) for _ in range(151))
 
@@ -252,6 +253,22 @@ def test_losing_the_sensor_ends_a_suspicion() -> None:
     assert free.operation.suspect
     free.see(loaded(), use_wrench=False)
     assert not free.operation.suspect
+
+
+def test_a_drop_as_large_as_the_hand_that_lets_go_is_found_by_its_size() -> None:
+    """FD-19: a hand pulled up with three quarters of the load; the help goes at once, and comes back where it was none."""
+    pulled = [loaded(force=[0.0, 2.0, 15.0 * min(k / 50, 1.0)]) for k in range(100)]
+    free = Free(held=2.0)
+    assert free.until(pulled) is None
+    assert free.see(loaded(force=TWO)) is None
+    assert free.operation.suspect
+    assert free.until([loaded(force=TWO)] * 20) == Ending(Kind.STOPPED_PAYLOAD, {"mass": -2.0, "force": 2.0 * G})
+    assert free.ticks == 100 + 1 + LASTS
+    free = Free(held=2.0)
+    assert free.until([*pulled, loaded(force=TWO)]) is None
+    free.see(loaded(), use_wrench=False)
+    assert not free.operation.suspect
+    assert Free().until([*pulled, *[loaded(force=TWO)] * 100]) is None, "a tool does not drop"
 
 
 def swinging(share: float, count: int = 60) -> list[Estimate]:
