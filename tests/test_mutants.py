@@ -72,8 +72,8 @@ def test_survivors_of_what_runs_on_import_are_tried_again_with_the_mutant_set_be
 
 
 def test_tests_of_the_mutants_own_module_come_first_and_of_the_others_the_quickest() -> None:
-    own = {"tests/pendant/test_a.py::test_long": 9.0, "tests/pendant/test_a.py::test_short[a/test_b.py::x]": 0.5}
-    others = {"tests/pendant/test_b.py::test_x": 1.5, "tests/pendant/test_b.py::test_y": 0.4, "tests/sim/test_c.py::test_z": 0.2}
+    own = {"tests/pendant/test_a.py::test_long": 90.0, "tests/pendant/test_a.py::test_short[a/test_b.py::x]": 0.5}
+    others = {"tests/pendant/test_b.py::test_x": 9.5, "tests/pendant/test_b.py::test_y": 0.4, "tests/sim/test_c.py::test_z": 0.2}
     order = chosen([*own, *others], "a", own | others)
     assert [name.rpartition("::")[2] for name in order] == ["x]", "test_long", "test_z", "test_y"]
 
