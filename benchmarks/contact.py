@@ -39,8 +39,7 @@ def percentile(values: list[float], share: float) -> float:
 
 def measure(report: Report) -> None:
     full, seed = report.options.full, report.options.seed
-    count = 6 if full else 1
-    seeds = range(seed, seed + count)
+    seeds = range(seed, seed + (6 if full else 1))
     tuning, scoring, seconds = (30, 50, 120.0) if full else (4, 8, 15.0)  # an hour; five hours over three seed bases
     cases = [
         Approach(stiffness, speed, angle, payload, at, farther=farther)

@@ -1,10 +1,9 @@
 """A pytest plugin of `make mutate`: the tests likeliest to notice a mutant come first, and those that hardly can are left out.
-Functions that the mutant leaves as they are get called straight, without mutmut's look at which mutant is under test.
 
 mutmut hands over every test that reaches a mutant, the quick before the slow, and stops at the first that fails. Most of the
 pendant is reached by hundreds of whole sequences: a mutant that survives would take minutes, one without end half an hour. So it
 has to be noticed by the tests of its own module, or by the quickest of the others. What only a slower one would notice counts as
-a survivor.
+a survivor. Functions that the mutant leaves as they are get called straight, without mutmut's look at which mutant is under test.
 """
 
 import os
