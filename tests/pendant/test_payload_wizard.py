@@ -44,8 +44,9 @@ def disturbed(wizard: PayloadWizard, wrench: list[float]) -> list[Event]:
 
 def measure(wizard: PayloadWizard, value: Estimate, length: int = TICKS, known: tuple[Load, ...] = ()) -> list[Event]:
     events = wizard.begin(value, length, "")
-    while wizard.left:
+    for _ in range(length if wizard.left else 0):
         events += wizard.step(value, "", known)
+    assert not wizard.left
     return whole(events, value.tick)
 
 
@@ -110,10 +111,11 @@ def test_a_measurement_lasts_its_ticks_and_shows_how_far_it_is() -> None:
     value = standing(WRIST[0])
     assert wizard.begin(value, 4, "") == []
     seen = []
-    while wizard.left:
+    for _ in range(4):
         seen.append(wizard.progress.share)
+        assert wizard.left
         wizard.step(value, "", ())
-    assert seen == [0.0, 0.25, 0.5, 0.75]
+    assert (seen, wizard.left) == ([0.0, 0.25, 0.5, 0.75], False)
     assert wizard.progress == (1, 0.0, None, "")
 
 

@@ -161,9 +161,11 @@ def test_a_paused_wait_goes_on_where_it_was_and_a_restarted_one_from_its_beginni
 def test_two_waits_each_last_their_own_time() -> None:
     sequencer = started(Program(steps=(Wait(duration=0.006), Wait(duration=0.01))))
     indices = []
-    while sequencer.state is ProgramState.RUNNING:
+    for _ in range(8):
+        assert sequencer.state is ProgramState.RUNNING
         indices.append(sequencer.index)
         sequencer.step(0)
+    assert sequencer.state is not ProgramState.RUNNING
     assert indices == [0] * 3 + [1] * 5
 
 

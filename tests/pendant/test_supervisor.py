@@ -129,10 +129,10 @@ def test_a_program_runs_to_its_end_and_returns_to_where_it_was_started() -> None
 
 def test_a_wait_begins_with_the_tick_after_its_start() -> None:
     bench = running(Program(steps=(Wait(duration=0.02),)))
-    start = bench.tick
-    while bench.last.mode is Mode.RUN:
+    for _ in range(10):
+        assert bench.last.mode is Mode.RUN
         bench.step()
-    assert bench.tick - start == 10
+    assert bench.last.mode is not Mode.RUN
 
 
 def test_a_motion_that_is_paused_or_stopped_is_braked_until_static() -> None:
