@@ -107,7 +107,7 @@ def test_beyond_a_limit_in_any_tick_refuses_at_once_and_at_it_does_not(name: str
         "time": pytest.approx(tick / 500),
     }
     assert refused.kind is (Kind.REFUSED_PAYLOAD if name.startswith("payload") else Kind.REFUSED_LIMIT)
-    assert bench.run(2000, HOLD).mode is Mode.TEACH
+    assert bench.run(1100, HOLD).mode is Mode.TEACH
 
 
 @pytest.mark.parametrize("name", PARAMETERS)

@@ -1,14 +1,15 @@
 """The supervisor: numbers in its events, settings at run time, programs, one decision a tick."""
 
 import pickle
+from collections.abc import Callable
 
 import pytest
 
-from pendant.events import Event, Kind
+from pendant.events import Event, Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.program import JointMove, Program, ProgramState, Wait
-from pendant.settings import Row, Settings, apply, describe, value_of
+from pendant.settings import Row, Settings, Value, apply, describe, value_of
 from pendant.shapes import Sphere
 from pendant.supervisor import Supervisor
 from pendant.walls import Start, Wall
@@ -18,10 +19,21 @@ from tests.pendant.test_freedrive import HOLD, JOINTS, LET_GO, Bench
 from tests.pendant.test_settings import other
 
 START = Bench().supervisor.settings
+LOCKED = [row for row in describe() if row.locked]
+UNLOCKED = [row for row in describe() if not row.locked]
 
 
 def command(*commands: Command) -> Inputs:
     return Inputs(commands=commands)
+
+
+def another(row: Row) -> Value:
+    """A value that is allowed and not the present one."""
+    return not value_of(START, row.name) if row.low is None else other(row)
+
+
+def change(row: Row) -> Inputs:
+    return Inputs(settings={row.name: another(row)})
 
 
 def running(program: Program = PROGRAM, **changes: float | bool) -> Bench:
@@ -189,8 +201,7 @@ def test_an_emergency_stop_in_a_protective_stop_is_the_greater_one() -> None:
         (lambda: Bench().entered(), Command.START_PROGRAM, "leave free-drive first"),
     ],
 )
-def test_a_command_that_is_not_possible_says_why(build: object, refused: Command, reason: str) -> None:
-    assert callable(build)
+def test_a_command_that_is_not_possible_says_why(build: Callable[[], Bench], refused: Command, reason: str) -> None:
     bench = build()
     mode = bench.step(HOLD if bench.tick > 500 else NOTHING).mode
     bench.step(command(refused))
@@ -231,7 +242,7 @@ def test_switching_modes() -> None:
 def test_programs_that_cannot_be_loaded() -> None:
     bench = Bench()
     bench.step(Inputs(program=WRONG))
-    values = {"name": "five joints", "reason": "step 1 has 5 joint angles, the arm has 6 joints"}
+    values: Values = {"name": "five joints", "reason": "step 1 has 5 joint angles, the arm has 6 joints"}
     assert bench.last.events == (Event(Kind.PROGRAM_REFUSED, bench.tick, values),)
     assert bench.supervisor.program is None
     bench = running()
@@ -239,28 +250,35 @@ def test_programs_that_cannot_be_loaded() -> None:
     assert bench.last.events[0].values == {"name": "two moves", "reason": "stop the program first"}
 
 
-@pytest.mark.parametrize("row", describe(), ids=lambda row: row.name)
-def test_limits_are_locked_in_free_drive_and_run(row: Row) -> None:
-    name, locked = row.name, row.locked
-    default = value_of(START, name)
-    value = not default if row.low is None else other(row)
-    change = Inputs(settings={name: value})
+@pytest.mark.parametrize(("make", "mode"), [(lambda: Bench().in_period(), Mode.FREE_DRIVE), (running, Mode.RUN)])
+def test_limits_are_locked_in_free_drive_and_run(make: Callable[[], Bench], mode: Mode) -> None:
+    bench = make()
+    before = bench.supervisor.settings
+    for row in LOCKED:
+        value = another(row)
+        bench.step(change(row))
+        values: Values = {"name": row.name, "value": value, "reason": f"no change of a limit in {mode}"}
+        assert (bench.last.mode, bench.last.events) == (mode, (Event(Kind.SETTING_REFUSED, bench.tick, values),))
+        assert bench.supervisor.settings == before
+
+
+@pytest.mark.parametrize("row", UNLOCKED, ids=lambda row: row.name)
+def test_what_is_no_limit_changes_in_free_drive_and_run(row: Row) -> None:
     for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
         before = bench.supervisor.settings
-        bench.step(change)
-        assert bench.last.mode is mode
-        if locked:
-            values = {"name": name, "value": value, "reason": f"no change of a limit in {mode}"}
-            assert bench.last.events == (Event(Kind.SETTING_REFUSED, bench.tick, values),)
-            assert bench.supervisor.settings == before
-        else:
-            assert bench.last.events[0].kind is Kind.SETTING_CHANGED
-            assert bench.supervisor.settings == apply(before, {name: value})
-    bench = Bench()
-    bench.step(change)
-    assert bench.last.events == (Event(Kind.SETTING_CHANGED, bench.tick, {"name": name, "old": default, "new": value}),)
-    assert bench.supervisor.settings == apply(START, {name: value})
-    assert bench.step(change).events == ()
+        bench.step(change(row))
+        assert (bench.last.mode, bench.last.events[0].kind) == (mode, Kind.SETTING_CHANGED)
+        assert bench.supervisor.settings == apply(before, {row.name: another(row)})
+
+
+@pytest.mark.parametrize("row", [*LOCKED, *UNLOCKED], ids=lambda row: row.name)
+def test_each_setting_changes_while_the_arm_is_held(row: Row) -> None:
+    bench, value = Bench(), another(row)
+    bench.step(change(row))
+    values: Values = {"name": row.name, "old": value_of(START, row.name), "new": value}
+    assert bench.last.events == (Event(Kind.SETTING_CHANGED, bench.tick, values),)
+    assert bench.supervisor.settings == apply(START, {row.name: value})
+    assert bench.step(change(row)).events == ()
 
 
 def test_changed_settings_act_from_the_next_tick() -> None:
