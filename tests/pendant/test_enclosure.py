@@ -187,9 +187,9 @@ def test_a_caught_part_stays_until_pushed_back_and_again_when_let_go() -> None:
     barrier = Barrier(Wall(name="a", shape=BALL), Stage.OPERATION)
     out = (0.11, 0.0, 0.0)
     barrier.step(around())
-    forces = [0.0, 30.0, -7.9, -8.0, -5.0, -4.1, -3.9, -7.9, -8.1]
+    forces = [0.0, 30.0, -7.9, -8.0, -5.0, -4.1, -4.0, -3.9, -7.9, -8.1]
     hold, none = Consequence.HOLD, Consequence.NONE
-    expected = [hold, hold, hold, none, none, none, hold, hold, none]
+    expected = [hold, hold, hold, none, none, none, none, hold, hold, none]
     assert [barrier.step(around(out, user=(force, 50.0, 0.0))).consequence for force in forces] == expected
     assert barrier.step(around((0.09, 0.0, 0.0))).consequence is none
     # coming out again while pushed back is no reason to hold
@@ -219,6 +219,9 @@ def test_free_drive_can_be_entered_outside_an_area_but_not_while_going_further_o
     for z in (-0.1, -0.104, -0.09):
         assert barrier.step(around((0.0, 0.0, z))).consequence is Consequence.NONE
     assert barrier.step(around((0.0, 0.0, -0.096))).consequence is Consequence.REFUSE
+    for z in (-WRONG_WAY, -2.0 * WRONG_WAY):
+        assert barrier.step(around((0.0, 0.0, z))).consequence is Consequence.NONE
+    assert barrier.step(around((0.0, 0.0, -2.001 * WRONG_WAY))).consequence is Consequence.REFUSE
 
 
 def test_a_volume_that_moves_over_a_part_at_rest_does_not_push_it() -> None:

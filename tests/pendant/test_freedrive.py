@@ -174,6 +174,17 @@ def test_a_flange_sensor_lost_in_free_drive_takes_its_help_away_for_good(bad: Es
     assert (bench.last.gain, bench.last.events) == (0.0, ())
 
 
+@pytest.mark.parametrize("told", [True, False])
+def test_a_leaving_that_nobody_asked_for_tells_the_way_back_to_the_posture_at_activation(told: bool) -> None:
+    """FD-22, and only where it is switched on."""
+    bench = Bench(free_drive__way_back=told).entered(estimate(q=[0.5, -1.0, 1.5, -0.25, 0.75, 0.0]))
+    bench.step(HOLD, estimate(q=[0.5, -1.1, 1.7, -0.25, 0.75, 0.0], v_tcp=2.0))
+    left, *others = bench.last.events
+    assert left.kind is Kind.LEFT_LIMIT
+    values = {"joints": "elbow -11.5°, shoulder +5.7°", "posture": "0.5000 -1.0000 1.5000 -0.2500 0.7500 0.0000"}
+    assert others == ([Event(Kind.WAY_BACK, bench.tick, values)] if told else [])
+
+
 def test_periods_are_published_together_and_only_while_they_run() -> None:
     bench = Bench().in_period()
     bench.step(HOLD)

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from pendant.estimate import GRAVITY
@@ -44,14 +45,22 @@ def test_what_is_missing_swings_with_what_the_payload_needs() -> None:
     assert found == [False] * LASTS + [True]
 
 
+@pytest.mark.parametrize("needs", [(5.0, -4.0, 6.0), (-6.0, 5.0, 4.0), (4.0, 6.0, -5.0)])
+def test_it_is_told_in_any_posture(needs: Vector) -> None:
+    x, y, z = (HELD / MASS * np.array(needs)).tolist()
+    drop = HiddenDrop(HELD)
+    assert [drop.step((x, y, z), ORIGIN, needs, MASS) for _ in range(LASTS + 1)] == [False] * LASTS + [True]
+
+
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)])
 def test_it_may_be_off_by_the_noise_and_hardly_in_the_mean(way: Vector) -> None:
     def stays(*sizes: float) -> int | None:
         return told([HAND] * 3 + [off(*(size * share for share in way)) for size in sizes] * 40)
 
-    assert stays(0.99 * NEAR, -0.99 * NEAR) == 3 + LASTS
+    assert stays(NEAR, -NEAR) == 3 + LASTS
     assert stays(1.01 * NEAR, -1.01 * NEAR) is None
     assert stays(0.99 * EXACT) == 3 + LASTS
+    assert stays(*[2.0 * EXACT] * 5, EXACT, *[0.0] * 5) == 3 + LASTS
     assert stays(1.01 * EXACT) is None
 
 

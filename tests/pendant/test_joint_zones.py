@@ -61,6 +61,7 @@ def test_in_the_stiff_zone_a_spring_holds_and_the_way_back_is_eased() -> None:
 def test_started_inside_there_is_no_kick_and_the_way_out_is_free() -> None:
     module = zones()
     assert at(module, (2.98, 0.0), (-1.99, 0.0)) == (0.0, 0.0)
+    assert not module.pushing, "no spring is bent"
     assert at(module, (2.99, 0.0), (-1.99, 0.0)) == pytest.approx((-20.0, 0.0))
     assert at(module, (2.97, -0.5), (-1.99, 0.0)) == pytest.approx((0.0, 0.0))
     assert at(module, (2.98, 0.0), (-1.99, 0.0)) == pytest.approx((-20.0, 0.0)), "it may not go back to where it started"

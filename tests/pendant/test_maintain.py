@@ -8,7 +8,8 @@ import pytest
 
 from pendant.estimate import Estimate
 from pendant.limits import Excess
-from pendant.maintain import Maintained
+from pendant.maintain import SETTLING, Maintained
+from pendant.modes import TICK
 from pendant.settings import Settings, apply
 from tests.pendant.estimates import estimate
 
@@ -80,6 +81,25 @@ def test_forces_count_from_what_they_were_when_the_period_began() -> None:
     assert let_go.value == pytest.approx(math.sqrt(900 + 144 + 49), rel=1e-3)
     joints_only = maintained(estimate(tau_ext=joints)).step(estimate(), use_wrench=True)
     assert joints_only == Excess("joint external torque", "shoulder", 20.0, 8.0, "N·m")
+
+
+@pytest.mark.parametrize("g", [[0.48, 0.6, -0.64], [-0.64, 0.48, 0.6], [0.6, -0.64, 0.48]])
+def test_what_counts_of_a_wrench_that_stays_is_what_no_payload_explains(g: list[float]) -> None:
+    """The whole change, but for what has stayed of it: of the force along gravity, of the torque across it."""
+    force, torque, up, ticks = np.array([9.0, -13.0, 17.0]), np.array([2.0, 5.0, -3.0]), -np.array(g), 100
+    stayed = 1.0 - math.exp(-ticks * TICK / SETTLING)
+    slow_force, slow_torque = stayed * force, stayed * torque
+    expected = {
+        "user force": np.linalg.norm(force - (slow_force @ up) * up),
+        "user torque": np.linalg.norm(torque - slow_torque + (slow_torque @ up) * up),
+    }
+    for name, changes in (("user force", {}), ("user torque", {"user_force__on": False})):
+        start, pushed = estimate(), estimate(force=force.tolist(), torque=torque.tolist())
+        start.g_B = pushed.g_B = 9.81 * np.array(g)
+        watch = maintained(start, **changes)
+        excess = [watch.step(pushed, use_wrench=True) for _ in range(ticks)][-1]
+        assert excess is not None
+        assert (excess.parameter, excess.value) == (name, pytest.approx(expected[name]))
 
 
 def drift(rate: float, seconds: float, direction: list[float], g: list[float]) -> Excess | None:

@@ -340,6 +340,7 @@ def test_a_whole_load_that_drops_in_any_motion_is_found(mass: float, tilt: float
         ((0.0,) * 6, ""),
         ((0.0, 0.0, 0.008, 0.0, 0.0, 0.0), ""),
         ((0.1, -0.2, 0.009, 0.0, 0.0, 0.0), "shoulder +11.5°, base -5.7°, elbow -0.5°"),
+        ((0.0, 0.0, 0.0, math.radians(0.5), 0.0, math.radians(0.499)), "wrist_1 -0.5°"),
         ((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), "wrist_3 -34.4°, wrist_2 -28.6°, wrist_1 -22.9°, elbow -17.2°"),
     ],
 )

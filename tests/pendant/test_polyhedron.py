@@ -8,7 +8,8 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pendant.polyhedron import MANY, polyhedron
+from pendant.polyhedron import MANY, _faces, polyhedron
+from pendant.pose import Vector
 from pendant.shapes import Box
 from tests.pendant.bodies import from_mesh, points
 
@@ -110,7 +111,47 @@ def test_a_hair_is_a_millionth_of_the_body_wherever_it_lies(size: float, off: fl
             polyhedron(raised, SQUARES)
 
 
-def test_how_far_a_vertex_lies_in_front_is_said_in_millimetres() -> None:
-    dented = (*TETRAHEDRON[:3], (0.25, 0.25, -0.0994))
-    with pytest.raises(ValueError, match=r"^faces\[0\]: a vertex lies 99.4 mm in front of it,"):
-        polyhedron(dented, SIDES)
+def warped(off: float) -> tuple[Vector, ...]:
+    """A block of 2 m, as SQUARES: of its top's corners, two lie so far below the other two."""
+    return tuple((10.0 * x, 10.0 * y, -1.0 if z < 0.0 else math.copysign(0.5 * off, x * y)) for x, y, z in CORNERS)
+
+
+@pytest.mark.parametrize(("off", "taken"), [(2e-6, True), (2.001e-6, False)])
+def test_exactly_a_millionth_is_a_hair(off: float, taken: bool) -> None:
+    """Of 2 m: a vertex in front of a face, a corner off its plane."""
+    wide = (TETRAHEDRON[0], (2.0, 0.0, 0.0), *TETRAHEDRON[2:], (0.25, 0.25, -off))
+    for vertices, faces, words in ((wide, SIDES, "in front of it"), (warped(off), SQUARES, "off its plane")):
+        if taken:
+            polyhedron(vertices, faces)
+        else:
+            with pytest.raises(ValueError, match=words):
+                polyhedron(vertices, faces)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "words"),
+    [
+        ((*TETRAHEDRON[:3], (0.25, 0.25, -0.0994)), SIDES, r"^faces\[0\]: a vertex lies 99.4 mm in front of it,"),
+        (warped(0.0994), SQUARES, r"^faces\[1\]: a corner lies 99.4 mm off its plane,"),
+    ],
+)
+def test_how_far_off_a_vertex_is_is_said_in_millimetres(vertices: tuple, faces: tuple, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        polyhedron(vertices, faces)
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e4])
+def test_a_face_has_an_area_by_its_own_size(size: float) -> None:
+    """A fine mesh has small faces; a large one may have corners that lie on a line but for a hair."""
+    small = tuple((size * x, size * y, size * z) for x, y, z in TETRAHEDRON)
+    assert polyhedron(small, SIDES)(0.0, 0.0, -size)[0] == pytest.approx(size)
+    line = (*small[:2], (2.0 * size, 5e-10 * size, 0.0), small[3])
+    with pytest.raises(ValueError, match="its corners lie on a line"):
+        polyhedron(line, SIDES)
+
+
+def test_triangles_side_by_side_in_a_plane_are_one_face() -> None:
+    """What a tick costs grows with the faces."""
+    fine = from_mesh(trimesh.creation.box((0.2, 0.2, 0.2)).subdivide())
+    assert len(fine.faces) == 48
+    assert sorted(len(face.edges) for face in _faces(fine.vertices, fine.faces)) == [8] * 6

@@ -59,6 +59,12 @@ def test_a_wall_that_moves_over_a_part_lets_it_be() -> None:
     assert not guard.started_outside
 
 
+def test_a_wall_that_moves_away_from_under_a_part_gives_it_no_room() -> None:
+    guard = Guard(-0.01)
+    assert guard.step(0.02, 0.0) == 0.02
+    assert guard.step(0.015, -0.005) == 0.015
+
+
 def test_starting_outside_ends_inside() -> None:
     guard = Guard(0.05)
     assert guard.started_outside

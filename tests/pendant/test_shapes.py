@@ -109,6 +109,7 @@ KNOWN: list[tuple[Shape, Point, tuple[float, float, float, float]]] = [
     (Pyramid(size=(0.2, 0.4), height=0.2), (0.0, 0.0, -0.13), (0.03, 0.0, 0.0, -1.0)),
     (Pyramid(size=(0.2, 0.4), height=0.2), (0.0, 0.0, -0.09), (-0.01, 0.0, 0.0, -1.0)),
     (Pyramid(size=(0.2, 0.4), height=0.2), (0.13, 0.0, -0.14), (0.05, 0.6, 0.0, -0.8)),
+    (HalfSpace(normal=(0.0, 1e-6, 0.0), distance=-0.05), (3.0, -0.07, 1.0), (-0.02, 0.0, 1.0, 0.0)),
     (HalfSpace(normal=(0.0, 0.0, -2.0), distance=0.05), (3.0, 1.0, -0.07), (0.02, 0.0, 0.0, -1.0)),
 ]
 
@@ -182,6 +183,7 @@ def test_a_shape_in_a_file_comes_back_equal(shape: Shape) -> None:
         ({"kind": "sphere", "radius": math.nan}, "Expected `float` >= 0.001 - at `$.radius`"),
         ({"kind": "box", "size": [0.1, math.nan, 0.1]}, "Expected `float` >= 0.001 - at `$.size[1]`"),
         ({"kind": "half_space", "normal": [0, 0, 0]}, "normal: its length is 0, allowed: a direction"),
+        ({"kind": "half_space", "normal": [0, 9e-7, 0]}, "normal: its length is 9e-07, allowed: a direction"),
         ({"kind": "half_space", "normal": [math.inf, 0, 0]}, "normal: its length is inf, allowed: a direction"),
         ({"kind": "half_space", "normal": [0, math.nan, 0]}, "normal: its length is nan, allowed: a direction"),
         ({"kind": "box", "size": [0.1, 0.1]}, "Expected `array` of length 3, got 2 - at `$.size`"),

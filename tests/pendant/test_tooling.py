@@ -156,6 +156,7 @@ def test_a_change_in_the_middle_of_another_goes_on_from_there() -> None:
 def test_tool_and_payload_in_one_tick_end_with_that_payload_in_that_tool() -> None:
     bench = Bench()
     assert [event.kind for event in bench.step(tool="gripper", load=Load(mass=2.0))] == [Kind.TOOL_CHANGED]
+    assert bench.tooling.fitting == Fitting(2, GRIPPER, Load(mass=2.0), 0.0, 1.0), "from what was held before both"
     (event,) = bench.run(RAMP)
     assert (event.values["mass"], event.values["total"], event.values["tool"]) == (2.0, 2.9, "gripper")
 
