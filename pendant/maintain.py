@@ -6,7 +6,7 @@ from pendant.estimate import GRAVITY, Estimate
 from pendant.limits import Excess
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
-from pendant.residual import Split, split, upward
+from pendant.residual import Split, upward
 from pendant.settings import Settings
 
 SETTLING = 0.5
@@ -66,6 +66,5 @@ class Maintained:
         about = tx * ux + ty * uy + tz * uz
         x, y, z = change[0] - along * ux, change[1] - along * uy, change[2] - along * uz
         rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
-        parts = split(change, self._up)
         force, torque = math.sqrt(x * x + y * y + z * z), math.sqrt(rx * rx + ry * ry + rz * rz)
-        return Split(parts.payload_force, parts.payload_torque, force, torque)
+        return Split(0.0, 0.0, force, torque)  # no limit here asks for a payload
