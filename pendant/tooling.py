@@ -156,10 +156,11 @@ class Tooling:
         return []
 
     def _lead(self, tool: Tool, load: Load, use: ToolUse) -> None:
-        self._from = self.fitting.mass
+        now = self.fitting
+        self._from = now.mass
         self._ramp, self._age = ticks(use.ramp), -1
         self.changing = True
-        self.fitting = Fitting(self.fitting.number + 1, tool, load, 0.0, self._from)
+        self.fitting = now._replace(number=now.number + 1, tool=tool, load=load)  # `_go_on` begins the way in the same tick
 
     def _go_on(self, tick: int) -> list[Event]:
         """Lead on; then wait until the means of the estimates hold the new load alone."""
