@@ -172,7 +172,6 @@ def _normal(vertices: tuple[Vector, ...], face: tuple[int, ...], number: int) ->
     for index in face:
         if not 0 <= index < len(vertices):
             raise ValueError(f"faces[{number}]: {index} is no vertex, allowed: 0 to {len(vertices) - 1}")
-    ox, oy, oz = vertices[face[0]]
     nx = ny = nz = extent = 0.0
     for start, end in zip(face, face[1:] + face[:1], strict=True):
         (ax, ay, az), (bx, by, bz) = vertices[start], vertices[end]
@@ -180,9 +179,9 @@ def _normal(vertices: tuple[Vector, ...], face: tuple[int, ...], number: int) ->
         if side == 0.0:
             raise ValueError(f"faces[{number}]: vertices {start} and {end} are the same point, allowed: an edge with a length")
         extent = max(extent, side)
-        nx += (ay - by) * (az + bz - 2.0 * oz)
-        ny += (az - bz) * (ax + bx - 2.0 * ox)
-        nz += (ax - bx) * (ay + by - 2.0 * oy)
+        nx += (ay - by) * (az + bz)
+        ny += (az - bz) * (ax + bx)
+        nz += (ax - bx) * (ay + by)
     length = math.sqrt(nx * nx + ny * ny + nz * nz)
     if length <= 1e-9 * extent * extent:
         raise ValueError(f"faces[{number}]: its corners lie on a line, allowed: a face with an area")
