@@ -18,15 +18,18 @@ def test_the_ratio_follows_payload_and_posture() -> None:
 
 def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
     base = limits(USE, 1.0, 2.0, 0.5, Mode.RUN)
-    gentle = limits(msgspec.structs.replace(USE, sensitivity=2.0), 1.0, 2.0, 0.5, Mode.RUN)
+    sensitive = msgspec.structs.replace(USE, sensitivity=2.0)
+    gentle = limits(sensitive, 1.0, 2.0, 0.5, Mode.RUN)
     fast = limits(msgspec.structs.replace(USE, speed_share=1.0), 1.0, 2.0, 0.5, Mode.RUN)
-    guided = limits(USE, 1.0, 2.0, 0.5, Mode.FREE_DRIVE)
-    for other, factor in ((gentle, 0.5), (fast, 1.5), (guided, 3.0)):
+    guided, both = (limits(each, 1.0, 2.0, 0.5, Mode.FREE_DRIVE) for each in (USE, sensitive))
+    for other, factor in ((gentle, 0.5), (fast, 1.5), (guided, 3.0), (both, 1.5)):
         assert other.slow_force == pytest.approx(factor * base.slow_force)
         assert other.ratio == pytest.approx(factor * base.ratio)
         assert other.force_sq == pytest.approx(factor**2 * base.force_sq)
         assert other.confidence_sq == pytest.approx(factor**2 * base.confidence_sq)
         assert other.value_force == pytest.approx(factor * base.value_force)
+        for name in ("acceleration_sq", "clear_sq", "clear_acceleration_sq", "ratio_acceleration_sq"):
+            assert getattr(other, name) == pytest.approx(factor**2 * getattr(base, name)), name
     assert base.noise_force_sq == pytest.approx((3.0 * PAIR * 0.15) ** 2)
 
 
@@ -41,4 +44,5 @@ def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
 def test_a_link_has_its_own_thresholds() -> None:
     on_link = limits(USE, 0.0, 2.0, 0.0, Mode.RUN, True)
     assert (on_link.slow_force, on_link.payload_margin) == (60.0, 20.0)
+    assert on_link.clamping == 24.0  # 4 kg beyond what a wrong model may explain
     assert on_link.force_variance == pytest.approx(9.0)

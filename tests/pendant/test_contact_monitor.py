@@ -67,6 +67,13 @@ def test_switched_off_it_fills_its_buffers_and_finds_nothing() -> None:
     assert len(found) == 1  # at once, since the buffers were full
 
 
+def test_it_knows_where_the_arm_is_whether_it_detects_or_not() -> None:
+    monitor, rest = ContactMonitor(), [None] * 2
+    for now, on in zip(estimates(0, [*rest]), (False, True), strict=True):
+        monitor.step(now, USE, Mode.RUN, on)
+        assert monitor.now().q == tuple(now.q.tolist())
+
+
 def test_a_source_that_is_switched_off_finds_nothing() -> None:
     """CD-2."""
     stream = [*signals(200, push=ramp(200, START, 8.0, top=40.0))]

@@ -34,7 +34,7 @@ START = 150
 def test_each_rule_alone_finds_a_push(rule: Rule, slope: float, within: int) -> None:
     (tick, finding), *_ = found(signals(300, push=ramp(300, START, slope)), ONLY[rule])
     assert START < tick <= START + within
-    assert finding.rule is rule
+    assert (finding.rule, finding.change) == (rule, Change.GAINED)
     assert finding.force[0] > 0.0
     assert abs(tick - finding.steps - START) <= 6 / slope + 2
 
@@ -160,10 +160,11 @@ def test_no_change_is_looked_for_before_a_gap(rule: Rule, count: float, told: in
     assert finding.steps == max(told - 2, 0)
 
 
+@pytest.mark.parametrize("rule", [Rule.DIFFERENCE, Rule.RATIO])
 @pytest.mark.parametrize(("ways", "steps"), [((-60.0, 20.0, 20.0), 1), ((20.0, 20.0, 20.0), 2), ((20.0, 20.0, -60.0), 0)])
-def test_a_force_that_swings_round_began_where_it_turned(ways: tuple[float, float, float], steps: int) -> None:
+def test_a_force_that_swings_round_began_where_it_turned(ways: tuple[float, float, float], steps: int, rule: Rule) -> None:
     """CD-14: what the newest two samples show, along any axis and whatever the sensor's bias."""
-    use = msgspec.structs.replace(ONLY[Rule.DIFFERENCE], retrospective=False, hard_count=3.0)
+    use = msgspec.structs.replace(ONLY[rule], retrospective=False, hard_count=3.0)
     for axis in range(3):
         push = np.zeros((START + 3, 3))
         push[START:, axis] = ways

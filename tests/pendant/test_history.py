@@ -91,3 +91,25 @@ def test_samples_since_a_saturated_one_are_counted_apart() -> None:
     assert (history.count, history.clean) == (10, 5)
     history.shorten(3)
     assert (history.count, history.clean) == (3, 3)
+
+
+def test_a_mean_over_all_that_is_kept() -> None:
+    rows = np.random.default_rng(5).normal(0.0, 5.0, (SIZE + 90, 6))
+    history = History()
+    for row in rows.tolist():
+        history.push(Signal(*row))
+        history.mean(0, 1)
+    assert history.mean(0, MASK) == pytest.approx(rows[-MASK:].mean(axis=0), abs=1e-9)
+
+
+def test_sums_that_begin_anew_owe_nothing_to_what_was_before() -> None:
+    """Beside a sum of 5e20, values of 1 and 3 would not count at all."""
+    history = History()
+    for _ in range(SIZE):
+        history.push(Signal(*[1e18] * 6))
+        history.mean(0, 1)
+    for k in range(SUMMED + 1):
+        history.push(Signal(*[1.0 + k % 2 * 2.0] * 6))
+    mean = history.mean(0, 4)
+    assert mean == (2.0,) * 6
+    assert history.variances(0, 4, mean) == (1.0, 1.0)

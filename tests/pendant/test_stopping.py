@@ -137,3 +137,9 @@ def test_a_stop_that_is_measured_is_as_one_that_had_nothing_to_measure() -> None
     assert moving.memory != standing.memory
     assert len(moving.step(estimate(), 50, 50)) - len(standing.step(estimate(), 50, 50)) == 1
     assert moving.memory == standing.memory
+
+
+def test_a_reset_without_a_stop_leaves_no_trace() -> None:
+    stopping = Stopping()
+    stopping.end()
+    assert stopping.memory == Stopping().memory
