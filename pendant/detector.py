@@ -134,9 +134,10 @@ class Detector:
         counts, misses, hard_count = self._counts, int(use.misses), int(use.hard_count)
         seen: list[tuple[Rule, int, bool]] = []
         change = hard(self.history, limit)
-        difference = counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses)
-        if use.difference and (difference or (use.retrospective and clear(self.history, limit))):
-            seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
+        if use.difference:
+            confirmed = counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses)
+            if confirmed or (use.retrospective and clear(self.history, limit)):
+                seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
         if use.ratio and counts[Rule.RATIO].step(change.ratio or of_values, hard_count, misses):
             seen.append((Rule.RATIO, STEP + hard_count, False))
         return seen
