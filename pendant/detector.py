@@ -96,7 +96,7 @@ class Detector:
             return None
         rule, length, dead = seen
         sighting = self._look_back(rule, length, limit)
-        self.silent, self._age, self._calm = True, 0, 0
+        self.silent, self._age, self._gone = True, 0, 0
         self._clear()
         if self.touching:
             self._pending = sighting
@@ -193,7 +193,7 @@ class Detector:
         """A contact that went too gently to be seen is over when its force has been gone for a while."""
         if self._rest is None:
             return
-        gone = self.history.count >= NEW and self._size(self.history.mean(0, NEW), self._rest, limit) == 0.0
+        gone = self._size(self.history.mean(0, NEW), self._rest, limit) == 0.0
         self._gone = self._gone + 1 if gone else 0
         if self._gone >= GONE:
             self.touching, self._rest = False, None

@@ -44,13 +44,6 @@ def test_no_rule_no_finding() -> None:
     assert found(signals(300, push=ramp(300, START, 10.0)), none) == []
 
 
-def test_all_rules_asked_for_is_stricter_than_any() -> None:
-    strict = msgspec.structs.replace(USE, all_rules=True, ratio=False)
-    stream = signals(400, push=ramp(400, START, 1.0))
-    any_rule, every_rule = found(stream)[0][0], found(stream, strict)
-    assert not every_rule or every_rule[0][0] > any_rule
-
-
 def test_kinds_gained_resistance_and_lost() -> None:
     n = 2400
     push = ramp(n, START, 5.0, top=20.0)

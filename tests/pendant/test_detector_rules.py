@@ -10,9 +10,10 @@ import pytest
 from pendant.confirmation import Confirmation
 from pendant.contact_rules import NEW, Rule, hard, slow, statistical, values
 from pendant.contact_settings import ContactUse
-from pendant.detector import GONE, Detector
+from pendant.detector import GONE, SILENCE, Detector
 from pendant.history import History
 from tests.pendant.contacts import USE, found, limit, ramp, signals
+from tests.pendant.test_detector import ringing
 
 START = 60
 SETS = [rules for length in range(1, len(Rule) + 1) for rules in combinations(Rule, length)]
@@ -84,3 +85,18 @@ def test_a_contact_is_over_after_a_fifth_of_a_second_without_any_force() -> None
     again[60] = 10.0
     detector = Detector()
     assert [lasts(detector, force) for force in (gone, gone, again)] == [NEW + GONE - 2, NEW + GONE - 2, 60 + NEW + GONE - 1]
+
+
+def test_a_contact_that_goes_as_it_listens_again_lasts_as_long() -> None:
+    """CD-9a: whatever was before it, here one that was over after such a time."""
+    detector = Detector()
+    lasts(detector, np.zeros(NEW + 2 * GONE))
+    end = START + 1 + SILENCE  # seen in the second tick
+    push = ringing(end + 2 * GONE, START)
+    push[end - NEW + 2 :] = 0.0
+    ticks = 0
+    for tick, signal in enumerate(signals(len(push), push=push, noise=0.0)):
+        detector.sense(signal)
+        detector.step(only([Rule.DIFFERENCE] if tick <= end else []), limit())
+        ticks += tick > end and detector.touching
+    assert ticks == GONE - 1
