@@ -39,7 +39,9 @@ def test_a_change_is_felt_from_the_tick_after_learning_on_and_after_each_restart
 
 
 @pytest.mark.parametrize("k", range(6))
-@pytest.mark.parametrize(("size", "rate"), [(2.5, 2.5 * FOLLOW), (2.99, 2.99 * FOLLOW), (3.0, CREEP), (3.01, CREEP), (40.0, CREEP)])
+@pytest.mark.parametrize(
+    ("size", "rate"), [(2.5, 2.5 * FOLLOW), (2.99, 2.99 * FOLLOW), (3.0, CREEP), (3.01, CREEP), (40.0, CREEP)]
+)
 def test_a_change_is_followed_quickly_below_the_size_that_is_near_only(k: int, size: float, rate: float) -> None:
     """The size of a change is that of its largest value, as weighted."""
     changed = tuple(-size / WEIGHTS[k] if i == k else 0.0 for i in range(6))
