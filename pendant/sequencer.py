@@ -81,7 +81,6 @@ class Sequencer:
         """Give the program up, and keep it loaded."""
         self.state = ProgramState.NONE if self.program is None else ProgramState.STOPPED
         self.index = 0
-        self._left = 0
         self._drop()
 
     @property

@@ -91,3 +91,14 @@ def test_an_arm_whose_program_is_stopped_on_its_way_is_compared_with_a_state_at_
     bench.run(21, HOLD)
     assert (bench.last.phase is Phase.SEQUENCE) is there
     assert there or bench.last.events[-1].kind is Kind.REFUSED_NOT_STORED
+
+
+@pytest.mark.parametrize("phase", [Phase.ACTIVATION, Phase.SEQUENCE])
+def test_a_mode_that_free_drive_cannot_be_entered_from_ends_it_and_is_named(phase: Phase) -> None:
+    """FD-1."""
+    bench = Bench(sequence__on=True, activation__period=0.0 if phase is Phase.SEQUENCE else 1.0)
+    bench.run(60)
+    assert bench.step(HOLD).phase is phase
+    bench.step(Inputs(held=HOLD.held, commands=(Command.NORMAL,)))
+    assert bench.last.events[-1] == Event(Kind.REFUSED_MODE, bench.tick, {"mode": Mode.NORMAL, "allowed": "TEACH"})
+    assert (bench.last.mode, bench.last.phase) == (Mode.NORMAL, Phase.OFF)

@@ -7,7 +7,7 @@ import pytest
 
 from pendant.events import Kind
 from pendant.inputs import Command, Inputs
-from pendant.joint_push import JointPushSignal
+from pendant.joint_push import OFF, JointPushSignal
 from pendant.modes import Law, Mode, Phase
 from pendant.program import JointMove, Program
 from pendant.signal_settings import JointPush
@@ -34,6 +34,40 @@ def test_a_change_beyond_the_threshold_is_a_push(size: float, there: bool) -> No
 @pytest.mark.parametrize(("joint", "there"), [(0, False), (1, True), (3, True), (4, False)])
 def test_only_the_joints_that_are_asked(joint: int, there: bool) -> None:
     assert any(felt(lambda _: 20.0, 0.3, JointPush(on=True, first=2.0, last=4.0), joint)) is there
+
+
+@pytest.mark.parametrize(("first", "last"), [(4.0, 2.0), (7.0, 12.0), (12.0, 1.0)])
+def test_where_no_joint_of_the_arm_is_asked_no_hand_is_felt(first: float, last: float) -> None:
+    signal, use = JointPushSignal(6), JointPush(on=True, threshold=1.0, first=first, last=last)
+    for tick in range(100):
+        assert not signal.step([20.0 * (tick > 60)] * 6, use)
+        assert not signal.touched
+
+
+@pytest.mark.parametrize(("what", "share"), [("present", 1.0), ("touched", OFF)])
+def test_a_change_of_just_its_threshold_is_none_yet(what: str, share: float) -> None:
+    """A push goes beyond it, a hand beyond a third of it."""
+
+    def pushed(threshold: float) -> JointPushSignal:
+        """A push, of which the last tick alone is judged by this threshold."""
+        signal = JointPushSignal(6)
+        for tick in range(100):
+            signal.step([0.0, -9.0 * (tick > 60), 0.0, 0.0, 0.0, 0.0], JointPush(threshold=100.0 if tick < 99 else threshold))
+        return signal
+
+    change = -pushed(100.0)._torques.change[1]
+    assert getattr(pushed(change / share), what) is False
+    assert getattr(pushed(0.999 * change / share), what) is True
+
+
+def test_what_was_felt_is_over_when_it_is_learned_afresh() -> None:
+    signal, use = JointPushSignal(6), JointPush(on=True)
+    for tick in range(60):
+        signal.step([20.0 * (tick > 52)] * 6, use)
+    assert signal.present
+    assert signal.touched
+    signal.restart()
+    assert (signal.present, signal.touched) == (False, False)
 
 
 @pytest.mark.parametrize("frequency", [6.0, 7.5, 9.0, 10.5, 12.0])

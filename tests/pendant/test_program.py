@@ -73,6 +73,12 @@ def test_a_bad_step_is_refused(bad: dict[str, object]) -> None:
         convert(bad)
 
 
+@pytest.mark.parametrize(("value", "text"), [(math.nan, "nan"), (math.inf, "inf"), (-math.inf, "-inf")])
+def test_a_value_that_is_no_number_is_named(value: float, text: str) -> None:
+    with pytest.raises(ValueError, match=f"^{text} is not a finite number$"):
+        JointMove(q=(0.0, value, 1.0))
+
+
 def test_a_program_has_at_least_one_step() -> None:
     with pytest.raises(msgspec.ValidationError):
         msgspec.convert({"steps": []}, Program)
