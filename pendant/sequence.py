@@ -42,7 +42,7 @@ class Sequence:
 
     __slots__ = (
         "_acceleration",
-        "_changes",
+        "_against",
         "_dynamic",
         "_joints",
         "_monitor",
@@ -50,7 +50,6 @@ class Sequence:
         "_share",
         "_since",
         "_start",
-        "_stored",
         "_up",
         "_wrench",
     )
@@ -74,8 +73,7 @@ class Sequence:
         limits = settings.limits.activation
         estimate = around.estimate
         self._monitor = Monitor(limits)
-        self._changes = None if stored is None else Monitor(limits, COMPARED, AGAINST)
-        self._stored = stored
+        self._against = None if stored is None else (stored, Monitor(limits, COMPARED, AGAINST))
         self._joints = joints
         self._scale = rated
         self._share = limits.load_share
@@ -91,8 +89,9 @@ class Sequence:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        own = (self._since, self._stored, self._wrench, self._acceleration, self._up, self._start, self._share)
-        return (*own, self._monitor.memory, None if self._changes is None else self._changes.memory, self._dynamic.memory)
+        own = (self._since, self._wrench, self._acceleration, self._up, self._start, self._share)
+        against = None if self._against is None else (self._against[0], self._against[1].memory)
+        return (*own, self._monitor.memory, against, self._dynamic.memory)
 
     def missing(self, around: Surroundings) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
@@ -109,9 +108,9 @@ class Sequence:
         parts = split(around.mean.mean(), self._up) if self._wrench else None
         shares = self._shares(around.estimate, parts)
         beyond = self._monitor.step(View(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares))
-        changes, stored = self._changes, self._stored
-        if changes is None or stored is None:
+        if self._against is None:
             return beyond
+        stored, changes = self._against
         if self._wrench:
             parts = split([now - then for now, then in zip(around.mean.mean(), stored.wrench, strict=True)], self._up)
         return beyond + changes.step(View(around.estimate, stored, parts, self._joints, self._scale, self._share, shares))
@@ -126,7 +125,7 @@ class Sequence:
     def monitored(self) -> tuple[Monitored, ...]:
         """What was checked last."""
         told = self._monitor.monitored()
-        return told if self._changes is None else told + self._changes.monitored()
+        return told if self._against is None else told + self._against[1].monitored()
 
     def reasons(self, beyond: list[Gauge], around: Surroundings, settings: Settings) -> list[Event]:
         """Every parameter that prevented entry (FD-11), then the refusal itself (FD-10)."""
