@@ -69,7 +69,7 @@ def test_the_hands_force_and_torque_lower_the_limits_by_their_whole_sizes() -> N
     """FD-12b: whatever their direction; without the flange's sensor nothing does."""
     on: dict[str, float | bool] = {"sequence__dynamic__pushed": True, "soft__force_share": 0.02, "soft__torque_share": 0.1}
     pushed = estimate(force=[2.0, 3.0, 6.0], torque=[4.0, 0.0, 3.0])
-    begun, blind = sequence(pushed, **on), sequence(estimate(wrench_valid=False), **on)
+    begun, blind = sequence(pushed, None, **on), sequence(estimate(wrench_valid=False), None, **on)
     begun.check(around(pushed))
     assert blind.check(around(estimate(wrench_valid=False))) == []
     left = {item.name: item.high for item in begun.monitored()}

@@ -39,7 +39,7 @@ class Bench:
 Course = list[tuple[int, dict[str, Any]]]
 """Ticks, and what the arm feels in them."""
 
-TURNED = {"q": [0.0, 0.0, 0.0, 0.0, 0.0, 0.01]}
+TURNED: dict[str, Any] = {"q": [0.0, 0.0, 0.0, 0.0, 0.0, 0.01]}
 COURSES: dict[str, tuple[Course, Presence]] = {
     "push.on": ([(60, {"force": 20.0})], Presence("push", by_hand=True)),
     "twist.on": ([(60, {"torque": 4.0})], Presence("twist", by_hand=True)),
@@ -110,7 +110,7 @@ def test_a_joint_is_turned_from_where_it_was_first_known_to_be_held() -> None:
 
 @pytest.mark.parametrize(("way", "felt"), [(0.0, True), (0.049, True), (ANOTHER_POSTURE, True), (0.051, False), (-0.051, False)])
 @pytest.mark.parametrize(("switch", "hand"), [("push.on", {"force": 20.0}), ("joints.on", {"tau_ext": 9.0})])
-def test_the_untouched_state_is_that_of_the_posture(switch: str, hand: dict[str, float], way: float, felt: bool) -> None:
+def test_the_untouched_state_is_that_of_the_posture(switch: str, hand: dict[str, Any], way: float, felt: bool) -> None:
     """What the arm feels when it is held again is a hand's unless it has moved by more than `ANOTHER_POSTURE`."""
     bench, there = Bench(), [0.0, 0.0, way, 0.0, 0.0, 0.0]
     bench.run(100, switch)
@@ -147,7 +147,8 @@ def test_a_hand_is_on_from_its_force_on(kind: str, lever: float) -> None:
     """FD-8a: below it, it is off; a torque is as good a sign as the force on its lever."""
     bench = Bench()
     bench.run(100, "push.on")
-    bench.run(60, "push.on", **{kind: FELT})
+    felt: dict[str, Any] = {kind: FELT}
+    bench.run(60, "push.on", **felt)
     for share, off in ((0.98, False), (1.02, True)):
         assert bench.off(1, LetGo(force=share * 7.0 * lever, time=0.0)) == [off]
 
@@ -207,7 +208,7 @@ def test_a_push_counts_from_the_tick_in_which_it_is_asked_for() -> None:
     [("push", "twist", {"force": 13.0}), ("twist", "push", {"torque": 2.6}), ("force_step", "push", {"force": 8.5})],
 )
 def test_what_was_over_with_the_sensor_is_not_back_when_it_is_asked_for_again(
-    name: str, other: str, felt: dict[str, float]
+    name: str, other: str, felt: dict[str, Any]
 ) -> None:
     """FD-5, FD-12: what would be enough to stay is not enough to come."""
     bench = Bench()
