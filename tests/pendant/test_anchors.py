@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from pendant.anchors import MOVED, RESIDUAL, Anchor, Stay
@@ -107,12 +108,22 @@ def test_average_follows_the_mean_of_the_last_period() -> None:
     assert anchor.local[2] == pytest.approx(sum(0.001 * k for k in range(1, 51)) / 50)
 
 
+def test_the_mean_is_of_the_last_period_in_every_axis() -> None:
+    places = np.random.default_rng(1).normal(0.0, 0.1, (20, 3))
+    anchor = Anchor(Wall(name="w", shape=Sphere(radius=0.2), policy=Policy.AVERAGE), NONE, 7)
+    for end, (x, y, z) in enumerate(places.tolist(), 1):
+        assert anchor.step(Stay((x, y, z), (0.0, 0.0, -1.0), False, False, NONE, PUSH, NONE, N, N))
+        assert anchor.local == pytest.approx(places[max(end - 7, 0) : end].mean(axis=0))
+
+
 def test_average_needs_somebody_in_the_last_period() -> None:
     assert run(Policy.AVERAGE, one(3))[1] == []
     assert run(Policy.AVERAGE, one(3), literal=True)[1] == list(range(1, 2 * N + 1))
     assert run(Policy.AVERAGE, one(3, user=PUSH))[1] == list(range(3, N + 3))
     assert run(Policy.AVERAGE, [Tick(user=PUSH, in_band=k != 7) for k in range(N)])[1] == [8]
     assert run(Policy.AVERAGE, path(-0.1, 3 * N, payload=DOWN))[1] == []
+    # so far itself, in one tick
+    assert run(Policy.AVERAGE, [Tick(z=MOVED, payload=(0.0, 0.0, -4.0))] * 2 * N)[1] == list(range(1, N + 1))
     # after the first 5 mm the rest of the lift, and until the way up has left the period
     assert run(Policy.AVERAGE, [*path(0.11, N, payload=DOWN), *[Tick(z=0.11, payload=DOWN)] * N])[1] == list(range(5, 2 * N - 4))
 

@@ -326,6 +326,16 @@ def test_a_wall_has_no_place_before_its_first_step() -> None:
     assert [border.name for border, _ in containment.places()] == ["early", "floor"]
 
 
+def test_what_was_left_holds_no_more() -> None:
+    containment = Containment((FLOOR,), {})
+    containment.enter(Walls())
+    assert containment.step(at(0.0), *NOBODY) is None
+    assert containment.step(at(0.0, 0.0, -0.2), *NOBODY) is not None
+    containment.leave()
+    assert containment.step(at(0.0, 0.0, -0.2), *NOBODY) is None
+    assert containment.states() == containment.places() == ()
+
+
 def test_without_any_border_it_does_nothing() -> None:
     containment = Containment((), {"world": HERE})
     before = containment.memory

@@ -83,12 +83,41 @@ def test_force_lowers_linear_limits_and_torque_angular_ones() -> None:
 def test_drift_lowers_speeds_alone() -> None:
     """(ii)."""
     limits = DynamicLimits(in_operation(settings(soft__drift=True, soft__drift_time=0.2, soft__drift_share=0.4)), STILL)
-    for _ in range(100):
-        assert limits.step(estimate(speed=0.1))[:6] == (1.0,) * 6
-    assert limits.step(estimate(speed=0.1))[:6] == (1.0, 0.4, 0.4, 1.0, 1.0, 1.0)
+    for _ in range(2):
+        assert limits.step(STILL)[:6] == (1.0,) * 6
+        for _ in range(100):
+            assert limits.step(estimate(speed=0.1))[:6] == (1.0,) * 6
+        assert limits.step(estimate(speed=0.1))[:6] == (1.0, 0.4, 0.4, 1.0, 1.0, 1.0)
 
 
-@pytest.mark.parametrize(("speed", "falls"), [(0.99 * CREEPING, False), (1.01 * CREEPING, True)])
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(("degrees", "falls"), [(44.9, True), (45.1, False)])
+def test_the_cone_in_which_motion_is_drift_lies_round_where_it_began(seed: int, degrees: float, falls: bool) -> None:
+    """(ii): 5 ticks straight on, 6 a little under or over 45° off."""
+    first, aside = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0][:, :2].T
+    angle = math.radians(degrees)
+    limits = DynamicLimits(in_operation(settings(soft__drift=True))._replace(drift_ticks=10), STILL)
+    for way in [first] * 5 + [math.cos(angle) * first + math.sin(angle) * aside] * 6:
+        limits.step(estimate(speed=(0.3 * way).tolist()))
+    assert (limits.shares.speed < 1.0) is falls
+
+
+def test_along_gravity_is_along_the_bases_gravity_with_other_rules_too() -> None:
+    """(iii) and (v), on a tilted base."""
+    up, now = np.array([2.0, -3.0, 6.0]) / 7.0, estimate(load_mass=2.0)
+    now.g_B = -9.81 * up
+    found = shares(now, soft__payload=True, soft__payload_share=0.5, soft__vertical=True, soft__vertical_share=0.25)
+    assert found == (1.0, 0.5, 0.5, 0.5, 0.5, 0.25, pytest.approx(tuple(up)))
+    assert found.along(*up) == pytest.approx(0.25)
+
+
+def test_a_hand_that_is_not_told_lowers_nothing_and_what_stays_is_the_same_object() -> None:
+    limits = DynamicLimits(in_operation(settings(soft__pushed=True)), STILL)
+    assert limits.step(STILL)[:6] == (1.0,) * 6
+    assert limits.step(STILL, 20.0, 2.0) is limits.step(STILL, 20.0, 2.0)
+
+
+@pytest.mark.parametrize(("speed", "falls"), [(0.99 * CREEPING, False), (CREEPING, True), (1.01 * CREEPING, True)])
 def test_in_the_sequence_a_creeping_arm_drifts(speed: float, falls: bool) -> None:
     limits = DynamicLimits(in_activation(settings(sequence__dynamic__drift=True, soft__drift_time=0.2)), STILL)
     for _ in range(102):
@@ -242,6 +271,8 @@ def test_in_the_sequence_each_rule_lowers_its_limit(rule: str, off: float, on: b
 
 def test_memory_tells_states_apart() -> None:
     one, other = (DynamicLimits(in_operation(Settings()), STILL) for _ in range(2))
+    other.step(STILL)
+    assert one.memory == other.memory
     one.step(estimate(speed=0.1))
     assert one.memory != other.memory
     assert math.isclose(one.step(STILL).speed, 1.0)

@@ -30,6 +30,8 @@ def at(module: JointZones, *motion: tuple[float, float]) -> tuple[float, ...]:
 
 def test_away_from_the_limits_nothing_is_resisted() -> None:
     assert at(zones(), (2.849, 3.0), (-1.849, -3.0)) == ()
+    wide = JointLimits(damping_zone=0.25, stiff_zone=0.25)
+    assert at(zones(wide), (2.5, 3.0), (-1.5, -3.0)) == (), "where the zones begin"
 
 
 @pytest.mark.parametrize(
@@ -49,9 +51,9 @@ def test_in_the_damping_zone_outward_motion_is_damped(angle: float, speed: float
 def test_in_the_stiff_zone_a_spring_holds_and_the_way_back_is_eased() -> None:
     module = zones()
     at(module, (2.94, 0.0), (0.0, 0.0))
-    assert not module.pushing
+    assert module.pushing is False
     assert at(module, (2.96, 0.0), (0.0, 0.0)) == pytest.approx((-20.0, 0.0))
-    assert module.pushing
+    assert module.pushing is True
     assert at(module, (2.96, 1.0), (0.0, 0.0)) == pytest.approx((-45.0, 0.0))
     assert at(module, (2.96, -0.4), (0.0, 0.0)) == pytest.approx((-10.0, 0.0))
     assert at(module, (2.96, -2.0), (0.0, 0.0)) == pytest.approx((0.0, 0.0)), "it never pulls outward"
@@ -68,6 +70,7 @@ def test_started_inside_there_is_no_kick_and_the_way_out_is_free() -> None:
     assert at(module, (0.0, 0.0), (-1.99, 0.0)) == (0.0, 0.0)
     at(module, (0.0, 0.0), (0.0, 0.0))
     assert module.torque == ()
+    assert module.pushing is False
     at(module, (2.94, 0.0), (0.0, 0.0))
     assert at(module, (2.98, 0.0), (0.0, 0.0)) == pytest.approx((-60.0, 0.0)), "come in again, it meets the whole zone"
 

@@ -126,6 +126,8 @@ def test_limits_carry_reaction_and_time() -> None:
     assert [len(monitor.step(heavy)) for _ in range(3)] == [0, 0, 1]
     (shown,) = monitor.monitored()
     assert (shown.value, shown.limit) == (-5.1, -5.0)
+    within = view(estimate(force=[50.0, 0.0, -5.0]))
+    assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time begins anew"
     assert monitor.memory != Monitor(Few()).memory
 
 
@@ -156,3 +158,27 @@ def test_each_limit_falls_by_its_own_share(name: str, share: float) -> None:
     shares = Shares(way=0.9, speed=0.8, turning=0.7, linear=0.6, angular=0.5)
     PARAMETERS[name].read(msgspec.structs.replace(view(estimate()), shares=shares), gauge)
     assert gauge.high == pytest.approx(2.0 * share)
+
+
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        ("flange_displacement", 0.9),
+        ("flange_speed", 0.8),
+        ("tcp_speed", 0.8),
+        ("elbow_speed", 0.8),
+        ("flange_acceleration", 0.6),
+    ],
+)
+def test_a_linear_limit_falls_along_gravity_as_well(name: str, share: float) -> None:
+    """FD-12b (v): of p_BF - p0, or of the speed or acceleration of the part."""
+    up, value, start = np.array([2.0, -3.0, 6.0]) / 7.0, estimate(), (0.4, -0.1, 0.3)
+    vector = np.array([0.5, 0.3, -0.2])
+    value.p_BF, value.a_felt, value.v_F = vector + start, vector, np.append(vector, np.zeros(3))
+    value.tcp = value.elbow = np.append(np.zeros(3), vector)
+    shares = Shares(way=0.9, speed=0.8, linear=0.6, vertical=0.5, up=tuple(up))
+    gauge = Gauge(name, "", high=2.0)
+    since = Reference(start, ZEROS, (0.0,) * 6, (0.0,) * 6)
+    PARAMETERS[name].read(msgspec.structs.replace(view(value, since), shares=shares), gauge)
+    vertical = vector @ up / np.linalg.norm(vector)
+    assert gauge.high == pytest.approx(2.0 * share / math.sqrt(1.0 + 3.0 * vertical**2))
