@@ -6,9 +6,21 @@ import numpy as np
 import pytest
 
 from pendant.estimate import Estimate
-from pendant.hand import CARRIED, FELT_BY_JOINTS, JOINTS_SWING, LED, LED_SETTLING, OFFSET, ON_A_LINK, SETTLING, SWING, Hand
+from pendant.hand import (
+    CARRIED,
+    DOUBT,
+    FELT_BY_JOINTS,
+    JOINTS_SWING,
+    LED,
+    LED_SETTLING,
+    OFFSET,
+    ON_A_LINK,
+    SETTLING,
+    SWING,
+    Hand,
+)
 from pendant.modes import TICK
-from pendant.pose import Vector
+from pendant.pose import ORIGIN, Vector
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
@@ -57,7 +69,7 @@ def test_a_change_along_gravity_becomes_payload_like() -> None:
 def test_while_the_arm_is_led_that_takes_longer() -> None:
     down = {"force": [0.0, 0.0, -2.0]}
     slow, led = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
-    after(slow, 2.0, estimate(speed=0.99 * LED, **down))  # type: ignore[arg-type]
+    after(slow, 2.0, estimate(speed=LED, **down))  # type: ignore[arg-type]
     after(led, 2.0, estimate(speed=1.01 * LED, **down))  # type: ignore[arg-type]
     assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
     assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / LED_SETTLING)), rel=1e-3)
@@ -104,6 +116,82 @@ def test_a_payload_that_the_joints_feel_is_payload_like() -> None:
     after(hand, 20.0, estimate(felt=[0.0, 0.0, -18.0]), use_wrench=False)
     assert hand.payload == pytest.approx((0.0, 0.0, -18.0), abs=1e-3)
     assert hand.user == (0.0, 0.0, 0.0)
+
+
+def share(time: float) -> float:
+    """Of a change that a filter follows in one tick."""
+    return 1.0 - math.exp(-TICK / time)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force"), [(0.0, 3.0), (0.0, 40.0), (7.0, 3.9), (7.0, 6.0), (20.0, 3.9), (20.0, 6.0), (20.0, 60.0), (60.0, 8.0)]
+)
+@pytest.mark.parametrize("use_wrench", [True, False])
+@pytest.mark.parametrize("beforehand", [2.0, 30.0])
+def test_it_is_told_alike_however_base_flange_and_forces_lie(
+    felt: float, force: float, use_wrench: bool, beforehand: float
+) -> None:
+    """Against numpy: the base is tilted, the flange turns, the speed is now below `LED` and now above; 0.15 s."""
+    rng = np.random.default_rng(round(felt + force))
+
+    def unit() -> np.ndarray:
+        return rng.dirichlet([9.0] * 3) ** 0.5 * rng.choice([-1.0, 1.0], 3)  # no component is near 0
+
+    def attitude() -> np.ndarray:
+        return np.linalg.qr(rng.normal(size=(3, 3)))[0]
+
+    up, by_joints, by_sensor, slow, slow_joints = unit(), np.zeros(3), np.zeros(3), 0.0, 0.0
+    first = estimate(felt=(5.0 * unit()).tolist())
+    first.g_B, first.R_BF = -9.81 * up, attitude()
+    before = beforehand * up + 2.0 * unit()
+    hand = Hand(first, (*before.tolist(), 0.0, 0.0, 0.0))
+    assert (hand.user, hand.change, hand.payload) == (ORIGIN,) * 3
+    residual = before @ up
+    payload = residual - np.clip(residual, -OFFSET, OFFSET)
+    offset = first.R_BF.T @ (before - payload * up)
+    joints_feel, sensor_feels = felt * unit(), force * unit()
+    for tick in range(75):
+        now = estimate()
+        now.R_BF, now.v_F[:3] = attitude(), (0.9 if tick % 3 else 1.1) * LED * unit()
+        now.F_joints = first.F_joints + joints_feel
+        change = sensor_feels + 0.2 * unit()
+        now.F_user[:3] = change + payload * up + now.R_BF @ offset
+        settle = share(SETTLING if tick % 3 else LED_SETTLING)
+        slow_joints += settle * (joints_feel @ up - slow_joints)
+        by_joints += share(JOINTS_SWING) * (joints_feel - slow_joints * up - by_joints)
+        size, user, gone = np.linalg.norm(by_joints), by_joints, slow_joints
+        counts = size >= FELT_BY_JOINTS
+        if use_wrench:
+            slow += settle * (change @ up - slow)
+            by_sensor += share(SWING) * (change - slow * up - by_sensor)
+            counts = counts or (size >= ON_A_LINK and np.linalg.norm(change) < CARRIED)
+            if not counts or np.linalg.norm(by_sensor) >= FELT_BY_JOINTS:
+                user, counts = by_sensor, True
+            gone = residual + slow
+            change_seen = change
+        else:
+            change_seen = np.zeros(3)
+        counts = counts and np.linalg.norm(user) >= DOUBT * abs(payload)
+        hand.step(now, use_wrench)
+        assert hand.user == pytest.approx(user if counts else np.zeros(3))
+        assert hand.change == pytest.approx(change_seen)
+        assert hand.payload == pytest.approx(gone * up)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force", "before", "user"),
+    [
+        (FELT_BY_JOINTS, CARRIED, 0.0, "joints"),
+        (ON_A_LINK, 0.0, 0.0, "joints"),
+        (2.0 * FELT_BY_JOINTS, FELT_BY_JOINTS / share(SWING), 0.0, "sensor"),
+        (0.0, DOUBT * 20.0 / share(SWING), OFFSET + 20.0, "sensor"),
+    ],
+)
+def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: float, user: str) -> None:
+    """In one tick, from rest, which lets the limits themselves be reached."""
+    hand = Hand(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0))
+    hand.step(estimate(felt=[0.0, felt / share(JOINTS_SWING), 0.0], force=[force, 0.0, before]), True)
+    assert hand.user == ((0.0, felt, 0.0) if user == "joints" else (share(SWING) * force, 0.0, 0.0))
 
 
 def test_equal_histories_are_equal() -> None:
