@@ -33,7 +33,6 @@ class SoftLimits:
     """
 
     __slots__ = (
-        "_damping",
         "_dynamic",
         "_hard",
         "_last",
@@ -61,8 +60,7 @@ class SoftLimits:
         self._dynamic = DynamicLimits(in_operation(settings), estimate)
         self._plain = not way.on and self._dynamic.shares.vertical == 1.0  # the same all over and in every direction
         self._last: Shares | None = None  # of the tick before
-        self._shares = (0.0, 0.0, 0.0)  # of tcp, elbow and joints, to which `_damping` belongs
-        self._damping: Damping | None = None
+        self._shares: tuple[float, float, float] | None = None  # of tcp, elbow and joints, to which `damping` belongs
         self.damping: Damping | None = None
         self.shares = WHOLE
         self.pushed = self._dynamic.pushed
@@ -93,7 +91,7 @@ class SoftLimits:
             if self._way < math.inf:
                 rest = self._rest(estimate, shares)
                 tcp, elbow, joint = rest * tcp, rest * elbow, rest * joint
-            self.damping = self._at((tcp, elbow, joint))
+            self._set((tcp, elbow, joint))
 
     def _rest(self, estimate: Estimate, shares: Shares) -> float:
         """Share of the speed limits that is left so far on the way out; the way back is free."""
@@ -105,13 +103,12 @@ class SoftLimits:
         gone = math.sqrt(x * x + y * y + z * z) / (self._way * shares.way * shares.along(x, y, z))
         return min(max((1.0 - gone) / (1.0 - self._soft.onset), CRAWL), 1.0)
 
-    def _at(self, shares: tuple[float, float, float]) -> Damping:
-        """The same object as long as the shares are the same."""
-        if self._damping is None or shares != self._shares:
+    def _set(self, shares: tuple[float, float, float]) -> None:
+        """`damping` stays the same object as long as the shares are the same."""
+        if shares != self._shares:
             soft, (tcp, elbow, joint) = self._soft, self._hard
             self._shares = shares
-            self._damping = Damping(shares[0] * tcp, shares[1] * elbow, shares[2] * joint, soft.onset, soft.force, soft.torque)
-        return self._damping
+            self.damping = Damping(shares[0] * tcp, shares[1] * elbow, shares[2] * joint, soft.onset, soft.force, soft.torque)
 
 
 def hard(limits: OperationLimits) -> tuple[float, float, float]:

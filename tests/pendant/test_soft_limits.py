@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -169,6 +170,46 @@ def test_far_out_they_fall_but_not_on_the_way_back(way: float, share: float) -> 
     assert limits(module) == pytest.approx((1.5 * share, 1.5 * share, 3.0 * share))
     module.step(estimate(position=way, speed=-0.01))
     assert limits(module)[0] == 1.5
+
+
+@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(("gone", "rest"), [(0.4, 1.0), (0.75, 0.5), (0.99, 0.1)])
+def test_load_way_and_direction_lower_them_together(seed: int, gone: float, rest: float) -> None:
+    """FD-12b: half of each with 4 kg, the rest of the way, and 0.4 along gravity, of a tilted base."""
+    rng = np.random.default_rng(seed)
+    start, up, way, tcp, elbow = rng.normal(size=(5, 3))
+    up, way = up / np.linalg.norm(up), way / np.linalg.norm(way)
+
+    def along(v: np.ndarray) -> float:
+        return float(1.0 / np.sqrt(1.0 + (v @ up) ** 2 / (v @ v) * (1.0 / 0.4**2 - 1.0)))
+
+    first = estimate(position=start.tolist())
+    first.g_B = -9.81 * up
+    rules = {"vertical": True, "vertical_share": 0.4, "payload_share": 0.25}
+    changes = {"limits.operation.flange_displacement.on": True} | {f"soft.{name}": value for name, value in rules.items()}
+    module = SoftLimits(apply(Settings(), changes), first)
+    now = estimate(position=(start + gone * 0.5 * along(way) * way).tolist(), speed=(0.1 * way).tolist(), load_mass=4.0)
+    for tool, link in ((tcp, elbow), (elbow, tcp)):
+        now.tcp, now.elbow = np.append(start, tool), np.append(start, link)
+        module.step(now)
+        expected = (0.5 * rest * 1.5 * along(tool), 0.5 * rest * 1.5 * along(link), 0.5 * rest * 3.0)
+        assert limits(module) == pytest.approx(expected)
+    before = module.damping
+    module.step(now)
+    assert module.damping is before
+
+
+def test_a_way_without_a_limit_has_no_end_and_directions_count_all_the_same() -> None:
+    module = soft(soft__vertical=True, soft__vertical_share=0.4)
+    for tcp, elbow in (([0.2, 0.0, 0.0], [0.0, 0.0, 0.1]), ([0.0, 0.0, 0.1], [0.2, 0.0, 0.0])):
+        module.step(estimate(position=9.0, speed=0.01, tcp=[0.0, 0.0, 0.0, *tcp], elbow=[0.0, 0.0, 0.0, *elbow]))
+        assert limits(module) == pytest.approx((0.6 if tcp[2] else 1.5, 0.6 if elbow[2] else 1.5, 3.0))
+
+
+def test_a_hand_that_is_not_told_lowers_nothing() -> None:
+    module = soft(soft__pushed=True)
+    module.step(STILL)
+    assert limits(module) == (1.5, 1.5, 3.0)
 
 
 def test_the_more_it_accelerates_the_shorter_the_free_way() -> None:
