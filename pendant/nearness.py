@@ -43,7 +43,7 @@ class SingularityWatch:
         before = self.status
         if before is _OK and value >= axes.near:
             return False
-        near = axes.near * (1.0 if before is Nearness.OK else BACK)
+        near = axes.near * BACK  # from ok the value is below that in any case
         too_near = axes.too_near * (BACK if before is Nearness.TOO_NEAR else 1.0)
         self.status = Nearness.TOO_NEAR if value < too_near else Nearness.NEAR if value < near else Nearness.OK
         return self.status is not before

@@ -122,7 +122,7 @@ class Periods:
         if not ended:
             return []
         if settings.button.hold_to_run:
-            return [Event(Kind.LEFT_RELEASE, tick, {})]
+            return [Event(Kind.LEFT_RELEASE, tick)]
         if 0 <= self._pressed < ticks(settings.button.short_press):
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
             return [Event(Kind.LEFT_PRESS, tick, values)]

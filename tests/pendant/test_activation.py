@@ -2,6 +2,7 @@
 
 import pytest
 
+from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
@@ -102,3 +103,20 @@ def test_a_mode_that_free_drive_cannot_be_entered_from_ends_it_and_is_named(phas
     bench.step(Inputs(held=HOLD.held, commands=(Command.NORMAL,)))
     assert bench.last.events[-1] == Event(Kind.REFUSED_MODE, bench.tick, {"mode": Mode.NORMAL, "allowed": "TEACH"})
     assert (bench.last.mode, bench.last.phase) == (Mode.NORMAL, Phase.OFF)
+
+
+@pytest.mark.parametrize(
+    ("broken", "sensor"),
+    [
+        (estimate(joints_valid=False), "joint encoders and motor currents"),
+        (estimate(wrench_valid=False), "flange force sensor"),
+    ],
+)
+def test_a_sensor_that_is_lost_in_the_sequence_refuses_entry_and_is_named(broken: Estimate, sensor: str) -> None:
+    """FD-12."""
+    bench = Bench(sequence__on=True, activation__period=0.0)
+    bench.run(60)
+    assert bench.step(HOLD).phase is Phase.SEQUENCE
+    bench.step(HOLD, broken)
+    assert (bench.last.mode, bench.last.phase) == (Mode.TEACH, Phase.OFF)
+    assert bench.last.events == (Event(Kind.REFUSED_SENSORS, bench.tick, {"sensor": sensor}),)

@@ -9,7 +9,7 @@ from pendant.axis_locks import AXES, PRESETS, axis_locks, freeing, from_rpy
 from pendant.events import Kind
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import Mode
-from pendant.nearness import Nearness, SingularityWatch
+from pendant.nearness import Nearness
 from pendant.settings import Axes, Settings, apply
 from pendant.supervisor import Supervisor
 from sim.frames import rotation_from_rpy
@@ -52,20 +52,6 @@ def test_without_resistance_singularities_resist_nowhere() -> None:
     assert without is not None
     assert (with_it.near, with_it.too_near) == (0.04, 0.01)
     assert without.near == 0.0
-
-
-def test_the_words_change_at_their_values_and_back_a_fifth_later() -> None:
-    watch, axes = SingularityWatch(), Axes()
-    heard = [
-        (watch.step(value, axes), watch.status)
-        for value in (math.inf, 0.04, 0.0399, 0.01, 0.0099, 0.0119, 0.012, 0.047, 0.048, 0.005, 0.1)
-    ]
-    ok, near, too_near = Nearness.OK, Nearness.NEAR, Nearness.TOO_NEAR
-    assert heard == [
-        (False, ok), (False, ok), (True, near), (False, near), (True, too_near), (False, too_near), (True, near),
-        (False, near), (True, ok), (True, too_near), (True, ok),
-    ]  # fmt: skip
-    assert watch.memory is ok
 
 
 class Robot:

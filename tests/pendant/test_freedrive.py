@@ -194,11 +194,34 @@ def test_periods_are_published_together_and_only_while_they_run() -> None:
     assert bench.step().periods == ()
 
 
-def test_a_payload_that_changes_leaves_free_drive_as_it_is_where_nothing_was_refused() -> None:
+def test_where_nothing_was_begun_or_refused_a_payload_that_changes_or_a_stop_leaves_free_drive_as_it_is() -> None:
     free = Bench().supervisor._free
     before = free.memory
     free.forget()
     assert free.memory == before
+    free.stop(Kind.DEACTIVATED, Settings())
+    assert free.memory == before
+
+
+def test_a_force_that_was_there_at_entry_without_the_button_is_no_manipulation() -> None:
+    """FD-13: the button is let go in the sequence."""
+    bench, pushed = Bench(sequence__on=True, activation__period=0.0), estimate(force=10.0)
+    bench.run(60, NOTHING, pushed)
+    bench.step(HOLD, pushed)
+    assert bench.step(LET_GO, pushed).phase is Phase.SEQUENCE
+    ticks = bench.last.periods[0].ticks
+    assert bench.run(ticks, NOTHING, pushed).phase is Phase.PERIOD
+    assert bench.run(20, NOTHING, pushed).phase is Phase.PERIOD
+    assert [event.kind for event in bench.events] == [Kind.ACTIVATION_STARTED, Kind.SEQUENCE_STARTED, Kind.ENTERED]
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_what_the_sensor_drifts_by_is_taken_off_only_while_nobody_moves_the_arm(held: bool) -> None:
+    """FD-19: the button held, somebody does. At 2 N/s the means of two windows of 50 ticks are 0.102 N and 0.302 N."""
+    bench = Bench(activation__period=0.0).in_period()
+    for tick in range(110):
+        bench.step(HOLD if held else NOTHING, estimate(force=0.004 * tick))
+    assert bench.last.baseline[0] == (0.0 if held else pytest.approx(0.302))
 
 
 def test_any_number_of_joints() -> None:

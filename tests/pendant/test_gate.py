@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 
 from pendant.events import Event, Kind
+from pendant.gate import Gate
 from pendant.inputs import Command
 from pendant.modes import Mode, Phase
+from pendant.sources import BUTTON, DIGITAL, NONE, Presence
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
 
 
@@ -41,3 +43,18 @@ def test_a_signal_present_at_a_leaving_counts_after_an_absence(absent: int, coun
     bench.step(HOLD)
     assert bench.last.phase is (Phase.ACTIVATION if counts else Phase.OFF)
     assert [event.kind for event in bench.events] == [Kind.ACTIVATION_STARTED if counts else Kind.NOT_YET]
+
+
+@pytest.mark.parametrize(("held", "signal"), [(True, BUTTON), (True, NONE), (False, DIGITAL), (False, NONE)])
+def test_a_button_or_a_signal_that_is_there_at_a_leaving_shuts_the_gate_without_a_cool_down(held: bool, signal: Presence) -> None:
+    """FD-7."""
+    gate = Gate()
+    gate.sense(held, signal)
+    gate.close(0)
+    assert gate.shut is (held or signal is not NONE)
+
+
+def test_a_leaving_with_neither_and_no_cool_down_leaves_the_gate_as_it_was() -> None:
+    gate = Gate()
+    gate.close(0)
+    assert gate.memory == Gate().memory

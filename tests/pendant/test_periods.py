@@ -2,24 +2,65 @@
 
 import pytest
 
+from pendant.decision import Remaining
+from pendant.estimate import Estimate
 from pendant.events import Event, Kind, posture_of
+from pendant.gate import Gate
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
+from pendant.periods import Periods
+from pendant.pose import ORIGIN, Vector
+from pendant.settings import Settings, apply
+from pendant.sources import BUTTON, NONE
+from pendant.surroundings import Surroundings
+from pendant.watch import Stillness, WrenchMean
 from tests.pendant.estimates import estimate
-from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
+from tests.pendant.test_freedrive import HOLD, JOINTS, LET_GO, Bench, remaining
 
 ANEW = Inputs(commands=(Command.RESTART_PERIOD,))
-MOVING = estimate(qd=0.5)
+STILL, MOVING, PUSHED = estimate(), estimate(qd=0.5), estimate(force=20.0)
 
 
-@pytest.mark.parametrize("after", [0, 1, 700, 1498])
+class Alone:
+    """The periods without what is around them, their flange sensor in use; entered in tick 0."""
+
+    def __init__(self, held: bool, value: Estimate = STILL, **changes: float | bool) -> None:
+        self.settings = apply(Settings(), {name.replace("__", "."): change for name, change in changes.items()})
+        self.tick, self.gate, self.held = 0, Gate(), held
+        self.gate.sense(held, BUTTON if held else NONE)
+        self.periods = Periods(held, self._around(value), self.settings, True, JOINTS)
+
+    def step(self, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
+        self.tick += 1
+        self.gate.sense(self.held, BUTTON if self.held else NONE)
+        return self.periods.step(self._around(value), self.settings, self.gate, user, True)
+
+    def run(self, count: int, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
+        return [event for _ in range(count) for event in self.step(value, user)]
+
+    def _around(self, value: Estimate) -> Surroundings:
+        value.tick = self.tick
+        return Surroundings(value, Mode.FREE_DRIVE, True, Stillness(), WrenchMean())
+
+
+def pressed(alone: Alone, ticks: int) -> list[Event]:
+    """The button is held for so many ticks, in which nothing happens, and let go. Returns what happens then."""
+    alone.held = True
+    for _ in range(ticks):
+        assert alone.step() == []
+        assert (alone.periods.phase, alone.periods.remaining) == (Phase.HELD, None)
+    alone.held = False
+    return alone.step()
+
+
+@pytest.mark.parametrize("after", [0, 1, 130, 248])
 def test_the_free_drive_period_begins_anew(after: int) -> None:
-    bench = Bench().in_period()
+    bench = Bench(free_drive__period=0.5, activation__period=0.0).in_period()
     bench.run(after)
     bench.step(ANEW)
-    assert bench.last.events == (Event(Kind.PERIOD_ANEW, bench.tick, {"period": 3.0}),)
-    assert remaining(bench.last) == {"free-drive": (1500, 1500)}
-    assert bench.run(1499).phase is Phase.PERIOD
+    assert bench.last.events == (Event(Kind.PERIOD_ANEW, bench.tick, {"period": 0.5}),)
+    assert remaining(bench.last) == {"free-drive": (250, 250)}
+    assert bench.run(249).phase is Phase.PERIOD
     assert bench.step().mode is Mode.TEACH
 
 
@@ -158,10 +199,30 @@ def test_the_hand_must_be_off_for_as_long_as_the_arm_must_be_static() -> None:
     assert bench.step().phase is Phase.RESTART
 
 
+def test_the_hand_is_off_from_the_tick_after_its_last_push() -> None:
+    """FD-15: a push at the limit is one."""
+    alone = Alone(False, free_drive__restart_after_force=True, free_drive__longest=1.0, static__time=0.1, let_go__force=3.0)
+    assert [event.kind for event in alone.step(PUSHED)] == [Kind.MANIPULATION]
+    assert alone.run(70, PUSHED, (1.0, 2.0, 2.0)) == []
+    assert alone.run(49, PUSHED, (1.0, 2.0, 1.99)) == []
+    assert alone.periods.phase is Phase.GUIDED
+    assert alone.step(PUSHED) == [Event(Kind.RESTARTED, alone.tick, {"period": 1.0})]
+
+
 @pytest.mark.parametrize(("seconds", "count"), [(0.5, 250), (3.0, 1500), (30.0, 15000)])
-def test_the_free_drive_period_lasts_to_its_tick(seconds: float, count: int) -> None:
+def test_a_period_of_any_length_lasts_to_its_tick(seconds: float, count: int) -> None:
     """FD-14."""
-    bench = Bench(free_drive__period=seconds).in_period()
+    alone = Alone(False, free_drive__period=seconds)
+    assert alone.periods.remaining == Remaining("free-drive", count, count)
+    assert alone.run(count - 1) == []
+    assert alone.periods.remaining == Remaining("free-drive", 1, count)
+    assert alone.step() == [Event(Kind.LEFT_PERIOD, count, {"limit": seconds})]
+
+
+def test_the_free_drive_period_lasts_to_its_tick() -> None:
+    """FD-14."""
+    seconds, count = 0.5, 250
+    bench = Bench(free_drive__period=seconds, activation__period=0.0).in_period()
     assert remaining(bench.last) == {"free-drive": (count, count)}
     for left in range(count - 1, 0, -1):
         bench.step()
@@ -220,21 +281,31 @@ def test_a_push_that_moves_nothing_guides_for_the_static_time() -> None:
 
 
 @pytest.mark.parametrize(("held", "leaves"), [(1, True), (2, True), (199, True), (200, False), (201, False), (2000, False)])
-@pytest.mark.parametrize("start", ["period", "guided", "restart"])
-def test_a_short_press_leaves_and_a_longer_one_suspends(start: str, held: int, leaves: bool) -> None:
+@pytest.mark.parametrize("start", [Phase.PERIOD, Phase.GUIDED, Phase.RESTART])
+def test_a_press_of_any_length_leaves_if_it_is_short(start: Phase, held: int, leaves: bool) -> None:
     """FD-8a, to the tick: 0.4 s are 200 ticks."""
-    bench = Bench().in_period()
-    if start != "period":
-        bench.run(1, NOTHING, estimate(qd=0.5))
-    if start == "restart":
-        bench.run(60)
+    alone = Alone(False, free_drive__restart_at_manipulation=start is Phase.RESTART)
+    if start is not Phase.PERIOD:
+        alone.step(PUSHED)
+    assert alone.periods.phase is start
+    events = pressed(alone, held)
+    if leaves:
+        assert events == [Event(Kind.LEFT_PRESS, alone.tick, {"value": pytest.approx(held / 500), "limit": 0.4})]
+    else:
+        assert (events, alone.periods.remaining) == ([], Remaining("free-drive", 1500, 1500))
+
+
+@pytest.mark.parametrize(("held", "leaves"), [(1, True), (49, True), (50, False)])
+def test_a_short_press_leaves_and_a_longer_one_suspends(held: int, leaves: bool) -> None:
+    """FD-8a, to the tick: 0.1 s are 50 ticks."""
+    bench = Bench(button__short_press=0.1, activation__period=0.0).in_period()
     for _ in range(held):
         bench.step(HOLD)
         assert (bench.last.phase, bench.last.periods) == (Phase.HELD, ())
     bench.step(LET_GO)
     if leaves:
         assert bench.last.mode is Mode.TEACH
-        values = {"value": pytest.approx(held / 500), "limit": 0.4}
+        values = {"value": pytest.approx(held / 500), "limit": 0.1}
         assert bench.last.events == (Event(Kind.LEFT_PRESS, bench.tick, values),)
         assert remaining(bench.last) == {"cool-down": (1000, 1000)}
     else:
@@ -256,9 +327,24 @@ def test_the_press_that_entered_may_be_short_without_leaving() -> None:
 
 
 def test_held_for_long_suspends_everything() -> None:
-    bench = Bench().entered()
-    bench.run(20000, HOLD)
-    assert (bench.last.phase, bench.last.periods) == (Phase.HELD, ())
+    alone = Alone(True)
+    entered = alone.periods.memory
+    assert alone.run(2000) == []
+    assert (alone.periods.phase, alone.periods.remaining, alone.periods.waits) == (Phase.HELD, None, False)
+    assert alone.periods.memory == entered
+    assert pressed(alone, 0) == []
+    assert (alone.periods.phase, alone.periods.waits) == (Phase.PERIOD, True)
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_a_force_that_was_there_as_the_period_began_is_no_manipulation(held: bool) -> None:
+    """FD-13, at entry and at the release: forces are changes since the period began."""
+    alone = Alone(held, PUSHED)
+    alone.held = False
+    assert alone.run(5, PUSHED) == []
+    assert alone.periods.phase is Phase.PERIOD
+    values = {"parameter": "user force", "part": "flange", "value": pytest.approx(8.5), "limit": 8.0, "unit": "N"}
+    assert alone.step(estimate(force=28.5)) == [Event(Kind.MANIPULATION, alone.tick, values)]
 
 
 def test_hold_to_run_leaves_on_release() -> None:
