@@ -4,18 +4,21 @@ import itertools
 import math
 from collections.abc import Iterable
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pendant.decision import Decision
-from pendant.estimate import Estimate
+from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Event, Kind
-from pendant.hand import SWING, Hand
+from pendant.hand import CARRIED, SWING, Hand
 from pendant.hidden_drop import LASTS, LEAST
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, Mode
 from pendant.operation import CERTAIN, SWINGS, Ending, Operation, way_back
+from pendant.operation import LASTS as STEP_LASTS
+from pendant.pose import Vector
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
@@ -77,6 +80,7 @@ def test_a_joints_external_torque_has_its_time_and_stops() -> None:
     assert ending is not None
     assert ending.kind is Kind.STOPPED_LIMIT
     assert (free.ticks, ending.values["limit"]) == (100 + 26, pytest.approx(120.0))
+    assert Free().until([estimate(tau_ext=121.0, tau_J=100.0)] * 100) is not None, "whatever it carries"
 
 
 def test_the_row_that_stops_comes_first() -> None:
@@ -93,6 +97,9 @@ def test_the_users_force_has_its_time_and_counts_from_the_baseline() -> None:
     assert ending.values["value"] == pytest.approx(91.0)
     assert free.ticks == 500 + 51
     assert Free().until([estimate(force=[0.0, 0.0, -200.0])] * 500, use_wrench=False) is None
+    free = Free()
+    assert free.until([estimate(force=200.0)] * 40) is None
+    assert free.until([estimate(force=200.0)] * 100, use_wrench=False) is None, "nor what it was before the sensor was lost"
 
 
 def test_motion_that_nobody_causes_is_stopped_after_its_time() -> None:
@@ -111,6 +118,19 @@ def test_a_hand_a_wall_or_rest_starts_its_time_afresh(speed: float, force: float
     assert free.until([estimate(speed=0.03)] * 149) is None
     assert free.see(estimate(speed=speed, force=force), driven=driven) is None
     assert free.until([estimate(speed=0.03)] * 150) is None or force > 0.0
+
+
+@pytest.mark.parametrize(("user", "moved"), [((1.0, 2.0, 2.0), True), ((1.0, 2.0, 1.99), False), ((-2.0, 1.0, -2.0), True)])
+def test_a_hand_has_its_least_force_in_whatever_direction(user: Vector, moved: bool) -> None:
+    """FD-19: at it, 3 N, the hand moves the arm."""
+    free = Free(unexplained__force=3.0)
+    free.hand.user = user
+    endings = [free.operation.step(estimate(speed=0.03), free.hand, True, False) for _ in range(151)]
+    assert (endings[-1] is None) is moved
+
+
+def test_from_its_speed_on_the_arm_moves() -> None:
+    assert Free(unexplained__speed=0.125).until([estimate(speed=0.125)] * 151) is not None
 
 
 def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
@@ -133,6 +153,14 @@ def test_a_hand_on_a_link_turns_its_joint_with_what_the_joint_feels(way: float) 
     free = Free()
     assert free.until([elbow(way * 2.0, way * 0.2)] * 1000) is None
     assert free.until([elbow(0.0, way * 0.2)] * 302) is not None
+
+
+def test_the_mean_is_over_every_tick_since_a_hand_was_last_told() -> None:
+    """FD-19: 1.8 N·m in the mean of 151 ticks; then all of them again."""
+    free = Free()
+    assert free.until([elbow(280.0), *[elbow(0.0)] * 150]) is None
+    assert free.until([elbow(0.0)] * 150) is None
+    assert free.see(elbow(0.0)) is not None
 
 
 def test_a_hand_on_a_link_that_swings_is_told_by_the_mean() -> None:
@@ -159,6 +187,7 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     free = Free()
     assert free.until([elbow(5.0, down=6.0)] * 5000) is not None
     assert Free().until([elbow(5.0, down=3.0)] * 5000) is None
+    assert Free().until([elbow(5.0, down=CARRIED)] * 5000) is not None
 
 
 def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
@@ -253,6 +282,123 @@ def test_losing_the_sensor_ends_a_suspicion() -> None:
     assert free.operation.suspect
     free.see(loaded(), use_wrench=False)
     assert not free.operation.suspect
+
+
+def test_without_a_load_nothing_is_suspected() -> None:
+    free = Free()
+    assert free.see(loaded(mass=0.0)) is None
+    assert free.operation.suspect is False
+
+
+def test_a_hand_that_is_there_at_entry_or_as_the_sensor_comes_back_is_no_step() -> None:
+    hand = loaded(force=[0.0, 0.0, 0.3 * 2.0 * G])
+    assert Free().until([hand] * 30) is None
+    free = Free()
+    assert free.until(loaded(force=[0.0, 0.0, 0.3 * 2.0 * G * min(k / 50, 1.0)]) for k in range(100)) is None
+    free.see(hand, use_wrench=False)
+    assert free.until([hand] * 30) is None
+
+
+def test_what_drops_is_reckoned_along_what_the_load_needs_in_the_flanges_axes() -> None:
+    """FD-19: sensor's offset, turned flange, a hand that pulls across: 90 % of 2 kg, of which a fifth was a hand's before."""
+    offset, needs, hand = np.array([1.0, -2.0, 0.5]), np.array([6.0, -8.0, 15.0]), np.array([3.0, 4.5, 5.53])
+    R_BF = np.array([[0.0, -1.0, 0.0], [0.6, 0.0, -0.8], [0.8, 0.0, 0.6]])
+    np.testing.assert_allclose(hand @ needs / (needs @ needs), 0.2, atol=0.001)
+
+    def felt(missing: np.ndarray) -> Estimate:
+        """As `missing` comes to the sensor's offset, axes of F."""
+        value = loaded(mass=2.0)
+        value.R_BF, value.F_user[:3], value.w_sensor[:3] = R_BF, R_BF @ (missing + offset), needs - missing - offset
+        return value
+
+    baseline = (*(R_BF @ offset), 0.7, 0.8, 0.9)
+    operation = Operation(felt(hand), Settings(), baseline, JOINTS, RATED, 0.0)
+    watched = Hand(felt(hand), baseline)
+    endings = [operation.step(felt(hand), watched, True, False) for _ in range(20)]
+    missing = 0.9 * needs + np.array([0.4, 0.3, -0.2])
+    endings += [operation.step(felt(missing), watched, True, False) for _ in range(1 + CERTAIN)]
+    share = missing @ needs / (needs @ needs)
+    values = {"mass": pytest.approx(-2.0 * share), "force": pytest.approx(2.0 * GRAVITY * share)}
+    assert endings == [*[None] * (19 + 1 + CERTAIN), Ending(Kind.STOPPED_PAYLOAD, values)]
+
+
+def stepping(*shares: float, weight: float = 8.0, swings: bool = False) -> tuple[int | None, bool]:
+    """In which tick, of the first share that is missing of a load in 20 ticks at rest or of swinging, it is a drop; and suspected
+    in the end."""
+    free, mass = Free(), weight / GRAVITY
+    free.until([loaded(needed=[0.0, 0.0, 2.0 * weight if swings else weight], mass=mass)] * 20)
+    ending = free.until(loaded(force=[0.0, 0.0, share * weight], needed=[0.0, 0.0, weight], mass=mass) for share in shares)
+    return None if ending is None else free.ticks - 20, free.operation.suspect
+
+
+@pytest.mark.parametrize(
+    ("shares", "tick"),
+    [
+        ([0.5] * 20, 1 + CERTAIN),  # half of the load, 4 N
+        ([0.499] * 20, None),  # fewer than 4 N
+        ([0.2, 0.2, *[0.5] * 20], 3 + CERTAIN),  # the step is 0.6 of what is missing then
+        ([0.21, 0.21, *[0.5] * 20], None),
+        ([-0.4, -0.4, *[0.6] * 20], 3 + CERTAIN),  # what is missing is 0.6 of the step
+        ([-0.41, -0.41, *[0.6] * 20], None),
+        ([0.45, *[0.9] * 20], 2 + CERTAIN),  # the first tick shows a part of it
+        ([1.0, 1.0, *[0.6] * 20], 1 + CERTAIN),  # afterwards at least 0.6 of it are missing
+        ([1.0, 1.0, *[0.59] * 20], None),
+        ([0.5, 0.5, *[0.675] * 20], 1 + CERTAIN),  # and at most 1.35 of it
+        ([0.5, 0.5, *[0.68] * 20], None),
+        ([0.9, *[0.1] * 20], None),  # a knock
+    ],
+)
+def test_a_step_of_a_load_to_the_last_newton(shares: list[float], tick: int | None) -> None:
+    """FD-19."""
+    assert stepping(*shares) == (tick, tick is not None)
+
+
+@pytest.mark.parametrize(("share", "tick"), [(0.5, 1 + CERTAIN), (0.499, None)])
+def test_where_the_arm_swings_half_of_the_load_is_a_step(share: float, tick: int | None) -> None:
+    assert stepping(*[share] * 20, weight=16.0, swings=True)[0] == tick
+    assert stepping(*[0.5] * 20, swings=True)[0] == 1 + CERTAIN
+
+
+def test_less_than_half_of_a_load_must_last() -> None:
+    assert stepping(*[0.499] * 20, weight=16.0)[0] == 1 + STEP_LASTS
+
+
+def test_the_lightest_load_whose_drop_is_seen_weighs_four_newtons() -> None:
+    assert stepping(*[1.0] * 20, weight=4.0)[0] == 1 + CERTAIN
+    assert stepping(*[1.1] * 20, weight=3.99)[0] is None
+
+
+def test_in_free_fall_what_little_a_load_needs_is_the_measure() -> None:
+    """FD-19: nothing at all, too."""
+    falls = [[0.0, 0.0, 0.0]] * 2 + [[0.0, 0.0, 0.5]] * 10
+    free = Free()
+    assert free.until([loaded(needed=need) for need in falls]) is None
+    ending = free.until([loaded(force=[0.0, 0.0, 0.45], needed=[0.0, 0.0, 0.5])] * 20)
+    assert ending == Ending(Kind.STOPPED_PAYLOAD, {"mass": pytest.approx(-1.8), "force": pytest.approx(1.8 * G)})
+    free = Free()
+    assert free.until([loaded(force=[0.0, 0.0, 0.22], needed=[0.0, 0.0, 0.5])] * 10) is None
+    free.see(loaded(force=[0.0, 0.0, 0.45], needed=[0.0, 0.0, 0.5]))
+    assert not free.operation.suspect, "half of it was missing before"
+
+
+@pytest.mark.parametrize(
+    ("course", "found"),
+    [
+        ([(9, 1.0)], False),
+        ([(10, 1.0)], True),
+        ([(10, 1.1)], True),  # a load of 19.6 N that needs 21.6 N hardly swings
+        ([(60, 1.0), (2, 2.0)], True),
+        ([(60, 1.0), (3, 2.0)], False),  # however long it was calm
+        ([(60, 1.0), (20, 2.0), (9, 1.0)], False),
+        ([(60, 1.0), (20, 2.0), (10, 1.0)], True),
+    ],
+)
+def test_the_arm_is_calm_after_ten_calm_ticks_and_a_swinging_one_undoes_ten(course: list[tuple[int, float]], found: bool) -> None:
+    """FD-19: so long a small step is none."""
+    free = Free()
+    assert free.until(loaded(needed=[0.0, 0.0, 2.0 * G * needs]) for count, needs in course for _ in range(count)) is None
+    free.see(loaded(force=[0.0, 0.0, 0.3 * 2.0 * G]))
+    assert free.operation.suspect is found
 
 
 def test_a_drop_as_large_as_the_hand_that_lets_go_is_found_by_its_size() -> None:
