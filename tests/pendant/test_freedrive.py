@@ -47,9 +47,11 @@ class Bench:
         return self.last
 
     def entered(self, value: Estimate | None = None) -> "Bench":
-        """In FREE_DRIVE, button held."""
+        """In the first tick of FREE_DRIVE, button held."""
         self.run(60, NOTHING, value)
-        self.run(501, HOLD, value)
+        for _ in range(501):
+            if self.step(HOLD, value).mode is Mode.FREE_DRIVE:
+                break
         assert self.last.mode is Mode.FREE_DRIVE
         return self
 
