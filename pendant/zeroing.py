@@ -34,10 +34,13 @@ MOVED = 0.03
 """A joint that is faster is moved by somebody [rad/s]."""
 
 JUMP = 3.5
-"""Smallest step [N]; smaller ones do not move an arm."""
+"""Smallest step [N] of a tick or two: the sensor's noise and a hand's first touch look like smaller ones."""
 
 STRAY, NOISE = 0.3, 1.0
-"""Share of it by which it may stray until it is judged, and what the sensor's noise adds [N]: a knock is over by then."""
+"""Share of it by which the mean of two ticks may stray until it is judged, and what noise adds [N]: a knock is over by then."""
+
+LEAST = 3.0
+"""Smallest mean of a step [N]: what is less was noise on top of a hand's first touch."""
 
 SHAKEN = 1.5
 """What is felt by the accelerometer as well, in the step's first ticks, is a hand's or a knock [m/s²]."""
@@ -112,7 +115,7 @@ def _within(change: Six, most: float) -> Vector:
 class Steps:
     """Looks for steps of the sensor that the joints do not feel."""
 
-    __slots__ = ("_age", "_felt", "_last", "_older", "_step", "_sum", "_zero")
+    __slots__ = ("_age", "_felt", "_last", "_now", "_older", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
         self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
@@ -120,6 +123,7 @@ class Steps:
         self._age = 0  # ticks since a step, 0: none
         self._zero: Vector = ORIGIN  # before it
         self._step: Vector = ORIGIN
+        self._now: Vector = ORIGIN  # what was felt in the tick before, without what was felt before the step
         self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
         self._felt: Vector = ORIGIN  # by the joints, then
 
@@ -145,10 +149,11 @@ class Steps:
             self._age = 0
             return None
         if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
-            self._step = self._sum = _less(change, self._zero)
+            self._step = self._sum = self._now = _less(change, self._zero)
             return None
-        now = _less(change, self._zero)
-        off = _less(now, self._step)
+        now, before = _less(change, self._zero), self._now
+        self._now = now
+        off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
         x, y, z = self._sum
         self._sum = (x + now[0], y + now[1], z + now[2])
         size = dot(self._step, self._step)
@@ -159,12 +164,13 @@ class Steps:
             return None
         self._age = 0
         answer = dot(_less(_felt(estimate), self._felt), self._step)
-        if answer >= ANSWER * size:
-            return None
-        self._last = self._older = ORIGIN
         x, y, z = self._sum
         count = LATER  # ticks 2 to LATER + 1 of its age
-        return x / count, y / count, z / count
+        mean = (x / count, y / count, z / count)
+        if answer >= ANSWER * size or norm(mean) < LEAST:
+            return None
+        self._last = self._older = ORIGIN
+        return mean
 
 
 def _less(a: Vector, b: Vector) -> Vector:

@@ -11,7 +11,23 @@ from pendant.inputs import NOTHING
 from pendant.modes import Phase
 from pendant.pose import Vector
 from pendant.watch import WrenchMean
-from pendant.zeroing import ANSWER, BEGINS, JUMP, LATER, MOVED, NOISE, QUIET, SLOW, SLOW_TURN, SOON, STRAY, Drift, Steps, Zero
+from pendant.zeroing import (
+    ANSWER,
+    BEGINS,
+    JUMP,
+    LATER,
+    LEAST,
+    MOVED,
+    NOISE,
+    QUIET,
+    SLOW,
+    SLOW_TURN,
+    SOON,
+    STRAY,
+    Drift,
+    Steps,
+    Zero,
+)
 from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import Bench
 
@@ -201,9 +217,22 @@ def test_help_that_comes_soon_shakes_the_flange_later_than_a_hand_does(quiet: in
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.99, True), (1.0, True), (1.01, False)])
-def test_the_sensors_noise_does_not_hide_a_small_step(share: float, told: bool) -> None:
-    stray = share * (STRAY * 5.0 + NOISE)
-    forces: list[Vector] = [(0.0, 0.0, 0.0)] * 2 + [(0.0, 0.0, 5.0)] * 2 + [(stray, 0.0, 5.0), (-stray, 0.0, 5.0)] * 3
+@pytest.mark.parametrize("strays", [1, 2, 3])
+@pytest.mark.parametrize("axis", range(3))
+def test_the_sensors_noise_does_not_hide_a_small_step(strays: int, share: float, told: bool, axis: int) -> None:
+    """A stray tick counts by half, two in a row count whole."""
+    stray = share * (STRAY * 5.0 + NOISE) * (2.0 if strays == 1 else 1.0)
+    turned = [[0.0] * axis + [value] + [0.0] * (2 - axis) for value in (0.0, 5.0)]
+    beside = [value + stray * (k == (axis + 1) % 3) for k, value in enumerate(turned[1])]
+    forces = [tuple(value) for value in (turned[0],) * 2 + (turned[1],) * 2 + (beside,) * strays + (turned[1],) * 6]
+    assert bool(seen(Steps(), [(x, y, z) for x, y, z in forces], [-0.4 * value for value in turned[1]])) is told
+
+
+@pytest.mark.parametrize(("last", "told"), [(2.51, True), (2.5, True), (2.49, False)])
+def test_a_step_that_fades_is_noise_upon_a_hands_first_touch(last: float, told: bool) -> None:
+    """Its mean over six ticks is LEAST with a last one of 2.5 N."""
+    forces: list[Vector] = [(0.0, 0.0, z) for z in (0.0, 0.0, JUMP, JUMP, 3.0, 3.0, 3.0, 3.0, last)]
+    assert sum([JUMP, 3.0, 3.0, 3.0, 3.0, 2.5]) == LATER * LEAST
     assert bool(seen(Steps(), forces, [0.0, 0.0, -2.0])) is told
 
 
