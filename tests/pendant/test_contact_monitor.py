@@ -1,14 +1,16 @@
 """All detectors on estimates: axes of B, pose at the first suspicious sample, switches, sources (CD-1, CD-2, CD-14)."""
 
+import weakref
+
 import msgspec
 import numpy as np
 import pytest
 
 from pendant.contact import Change, Contact
-from pendant.contact_monitor import SOURCES, ContactMonitor, for_links
+from pendant.contact_monitor import SOURCES, ContactMonitor, Poses, for_links
 from pendant.contact_settings import ContactUse
 from pendant.estimate import Estimate
-from pendant.history import SUMMED
+from pendant.history import SIZE, SUMMED
 from pendant.modes import Mode
 from pendant.signal import Signal, Signals
 from tests.pendant.contacts import USE, ramp, signals
@@ -162,3 +164,45 @@ def test_thresholds_follow_mode_and_speed_as_they_change(mode: Mode, speed: floa
         now.v_tcp = 0.0 if now.tick < START else speed
         found += monitor.step(now, use, mode, True)
     assert bool(found) is seen
+
+
+def test_poses_are_kept_for_so_many_ticks_and_no_longer() -> None:
+    poses = Poses()
+    for now in estimates(0, [None] * (SIZE + 1)):
+        poses.push(now)
+    assert poses.at(SIZE - 1).q == pytest.approx((0.002,) * 6)
+    with pytest.raises(IndexError):
+        poses.at(SIZE)
+
+
+def test_what_is_kept_while_it_is_off_does_not_grow_without_end() -> None:
+    monitor, kept = ContactMonitor(), []
+    for now in estimates(0, [None] * (SUMMED + 5)):
+        kept.append(weakref.ref(now.signals.rows))
+        monitor.step(now, USE, Mode.RUN, on=False)
+    del now
+    assert [each() is None for each in kept] == [True] * 5 + [False] * SUMMED
+
+
+@pytest.mark.parametrize("before", [1, 2, 3])
+def test_a_sample_that_is_missing_is_a_gap_however_few_were_before(before: int) -> None:
+    monitor = ContactMonitor()
+    for now in estimates(0, [*signals(before), None, *signals(2)]):
+        monitor.step(now, USE, Mode.RUN, on=True)
+    assert monitor.detectors[0].history.count == 2
+
+
+@pytest.mark.parametrize(("source", "seen"), [(0, True), (1, True), (2, False), (3, False)])
+def test_no_rule_but_the_slow_one_looks_at_the_links(source: int, seen: bool) -> None:
+    """CD-2: an impact that every other rule sees."""
+    use = msgspec.structs.replace(USE, flange=True, slow=False)
+    assert bool(run(source, [*signals(200, push=ramp(200, START, 8.0, top=40.0))], use)) is seen
+
+
+def test_what_several_sources_find_in_the_same_tick_is_all_told() -> None:
+    """CD-2."""
+    monitor, found, use = ContactMonitor(), [], msgspec.structs.replace(USE, flange=True)
+    for now in estimates(0, [*signals(200, push=ramp(200, START, 8.0, top=40.0))]):
+        now.signals = Signals(now.signals.rows, (True, True, False, False))
+        found.append([contact.source for contact in monitor.step(now, use, Mode.RUN, on=True)])
+    assert [told for told in found if told] == [[SOURCES[0].source, SOURCES[1].source]]

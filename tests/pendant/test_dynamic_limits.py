@@ -73,11 +73,13 @@ def test_the_load_lowers_speeds_and_accelerations() -> None:
     assert found[:6] == (1.0, 0.5, 0.5, 0.5, 0.5, 1.0)
 
 
-def test_force_lowers_linear_limits_and_torque_angular_ones() -> None:
-    """(iv)."""
-    on = {"soft__pushed": True, "soft__force_share": 0.05, "soft__torque_share": 0.5}
-    assert shares(STILL, 20.0, 0.0, **on)[:6] == (1.0, 0.5, 1.0, 0.5, 1.0, 1.0)
-    assert shares(STILL, 0.0, 2.0, **on)[:6] == (1.0, 1.0, 0.5, 1.0, 0.5, 1.0)
+@pytest.mark.parametrize(("force", "linear"), [(0.05, 0.25), (0.0, 1.0)])
+@pytest.mark.parametrize(("torque", "angular"), [(0.5, 0.5), (0.0, 1.0)])
+def test_force_lowers_linear_limits_and_torque_angular_ones(force: float, linear: float, torque: float, angular: float) -> None:
+    """(iv): both, each alone, or none."""
+    on = {"soft__pushed": True, "soft__force_share": force, "soft__torque_share": torque}
+    assert shares(STILL, 60.0, 2.0, **on)[:6] == (1.0, linear, angular, linear, angular, 1.0)
+    assert DynamicLimits(in_operation(settings(**on)), STILL).pushed is (force + torque > 0.0)
 
 
 def test_drift_lowers_speeds_alone() -> None:
@@ -102,12 +104,13 @@ def test_the_cone_in_which_motion_is_drift_lies_round_where_it_began(seed: int, 
     assert (limits.shares.speed < 1.0) is falls
 
 
-def test_along_gravity_is_along_the_bases_gravity_with_other_rules_too() -> None:
+@pytest.mark.parametrize(("payload", "left"), [(True, 0.5), (False, 1.0)])
+def test_along_gravity_is_along_the_bases_gravity_with_another_rule_and_without(payload: bool, left: float) -> None:
     """(iii) and (v), on a tilted base."""
     up, now = np.array([2.0, -3.0, 6.0]) / 7.0, estimate(load_mass=2.0)
     now.g_B = -9.81 * up
-    found = shares(now, soft__payload=True, soft__payload_share=0.5, soft__vertical=True, soft__vertical_share=0.25)
-    assert found == (1.0, 0.5, 0.5, 0.5, 0.5, 0.25, pytest.approx(tuple(up)))
+    found = shares(now, soft__payload=payload, soft__payload_share=0.5, soft__vertical=True, soft__vertical_share=0.25)
+    assert found == (1.0, left, left, left, left, 0.25, pytest.approx(tuple(up)))
     assert found.along(*up) == pytest.approx(0.25)
 
 

@@ -31,6 +31,14 @@ def test_each_push_and_each_gap_is_within_its_limits(which: int, length: int, go
     assert whole_at(*lengths) == ([sum(lengths)] if good else [])
 
 
+@pytest.mark.parametrize("idle", [1, SHORT - 1, SHORT, 80, LONG, LONG + 1, 300])
+def test_however_long_nobody_pushed_before_the_first_push_is_the_first(idle: int) -> None:
+    """FD-5f."""
+    signal = PatternSignal()
+    course = [False] * idle + [True] * 80 + [False] * 80 + [True] * 80 + [False]
+    assert [tick for tick, push in enumerate(course) if signal.step(push, Pattern())] == [idle + 240]
+
+
 def test_a_pattern_that_is_whole_begins_afresh_and_so_does_one_that_is_broken() -> None:
     """FD-5f: two and two more; one that was too short is none of the two."""
     assert whole_at(50, 50, 50, 50, 50, 50, 50) == [150, 350]
@@ -46,9 +54,10 @@ def stepped(forces: list[float], quiet: int = 250) -> list[bool]:
 
 @pytest.mark.parametrize(("rise", "seen"), [(1, True), (50, True), (51, False)])
 @pytest.mark.parametrize("low", [3.0, 9.0])
-def test_a_force_step_rises_in_time(rise: int, seen: bool, low: float) -> None:
+@pytest.mark.parametrize("before", [0, 5])
+def test_a_force_step_rises_in_time(rise: int, seen: bool, low: float, before: int) -> None:
     """FD-5h: from 3 N, which is no quiet any more, to beyond 10 N in 0.1 s."""
-    assert stepped([0.0] * 5 + [low] * (rise - 1) + [10.1])[-1] is seen
+    assert stepped([0.0] * before + [low] * (rise - 1) + [10.1])[-1] is seen
     assert stepped([2.9] * 100 + [10.1])[-1]
 
 
@@ -60,6 +69,7 @@ def test_a_force_step_is_beyond_its_threshold_after_rest(force: float, quiet: in
 
 def test_a_force_step_stays_down_to_three_quarters() -> None:
     assert stepped([0.0, 20.0, 7.6, 7.5, 7.6], 250) == [False, True, True, False, False]
+    assert stepped([9.9], 250) == [False], "enough to stay is not enough to come"
 
 
 def tapped(*lengths: int) -> list[int]:

@@ -126,6 +126,12 @@ def test_leaving_is_felt_after_it() -> None:
     assert haptics.busy
 
 
+def test_before_the_first_tick_nothing_shakes_and_a_border_that_is_near_in_it_is_felt() -> None:
+    haptics = Haptics()
+    assert (haptics.busy, haptics.shake) == (False, None)
+    assert played(haptics, FREE._replace(near=True)) is Pattern.BORDER
+
+
 def test_what_plays_is_not_interrupted_by_another() -> None:
     haptics = Haptics()
     played(haptics, FREE)

@@ -80,6 +80,7 @@ def test_sums_that_were_not_asked_for_are_made_up_for(unasked: int) -> None:
 
 
 def test_samples_since_a_saturated_one_are_counted_apart() -> None:
+    assert (History().count, History().clean) == (0, 0)
     history = filled([[5.0] * 6] * 20)
     assert history.clean == 20
     history.push(Signal(*[100.0] * 6, saturated=1.0))

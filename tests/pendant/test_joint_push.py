@@ -62,6 +62,7 @@ def test_a_change_of_just_its_threshold_is_none_yet(what: str, share: float) -> 
 
 def test_what_was_felt_is_over_when_it_is_learned_afresh() -> None:
     signal, use = JointPushSignal(6), JointPush(on=True)
+    assert (signal.present, signal.touched) == (False, False), "before anything was felt"
     for tick in range(60):
         signal.step([20.0 * (tick > 52)] * 6, use)
     assert signal.present
@@ -91,6 +92,17 @@ def test_what_stays_after_a_push_is_none_below_three_quarters_of_the_threshold(l
     present = felt(lambda time: 15.0 if time < 0.9 else left, 1.4)
     assert present[449]
     assert present[-1] is not ends
+
+
+@pytest.mark.parametrize(("size", "over"), [(1.5, True), (1.9, True), (2.5, False), (4.0, False)])
+@pytest.mark.parametrize("joint", range(6))
+def test_a_change_of_less_than_two_newton_metres_soon_counts_as_untouched(joint: int, size: float, over: bool) -> None:
+    """FD-5e: within 2 s in any joint; a larger one may be a hand that stays."""
+    signal, use = JointPushSignal(6), JointPush(threshold=3.0)
+    for tick in range(1060):
+        signal.step([size * (tick > 60) if k == joint else 0.0 for k in range(6)], use)
+        assert signal.touched or not 80 < tick < 100
+    assert signal.touched is not over
 
 
 def run_a_program(bench: Bench, **felt: float) -> None:

@@ -76,7 +76,9 @@ def test_started_inside_there_is_no_kick_and_the_way_out_is_free() -> None:
 
 
 def test_switched_off_left_or_without_limits_nothing_is_resisted() -> None:
-    assert at(zones(JointLimits(on=False)), (2.99, 1.0), (0.0, 0.0)) == ()
+    for module in (JointZones(RATED, RANGE), zones(JointLimits(on=False))):
+        assert at(module, (2.99, 1.0), (0.0, 0.0)) == ()
+        assert module.pushing is False
     module = zones()
     at(module, (2.94, 0.0), (0.0, 0.0))
     at(module, (2.99, 1.0), (0.0, 0.0))

@@ -124,6 +124,7 @@ def test_limits_carry_reaction_and_time() -> None:
     monitor = Monitor(Few())
     heavy = view(estimate(force=[50.0, 0.0, -5.1]))
     assert [len(monitor.step(heavy)) for _ in range(3)] == [0, 0, 1]
+    assert [gauge.stop for gauge in monitor.step(heavy)] == [False], "STOP is a reaction of limits that say so"
     (shown,) = monitor.monitored()
     assert (shown.value, shown.limit) == (-5.1, -5.0)
     within = view(estimate(force=[50.0, 0.0, -5.0]))

@@ -67,3 +67,12 @@ def test_a_cone_or_band_without_width_takes_a_push_along_it(band: bool, force: t
 @pytest.mark.parametrize(("most", "there"), [(4.99, False), (5.0, True), (5.01, True)])
 def test_force_across_the_axis_is_allowed_up_to_its_limit(most: float, there: bool) -> None:
     assert pushes((3.0, -4.0, 12.0), Push(threshold=10.0, z=1.0, off_axis=most)) is there
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 10])
+def test_a_push_comes_when_the_torque_has_been_within_its_limit_for_longer_than_its_period(count: int) -> None:
+    """FD-6: from the first tick on, and from each in which it was beyond."""
+    signal, use = PushSignal(), Push(torque_period=0.002 * count)
+    course = [*[0.0] * (count + 1), use.torque_limit + 0.1, *[0.0] * (count + 1)]
+    seen = [signal.step((20.0, 0.0, 0.0, torque, 0.0, 0.0), UNTURNED, use) for torque in course]
+    assert seen == [*[False] * count, True, False, *[False] * count, True]

@@ -331,6 +331,7 @@ def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: Row) -> None:
         with pytest.raises(SettingError) as caught:
             apply(Settings(), {row.name: value})
         assert caught.value.name == row.name
+        assert caught.value.value is value
         assert caught.value.allowed == f"a number from {row.low:g} to {row.high:g} {row.unit}".rstrip()
 
 
@@ -339,8 +340,9 @@ def test_a_switch_is_true_or_false(row: Row) -> None:
     for value in (True, False):
         assert value_of(apply(Settings(), {row.name: value}), row.name) is value
     for value in (0, 1, 0.0, "true", None):
-        with pytest.raises(SettingError, match=f"^{row.name}: .* allowed: true or false$"):
+        with pytest.raises(SettingError, match=f"^{row.name}: .* allowed: true or false$") as caught:
             apply(Settings(), {row.name: value})
+        assert caught.value.value is value
 
 
 def test_a_whole_number_becomes_a_float() -> None:

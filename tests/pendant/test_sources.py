@@ -175,6 +175,37 @@ def test_a_hand_that_the_flange_does_not_feel_is_on_all_the_same(switch: str, wr
     assert bench.off(60, LetGo(), wrench)[-1]
 
 
+@pytest.mark.parametrize("count", [0, 1, 50])
+def test_a_hand_that_was_never_on_is_off_as_late(count: int) -> None:
+    """FD-8a: until it was asked for, it may have been on."""
+    bench = Bench()
+    assert bench.sources.touched
+    assert bench.off(count + 2, LetGo(time=0.002 * count)) == [False] * count + [True] * 2
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("size", "followed"), [(2.5, True), (2.9, True), (3.5, False), (6.0, False)])
+def test_a_force_of_less_than_three_newtons_soon_counts_as_untouched(axis: int, size: float, followed: bool) -> None:
+    """FD-5c: a sensor drifts so far; a larger force may be a hand that stays."""
+    bench = Bench()
+    bench.run(60, "push.on")
+    bench.run(500, "push.on", force=[-size if k == axis else 0.0 for k in range(3)])
+    assert (bench.sources.force() < 0.5 * size) is followed
+
+
+@pytest.mark.parametrize(("held", "seen"), [(247, False), (248, False), (249, True), (250, True)])
+def test_a_force_step_needs_half_a_second_of_rest_from_the_first_tick_on(held: int, seen: bool) -> None:
+    """FD-5h: with its own tick."""
+    bench = Bench()
+    bench.run(held, "force_step.on")
+    assert (bench.run(1, "force_step.on", force=200.0)[0][0] is not NONE) is seen
+
+
+def test_before_the_arm_was_ever_held_no_joint_is_turned() -> None:
+    """FD-5g."""
+    assert Bench().run(10, "turn.on", holding=False, **TURNED) == [(NONE, False)] * 10
+
+
 def test_a_push_is_told_so_many_ticks_after_it_began() -> None:
     """FD-6a."""
     bench = Bench()

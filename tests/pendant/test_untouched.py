@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pendant.modes import TICK
-from pendant.untouched import CREEP, FOLLOW, SETTLING, Untouched
+from pendant.untouched import CREEP, FOLLOW, SETTLING, STEADY, TREMOR, Untouched
 
 WEIGHTS = (1.0, 1.0, 1.0, 5.0, 5.0, 5.0)
 AT_ONCE = 1e-6
@@ -73,3 +73,18 @@ def test_what_is_measured_is_smoothed() -> None:
     course = [untouched.step((10.0,))[0] for _ in range(30)]
     assert all(before < after for before, after in pairwise(course))
     assert course[14] == pytest.approx(10.0 * (1.0 - math.exp(-15 * TICK / 0.03)), rel=0.01)
+
+
+@pytest.mark.parametrize("again", [False, True])
+@pytest.mark.parametrize(("size", "ticks"), [(TREMOR - 0.1, STEADY), (TREMOR + 0.1, STEADY + 1), (1.5, STEADY + 1)])
+def test_a_change_that_stays_steady_for_long_enough_is_nobodys_to_the_tick(size: float, ticks: int, again: bool) -> None:
+    """It is steady from the tick of its last move by more than a tremor on, or from the learning of the untouched state on."""
+    untouched = Untouched((1.0,), 0.5, AT_ONCE)
+    if again:
+        for tick in range(SETTLING + 9):
+            untouched.step((9.0 * (tick > SETTLING),))
+        untouched.restart()
+    for _ in range(SETTLING):
+        untouched.step((0.0,))
+    course = (untouched.step((size + CREEP * tick,))[0] for tick in range(ticks + 9))  # it keeps pace with the creeping
+    assert next(tick for tick, change in enumerate(course) if change < 0.5) == ticks
