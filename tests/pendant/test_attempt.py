@@ -59,3 +59,54 @@ def test_the_time_to_confirm_ends_to_its_tick() -> None:
     """FD-8."""
     _, said = outcomes(0.2, (100, NONE), (WINDOW, NONE))
     assert said == [Outcome.GOES_ON] * (100 + WINDOW - 1) + [Outcome.UNCONFIRMED]
+
+
+@pytest.mark.parametrize("within", [100, 101, 1000])
+def test_the_time_to_let_go_ends_to_its_tick(within: int) -> None:
+    """FD-8a: a hand that is off in the last tick, or before, is in time."""
+    settings = apply(Settings(), {"activation.period": 0.0, "let_go.within": within / 500})
+    for on in (0, 1, within - 2, within - 1, within):
+        attempt = Attempt(PUSH, settings)
+        assert (attempt.first(), attempt.phase, attempt.left, attempt.total) == (Outcome.LET_GO, Phase.LET_GO, within, within)
+        said = [attempt.step(NONE, True, tick == on) for tick in range(min(on + 1, within))]
+        assert said == [Outcome.GOES_ON] * (len(said) - 1) + [Outcome.READY if on < within else Outcome.STILL_HELD]
+
+
+@pytest.mark.parametrize("course", [(PUSH, BUTTON), (BUTTON, PUSH), (PUSH, PUSH), (BUTTON, BUTTON)])
+def test_a_hand_that_gave_any_of_the_signal_must_let_go(course: tuple[Presence, Presence]) -> None:
+    """FD-8a."""
+    attempt = Attempt(course[0], apply(Settings(), {"activation.period": 0.02}))
+    assert attempt.first() is Outcome.GOES_ON
+    said = [attempt.step(course[1], False, False) for _ in range(10)]
+    assert said == [Outcome.GOES_ON] * 9 + [Outcome.LET_GO if PUSH in course else Outcome.READY]
+
+
+@pytest.mark.parametrize("summed", [True, False])
+def test_presences_are_summed_over_gaps_of_a_second(summed: bool) -> None:
+    """FD-7: 1 s are 500 ticks, of each gap for itself."""
+    settings = apply(Settings(), {"activation.period": 0.02, "activation.sum_presences": summed})
+    gap = 500 if summed else 0
+    attempt = Attempt(BUTTON, settings)
+    assert attempt.first() is Outcome.GOES_ON
+    for _ in range(3):
+        assert [attempt.step(NONE, False, False) for _ in range(gap)] == [Outcome.GOES_ON] * gap
+        assert [attempt.step(BUTTON, False, False) for _ in range(3)] == [Outcome.GOES_ON] * 3
+        assert attempt.left == 7 or summed
+        if not summed:
+            break
+    said = [attempt.step(NONE, False, False) for _ in range(gap + 1)]
+    assert said == [Outcome.GOES_ON] * gap + [Outcome.CANCELLED]
+
+
+@pytest.mark.parametrize("signal", [BUTTON, PUSH])
+@pytest.mark.parametrize(("feedback", "new"), [(88, False), (89, False), (90, True), (91, True)])
+def test_a_tap_is_over_with_its_tick(feedback: int, new: bool, signal: Presence) -> None:
+    """FD-8: its absence counts through the activation period of 10 ticks, and is complete after 100."""
+    names = {"handshake.on": True, "handshake.feedback": feedback / 500, "activation.period": 0.02, "let_go.on": False}
+    attempt = Attempt(Presence("tap", by_hand=True, whole=True), apply(Settings(), names))
+    attempt.first()
+    course = [attempt.step(NONE, False, False) for _ in range(10 + feedback)]
+    assert [outcome for outcome in course if outcome is not Outcome.GOES_ON] == [Outcome.CONFIRM]
+    assert attempt.phase is Phase.CONFIRM
+    said = [attempt.step(signal, False, False) for _ in range(HOLD + 1)]
+    assert said == [Outcome.GOES_ON] * HOLD + [Outcome.READY if new else Outcome.GOES_ON]

@@ -51,6 +51,11 @@ def test_it_shows_the_side_that_is_near(low: float, high: float, value: float, l
     assert gauge.monitored.limit == limit
 
 
+def test_before_its_first_value_it_is_at_zero_and_no_stop() -> None:
+    gauge = Gauge("force", "N", high=3.0)
+    assert (gauge.monitored, gauge.stop) == (Monitored("force", "", 0.0, -math.inf, 3.0, "N"), False)
+
+
 def test_its_memory_tells_all_of_it() -> None:
     one, other = Gauge("force", "N", high=3.0, allowed=2), Gauge("force", "N", high=3.0, allowed=2)
     assert one.memory == other.memory

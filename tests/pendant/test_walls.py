@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pendant.shapes import Box, HalfSpace, Sphere
-from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
+from pendant.walls import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, in_shape, problem
 
 BALL = {"kind": "sphere", "radius": 0.1}
 
@@ -117,6 +117,27 @@ def test_a_turned_shape_takes_its_offset_in_the_axes_of_the_reference() -> None:
     Wall(name="a", shape=plate, orientation=quarter, offset=(0.0, 0.0, 0.03), band=0.01)
     with pytest.raises(ValueError, match="10 mm outside"):
         Wall(name="a", shape=plate, orientation=quarter, offset=(0.03, 0.0, 0.0), band=0.01)
+
+
+@pytest.mark.parametrize(("length", "whole"), [(0.999, False), (0.99901, True), (1.0, True), (1.00099, True), (1.001, False)])
+def test_an_orientation_has_the_length_of_one(length: float, whole: bool) -> None:
+    turned = {"orientation": [length, 0.0, 0.0, 0.0]}
+    if whole:
+        assert read(**turned).orientation[0] == length
+    else:
+        with pytest.raises(msgspec.ValidationError, match=f"orientation: its length is {length:g}, allowed: 1"):
+            read(**turned)
+
+
+def test_a_part_on_the_border_of_its_shape_is_not_inside() -> None:
+    with pytest.raises(ValueError, match="offset: the part would start -?0 mm outside the shape"):
+        Wall(name="a", shape=Sphere(radius=0.5), offset=(0.5, 0.0, 0.0), band=0.0)
+
+
+def test_the_part_lies_opposite_to_the_offset_in_the_axes_of_the_shape() -> None:
+    assert in_shape((1.0, 0.0, 0.0, 0.0), (0.1, -0.2, 0.3)) == (-0.1, 0.2, -0.3)
+    half = math.sqrt(0.5)  # a quarter turn about z: the shape's x lies along the reference's y
+    assert in_shape((half, 0.0, 0.0, half), (0.1, -0.2, 0.3)) == pytest.approx((0.2, 0.1, -0.3))
 
 
 def test_a_list_of_walls_comes_back_equal_from_a_file() -> None:
