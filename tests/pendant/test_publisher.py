@@ -1,0 +1,164 @@
+"""What a decision tells: every value from its source, and only where it applies."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import pytest
+
+from pendant.axis_locks import axis_locks
+from pendant.contact import Contact
+from pendant.decision import Decision, Remaining
+from pendant.events import Event, Kind
+from pendant.haptics import Pattern, Shake
+from pendant.modes import Law, Mode, Phase, Safety
+from pendant.program import ProgramState, Wait
+from pendant.publisher import Publisher
+from pendant.reduced import SpeedLimits
+from pendant.robot import Robot
+from pendant.settings import Settings, apply, limits_checksum
+from pendant.tooling import Tooling
+
+SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False})
+SPEEDS = SpeedLimits(0.1, 0.2, 0.3)
+SHAKE = Shake(Pattern.ENTERED, 0.001, 0.2, 3.0)
+PERIODS = (Remaining("free-drive", 3, 7),)
+MOVE = Wait(duration=1.0, id=4)
+EVENT = Event(Kind.RESET, 5)
+CONTACT = cast("Contact", "contact")
+PASSING = {"events": (), "periods": (), "walls": (), "monitored": (), "contacts": ()}
+
+
+class Parts:
+    """What a decision is made of, each value one of its own; those that the publisher must leave out are there as well."""
+
+    def __init__(self, settings: Settings = SETTINGS, **changes: object) -> None:
+        self.free = SimpleNamespace(
+            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity"), helping=True, balance="balance",
+            baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
+            periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
+        )  # fmt: skip
+        self.sequencer = SimpleNamespace(move=MOVE, state=ProgramState.PAUSED, index=2, tool_on=True)
+        self.robot = SimpleNamespace(
+            free=self.free, sequencer=self.sequencer, mode=Mode.FREE_DRIVE, safety=Safety.REDUCED, grip="in the middle"
+        )
+        self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
+        self.publisher = Publisher(cast("Robot", self.robot), cast("Tooling", self.tooling), settings)
+        self.settings = settings
+        self.set(**changes)
+
+    def set(self, **changes: object) -> None:
+        for name, value in changes.items():
+            owner = next(one for one in (self.free, self.sequencer, self.robot, self.tooling) if hasattr(one, name))
+            setattr(owner, name, value)
+
+    def step(self, *events: Event, contacts: tuple[Contact, ...] = ()) -> Decision:
+        return self.publisher.step(Law.FREE, list(events), contacts, SPEEDS, SHAKE)
+
+    def expected(self, **changes: object) -> dict[str, object]:
+        """Of a tick of held free-drive."""
+        return {
+            "mode": Mode.FREE_DRIVE, "safety": Safety.REDUCED, "phase": Phase.HELD, "law": Law.FREE, "move": MOVE, "gain": 2.5,
+            "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
+            "step": 3, "monitored": (), "contacts": (), "tool_on": True, "walls": ("wall",), "grip": "in the middle",
+            "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
+            "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
+            "wizard": "progress", "limits": limits_checksum(self.settings),
+        } | changes  # fmt: skip
+
+
+def told(decision: Decision) -> dict[str, object]:
+    return {name: getattr(decision, name) for name in decision.__struct_fields__}
+
+
+TRYING = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "arm": None}
+TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singularity": None, "locks": None}
+
+
+@pytest.mark.parametrize(
+    ("changes", "differs"),
+    [
+        ({}, {}),
+        ({"helping": False}, {"gain": 0.0}),
+        ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
+        ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
+        ({"arm": None}, {"damping": None, "singularity": None}),
+        ({"idle": True}, {"periods": ()}),
+        ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
+        ({"phase": Phase.OFF}, {"phase": Phase.OFF, "walls": ()}),
+        (TRYING, {**TRIED, "balance": "balance", "monitored": ("monitored",), "gain": 0.0}),
+    ],
+)
+def test_it_tells_what_is_and_where_it_applies(changes: dict[str, object], differs: dict[str, object]) -> None:
+    """The locks hold in FREE_DRIVE; balance and monitored values are of the sequence; a program has a step while it runs."""
+    parts = Parts(**changes)
+    first = parts.step(EVENT, contacts=(CONTACT,))
+    assert told(first) == parts.expected(**differs, events=(EVENT,), contacts=(CONTACT,))
+    assert told(parts.step()) == parts.expected(**differs)
+    again = parts.step(EVENT, contacts=(CONTACT,))
+    assert again == first
+
+
+@pytest.mark.parametrize("amplified", [True, False])
+@pytest.mark.parametrize("phase", [Phase.SEQUENCE, Phase.HELD])
+@pytest.mark.parametrize("balance", [None, "balance"])
+def test_in_the_sequence_the_force_is_amplified_where_that_is_set_and_nothing_is_refused(
+    amplified: bool, phase: Phase, balance: str | None
+) -> None:
+    """FD-10: the balance is of the sequence alone."""
+    parts = Parts(apply(SETTINGS, {"sequence.amplified": amplified}), phase=phase, balance=balance)
+    gain = 2.5 if phase is Phase.HELD or (amplified and balance is None) else 0.0
+    trying = {"balance": balance, "monitored": ("monitored",)} if phase is Phase.SEQUENCE else {}
+    assert told(parts.step()) == parts.expected(phase=phase, gain=gain, **trying)
+
+
+def test_without_the_switch_no_periods_are_told() -> None:
+    """FD-20."""
+    parts = Parts(apply(SETTINGS, {"free_drive.remainders": False}))
+    assert told(parts.step()) == parts.expected(periods=())
+
+
+LASTING = {
+    "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
+    "arm": SimpleNamespace(damping="other", singularity="other"), "zones": (), "move": None, "state": ProgramState.RUNNING,
+    "index": 3, "tool_on": False, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LASTING)
+def test_what_lasts_is_told_anew_when_it_changes(name: str) -> None:
+    parts, fresh = Parts(), Parts()
+    before = parts.step()
+    for one in (parts, fresh):
+        one.set(**{name: LASTING[name]})
+    assert parts.step() == fresh.step()
+    assert parts.step() != before
+
+
+@pytest.mark.parametrize("passing", [{"events"}, {"contacts"}, {"walls"}, {"monitored"}, {"periods"}, set(PASSING), set()])
+def test_what_is_of_a_tick_is_told_in_it_alone(passing: set[str]) -> None:
+    """Also after a tick that told nothing, and where it is all that the tick has to tell; a quiet tick repeats the decision."""
+    parts = Parts(phase=Phase.SEQUENCE)
+    sources = {"periods": PERIODS, "walls": ("wall",), "monitored": ("monitored",)}
+
+    def step(names: set[str]) -> Decision:
+        parts.set(**{name: (lambda told=value if name in names else (): told) for name, value in sources.items()})
+        events, contacts = [EVENT] if "events" in names else [], (CONTACT,) if "contacts" in names else ()
+        return parts.step(*events, contacts=contacts)
+
+    whole = {**sources, "events": (EVENT,), "contacts": (CONTACT,)}
+    quiet = step(set())
+    for names in (passing, passing, set(), set(), passing):
+        decision = step(names)
+        assert told(decision) == told(quiet) | PASSING | {name: whole[name] for name in names}
+        if not names:
+            assert decision is step(set())
+
+
+def test_new_settings_are_told_from_the_next_decision_on() -> None:
+    parts = Parts()
+    before = parts.step()
+    parts.settings = apply(SETTINGS, {"free_drive.gain": 2.0, "free_drive.force_cap": 60.0, "axes.y": False})
+    parts.publisher.refresh(parts.settings)
+    after = parts.step()
+    assert told(after) == parts.expected(gain=2.0, force_cap=60.0)
+    assert (after.locks, after.limits) != (before.locks, before.limits)
