@@ -130,7 +130,7 @@ def test_an_orientation_has_the_length_of_one(length: float, whole: bool) -> Non
 
 
 def test_a_part_on_the_border_of_its_shape_is_not_inside() -> None:
-    with pytest.raises(ValueError, match="offset: the part would start -?0 mm outside the shape"):
+    with pytest.raises(ValueError, match=r"offset: the part would start -?0 mm outside the shape"):
         Wall(name="a", shape=Sphere(radius=0.5), offset=(0.5, 0.0, 0.0), band=0.0)
 
 
