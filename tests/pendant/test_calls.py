@@ -1,4 +1,4 @@
-"""What hand, button and digital inputs call for in a tick: the signal, commands, and what is told of a push (FD-5, FD-6a, FD-17)."""
+"""What hand, button and digital inputs call for in a tick: signal, commands, and what is told of a push (FD-5, FD-6a, FD-17)."""
 
 import pytest
 

@@ -323,6 +323,32 @@ def test_a_wall_that_holds_before_free_drive_is_not_felt() -> None:
     assert decision.shake is None
 
 
+@pytest.mark.parametrize("pauses", [True, False])
+def test_a_push_that_is_told_pauses_the_program_and_other_commands_of_its_tick_count(pauses: bool) -> None:
+    """FD-6a: told in the tick in which it pauses, before what follows from it, with everything else of that tick."""
+    bench = running(Program(name="rest", steps=(Wait(duration=60.0),)), signals__push__told=True, signals__push__pauses=pauses)
+    bench.run(120)
+    bench.events.clear()
+    inputs = Inputs(commands=(Command.NORMAL,), settings={"free_drive.cool_down": 3.0})
+    while not any(event.kind is Kind.PUSHED for event in bench.events):
+        bench.events.clear()
+        bench.step(inputs, estimate(force=40.0))
+        assert bench.tick < 400
+    kinds = [event.kind for event in bench.last.events]
+    paused = [Kind.PROGRAM_PAUSED] if pauses else []
+    assert kinds == [Kind.PUSHED, Kind.COMMAND_REFUSED, *paused, Kind.SETTING_REFUSED]
+    assert bench.last.program is (ProgramState.PAUSED if pauses else ProgramState.RUNNING)
+
+
+def test_joints_without_names_are_counted_from_the_base() -> None:
+    supervisor = Supervisor(Settings(), 6)
+    supervisor.step(estimate(), command(Command.REDUCED_ON))
+    for tick in range(1, 260):
+        assert supervisor.step(estimate(tick), NOTHING).events == ()
+    (event,) = supervisor.step(estimate(260, qd=[0.0] * 5 + [2.0]), NOTHING).events
+    assert (event.kind, event.values["part"]) == (Kind.REDUCED_EXCEEDED, "joint 6")
+
+
 def test_equal_states_decide_equally() -> None:
     one, other = Bench(), Bench()
     for bench in (one, other):
