@@ -1,14 +1,48 @@
 """The activation of free-drive: its period to the tick, and what refuses entry at its end."""
 
 import pytest
+from msgspec.structs import replace
 
+from pendant.activation import Activation
+from pendant.containment import Containment
+from pendant.enabling import Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
+from pendant.gate import Gate
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
 from pendant.program import Program, Wait
+from pendant.settings import Settings, apply
+from pendant.sources import BUTTON, NONE, Presence
+from pendant.watch import Stillness
+from pendant.zeroing import Zero
 from tests.pendant.estimates import estimate
-from tests.pendant.test_freedrive import HOLD, LET_GO, Bench, remaining
+from tests.pendant.test_freedrive import HOLD, JOINTS, LET_GO, Bench, remaining
+from tests.pendant.test_sequence import around
+
+PUSH = Presence("push", by_hand=True)
+
+
+class Alone:
+    """The module alone. Ticks count from 0."""
+
+    def __init__(self, **changes: float | bool) -> None:
+        self.settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
+        self.activation = Activation(JOINTS, (100.0,) * 6, Containment((), {}), Zero())
+        self.gate = Gate()
+        self.tick = -1
+
+    def step(self, signal: Presence = BUTTON, value: Estimate | None = None, rest: int = 50, **changes: object) -> list[Event]:
+        """One tick of an arm that has been static for `rest` ticks; `changes` of its surroundings."""
+        self.tick += 1
+        still = Stillness()
+        still.count = rest
+        self.gate.sense(signal is BUTTON, signal)
+        now = replace(around(value or estimate(), self.tick), still=still, **changes)
+        return self.activation.step(now, self.settings, self.gate)
+
+    def run(self, count: int, signal: Presence, **changes: object) -> list[Event]:
+        return [event for _ in range(count) for event in self.step(signal, **changes)]  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("seconds", "count"), [(0.0, 0), (0.002, 1), (0.25, 125), (1.0, 500), (15.0, 7500)])
@@ -120,3 +154,84 @@ def test_a_sensor_that_is_lost_in_the_sequence_refuses_entry_and_is_named(broken
     bench.step(HOLD, broken)
     assert (bench.last.mode, bench.last.phase) == (Mode.TEACH, Phase.OFF)
     assert bench.last.events == (Event(Kind.REFUSED_SENSORS, bench.tick, {"sensor": sensor}),)
+
+
+def test_a_signal_in_the_cool_down_is_told_once_how_long_that_lasts() -> None:
+    """FD-12c."""
+    alone = Alone()
+    alone.gate.close(500)
+    assert alone.step() == [Event(Kind.NOT_YET, 0, {"remaining": pytest.approx(0.998)})]
+    assert alone.step() == []
+
+
+def test_a_signal_that_ends_as_the_mode_changes_was_let_go() -> None:
+    """FD-8a: letting go cancels, and needs no mode; a signal that goes on does."""
+    for signal, event in (
+        (NONE, Event(Kind.ACTIVATION_CANCELLED, 1, {"value": pytest.approx(0.002), "limit": 1.0})),
+        (BUTTON, Event(Kind.REFUSED_MODE, 1, {"mode": Mode.NORMAL, "allowed": "TEACH"})),
+    ):
+        alone = Alone()
+        assert alone.step() == [Event(Kind.ACTIVATION_STARTED, 0, {"period": 1.0})]
+        assert alone.step(signal, mode=Mode.NORMAL) == [event]
+
+
+@pytest.mark.parametrize(
+    ("changes", "value", "event"),
+    [
+        ({"grip": Grip.RELEASED}, estimate(), Event(Kind.REFUSED_ENABLING, 0, {"grip": "released"})),
+        ({}, estimate(joints_valid=False), Event(Kind.REFUSED_SENSORS, 0, {"sensor": "joint encoders and motor currents"})),
+        ({"changing": 1.5}, estimate(), Event(Kind.REFUSED_CHANGING, 0, {"mass": 1.5})),
+    ],
+)
+def test_what_refuses_an_activation_is_named(changes: dict[str, object], value: Estimate, event: Event) -> None:
+    """FD-12."""
+    alone = Alone(activation__period=0.0)
+    assert alone.step(BUTTON, value, **changes)[-1] == event  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("walls", [True, False])
+def test_a_complete_signal_starts_the_sequence_and_its_posture_is_remembered(walls: bool) -> None:
+    """FD-9, FD-22."""
+    alone, angles = Alone(activation__period=0.0, walls__on=walls, sequence__period=0.5), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+    assert alone.step(BUTTON, estimate(q=angles))[1:] == [Event(Kind.SEQUENCE_STARTED, 0, {"period": 0.5})]
+    assert alone.activation.posture == tuple(angles)
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_only_a_confirmation_allows_for_a_short_sequence(on: bool) -> None:
+    """FD-8, FD-9."""
+    alone = Alone(activation__period=0.0, handshake__on=on, handshake__feedback=0.2, sequence__period=0.1)
+    said = alone.run(1, BUTTON) + alone.run(200, NONE) + alone.run(101, BUTTON) if on else alone.run(1, BUTTON)
+    confirm = Event(Kind.CONFIRM_ASKED, 0, {"source": "button", "feedback": 0.2, "window": 3.0})
+    started, short = {"period": pytest.approx(0.1)}, {"value": 0.1, "limit": 0.25}
+    assert said[1:] == ([confirm, Event(Kind.SEQUENCE_STARTED, 301, started)] if on else [Event(Kind.REFUSED_SHORT, 0, short)])
+
+
+def test_a_confirmation_that_does_not_come_is_named() -> None:
+    """FD-8: 0.2 s of feedback, 3 s to confirm; a hand that is still felt has not left the arm."""
+    alone = Alone(activation__period=0.0, handshake__on=True, handshake__feedback=0.2)
+    alone.step(PUSH)
+    assert alone.run(120, NONE, touched=True) == []
+    assert alone.run(102, PUSH) == []
+    assert alone.run(1378, NONE) == [Event(Kind.REFUSED_UNCONFIRMED, 1600, {"source": "push", "limit": 3.0})]
+
+
+def test_a_hand_that_gave_the_signal_has_to_leave_the_arm_and_that_to_stand() -> None:
+    """FD-8a."""
+    alone = Alone(activation__period=0.0, sequence__on=False)
+    off = alone.settings.let_go
+    asked = {"force": 7.5, "limit": off.force, "within": off.within}
+    assert alone.step(PUSH, felt=7.5, hand_off=False)[1:] == [Event(Kind.LET_GO_ASKED, 0, asked)]
+    assert alone.step(NONE, rest=49, hand_off=True) == []
+    assert alone.step(NONE, rest=50, hand_off=False) == []
+    assert alone.step(NONE, rest=50, hand_off=True) == [Event(Kind.ENTERED, 3, {"from": Mode.TEACH, "gain": 1.0})]
+
+
+def test_a_hand_that_does_not_leave_the_arm_is_named() -> None:
+    """FD-8a."""
+    alone = Alone(activation__period=0.0)
+    off = alone.settings.let_go
+    alone.step(PUSH, hand_off=False)
+    last = round(off.within * 500)
+    held = Event(Kind.REFUSED_STILL_HELD, last, {"force": 6.0, "limit": off.force, "within": off.within})
+    assert alone.run(last, NONE, felt=6.0, hand_off=False) == [held]

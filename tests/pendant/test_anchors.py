@@ -98,6 +98,26 @@ def test_stepwise_with_a_shorter_redefine_period_still_waits_for_a_clear_safety_
     assert run(Policy.STEPWISE, ticks, safety=100, redefine=40)[1] == [120, 160, 200]
     assert run(Policy.STEPWISE, [Tick(user=PUSH)] * 200, safety=100, redefine=40)[1] == [120, 160, 200]
     assert run(Policy.STEPWISE, [Tick(user=PUSH)] * 200, safety=40, redefine=100)[1] == [100, 200]
+    assert run(Policy.STEPWISE, [Tick(user=PUSH)] * 200, safety=100, redefine=99)[1] == [198]
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("force", "moved", "payload", "anew"),
+    [(8.0, 0.001, 0.0, True), (8.0, -0.001, 0.0, False), (0.0, 0.006, -20.0, True), (0.0, -0.006, -20.0, False),
+     (0.0, 0.006, -RESIDUAL, True)],
+)  # fmt: skip
+def test_somebody_drives_along_the_force_or_against_the_residual_in_every_axis(
+    axis: int, way: float, force: float, moved: float, payload: float, anew: bool
+) -> None:
+    anchor = Anchor(Wall(name="w", shape=Sphere(radius=0.2), policy=Policy.STEPWISE), NONE, N)
+
+    def along(size: float) -> Vector:
+        x, y, z = (way * size if k == axis else 0.0 for k in range(3))
+        return x, y, z
+
+    assert anchor.step(Stay(NONE, (0.0, 0.0, -1.0), False, False, along(moved), along(force), along(payload), 1, 1)) is anew
 
 
 def test_average_follows_the_mean_of_the_last_period() -> None:

@@ -234,3 +234,68 @@ def test_any_number_of_joints() -> None:
         decision = supervisor.step(value, HOLD)
     assert decision.events[0].values["joint"] == "joint 7"
     assert np.all(value.q == 0.0)
+
+
+@pytest.mark.parametrize(("period", "kind"), [(0.0, Kind.LEFT_ENABLING), (1.0, Kind.REFUSED_ENABLING)])
+def test_letting_go_of_the_enabling_device_ends_what_has_begun(period: float, kind: Kind) -> None:
+    """In free-drive that is leaving, before a refusal."""
+    bench = Bench(enabling__on=True, activation__period=period)
+    bench.run(60)
+    bench.step(Inputs(held=frozenset({Button.FREE_DRIVE, Button.ENABLING})))
+    bench.step(Inputs(held=frozenset({Button.FREE_DRIVE}), released=frozenset({Button.ENABLING})))
+    assert bench.last.events == (Event(kind, bench.tick, {"grip": "released"}),)
+    assert (bench.last.mode, bench.last.phase) == (Mode.TEACH, Phase.OFF)
+
+
+@pytest.mark.parametrize(("seconds", "after"), [(0.0, 0), (0.002, 1), (0.004, 1), (0.006, 2), (0.1, 49)])
+def test_what_is_told_of_a_refused_payload_is_told_in_the_last_tick_of_the_cool_down(seconds: float, after: int) -> None:
+    """FD-11: without a cool-down, never."""
+    bench, loaded = (
+        Bench(sequence__on=True, activation__period=0.0, free_drive__cool_down=seconds),
+        estimate(force=[0.0, 0.0, 9.81]),
+    )
+    bench.run(60, NOTHING, loaded)
+    assert bench.step(HOLD, loaded).events[-1].kind is Kind.REFUSED_PAYLOAD
+    bench.events.clear()
+    bench.run(60, NOTHING, loaded)
+    stayed = Event(Kind.RESIDUAL_STAYED, 60 + after, {"force": pytest.approx(9.81), "mass": pytest.approx(-1.0)})
+    assert bench.events == ([stayed] if after else [])
+
+
+def test_another_refusal_is_nobodys_payload() -> None:
+    """FD-11."""
+    bench, pushed = Bench(sequence__on=True, activation__period=0.0, free_drive__cool_down=0.1), estimate(force=30.0)
+    bench.run(60, NOTHING, pushed)
+    assert bench.step(HOLD, pushed).events[-1].kind is Kind.REFUSED_LIMIT
+    bench.events.clear()
+    bench.run(60)
+    assert bench.events == []
+
+
+def test_the_period_of_free_drive_is_published() -> None:
+    """FD-20: not that of the activation."""
+    assert remaining(Bench(activation__period=0.0).in_period().last) == {"free-drive": (1500, 1500)}
+
+
+def test_no_state_of_free_drive_is_compared_with() -> None:
+    """FD-9: the state must be 0.5 s old, and the arm held since; 300 ticks at rest in free-drive do not count."""
+    bench = Bench(sequence__on=True, sequence__stored=True, sequence__age=0.5, sequence__period=0.1, activation__period=0.0)
+    bench.run(300)
+    bench.run(52, HOLD)
+    assert bench.last.mode is Mode.FREE_DRIVE
+    bench.step(LET_GO)
+    bench.run(300)
+    bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)))
+    bench.events.clear()
+    bench.step(HOLD)
+    assert bench.events[-1] == Event(Kind.REFUSED_NOT_STORED, bench.tick, {"age": 0.5})
+
+
+def test_a_refusal_after_free_drive_was_left_tells_no_way_back() -> None:
+    """FD-22."""
+    bench = Bench(activation__period=0.0).entered(estimate(q=[0.5] * 6))
+    bench.step(LET_GO)
+    bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)))
+    bench.run(100)
+    bench.step(HOLD, estimate(qd=0.1))
+    assert [event.kind for event in bench.last.events] == [Kind.ACTIVATION_STARTED, Kind.REFUSED_MOVING]

@@ -1,10 +1,15 @@
 """The levels of the safety inputs: each change is told once, and what is open keeps a reset off (FD-1)."""
 
+import math
+
 import pytest
 
+from pendant.estimate import Estimate
 from pendant.events import Event, Kind
-from pendant.inputs import Command, Inputs
+from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Mode, Phase, Safety
+from pendant.reduced import SpeedLimits
+from tests.pendant.estimates import estimate
 from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
 
 OPEN, CLOSED = Command.SAFEGUARD_OPEN, Command.SAFEGUARD_CLOSED
@@ -76,3 +81,27 @@ def test_a_reset_leads_to_the_safety_mode_that_the_inputs_ask_for(levels: tuple[
         assert bench.last.safety is Safety.EMERGENCY_STOP
     assert told(bench, RESET) == [Kind.RESET]
     assert (bench.last.mode, bench.last.safety) == (Mode.TEACH, safety)
+
+
+def test_what_is_too_fast_for_reduced_is_stopped_once() -> None:
+    """FD-1: 0.5 s of grace are 250 ticks; what goes on in STOP is the stop's to brake."""
+    bench, fast = resting(), estimate(v_tcp=0.4)
+    bench.step(Inputs(commands=(ON,)))
+    assert bench.last.speed_limits == SpeedLimits(0.25, 0.25, 1.0)
+    bench.events.clear()
+    assert bench.run(249, NOTHING, fast).mode is Mode.TEACH
+    bench.run(20, NOTHING, fast)
+    values = {"parameter": "tcp speed", "part": "tcp", "value": 0.4, "limit": 0.25, "unit": "m/s"}
+    assert bench.events == [Event(Kind.REDUCED_EXCEEDED, 310, values)]
+    assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.PROTECTIVE_STOP)
+
+
+@pytest.mark.parametrize("value", [estimate(joints_valid=False, v_tcp=math.nan), estimate(qd=math.nan)])
+def test_where_no_joint_can_be_told_nothing_is_too_fast(value: Estimate) -> None:
+    """FD-12: what is lost is told by others."""
+    bench = resting()
+    told(bench, ON)
+    bench.run(300)
+    bench.step(NOTHING, value)
+    assert Kind.REDUCED_EXCEEDED not in [event.kind for event in bench.last.events]
+    assert bench.last.mode is Mode.TEACH

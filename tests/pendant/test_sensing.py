@@ -1,6 +1,6 @@
 """Joint sensors that go and come back: one event each, and what goes on without them."""
 
-from pendant.events import Kind
+from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Mode
 from pendant.program import JointMove, Program
@@ -15,11 +15,12 @@ JOINTS = ("base", "elbow")
 
 
 def test_each_loss_and_return_is_told_once() -> None:
-    sensors, seen = JointSensors(), estimate()
+    sensors, seen = JointSensors(), estimate(7)
     assert sensors.step(seen, JOINTS) == []
     seen.lost = (("output_encoder", 1),)
     (event,) = sensors.step(seen, JOINTS)
-    assert event.kind is Kind.JOINT_SENSOR_LOST
+    left = "Its angle comes from the motor, its torque from model and motor"
+    assert event == Event(Kind.JOINT_SENSOR_LOST, 7, {"sensor": "output encoder", "joint": "elbow", "left": left})
     assert render(event)[0] == "Lost: output encoder of elbow"
     assert sensors.step(seen, JOINTS) == []
     seen.lost = (("output_encoder", 1), ("current", 0))
@@ -28,7 +29,7 @@ def test_each_loss_and_return_is_told_once() -> None:
     assert "not learned" in render(event)[1]
     seen.lost = (("current", 0),)
     (event,) = sensors.step(seen, JOINTS)
-    assert event.kind is Kind.JOINT_SENSOR_BACK
+    assert event == Event(Kind.JOINT_SENSOR_BACK, 7, {"sensor": "output encoder", "joint": "elbow"})
     assert render(event)[0] == "Back: output encoder of elbow"
 
 

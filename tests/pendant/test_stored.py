@@ -44,6 +44,11 @@ def test_fifteen_seconds_are_kept(until: int) -> None:
         assert found.position[0] == pytest.approx(0.001 * 25 * ((until - 7500) // 25))
 
 
+def test_none_is_kept_that_is_too_old_to_be_compared_with() -> None:
+    """A robot runs for weeks."""
+    assert [state[0] for state in kept(16000).memory[1:]] == list(range(16000 - OLDEST, 16001, EVERY))  # type: ignore[index]
+
+
 def test_what_is_kept_is_the_arm() -> None:
     mean = WrenchMean()
     for value in (2.0, 4.0):
