@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pendant.containment import NOBODY, Containment, _measures, facts, tether
-from pendant.decision import Decision
+from pendant.decision import Decision, WallState
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Button, Inputs
@@ -268,9 +268,10 @@ def test_a_size_follows_posture_and_payload(measure: Measure, seen: Estimate, fa
     assert state.distance == pytest.approx(-0.2 * factor)
 
 
-def test_without_sizes_the_smallest_holds() -> None:
+@pytest.mark.parametrize(("reach", "at_low", "at_high"), [(0.0, 1.0, 0.5), (0.5, 0.5, 1.0)])
+def test_without_sizes_the_smallest_holds(reach: float, at_low: float, at_high: float) -> None:
     """VW-8; a constant wall keeps its size."""
-    size = Dependence(measure=Measure.REACH, low=0.0, high=0.5, at_low=1.0, at_high=0.5)
+    size = Dependence(measure=Measure.REACH, low=0.0, high=0.5, at_low=at_low, at_high=at_high)
     borders = (
         Wall(name="w", shape=Sphere(radius=0.2), activation_size=1.0, size=size),
         Wall(name="c", shape=Sphere(radius=0.2), activation_size=1.0),
@@ -278,7 +279,7 @@ def test_without_sizes_the_smallest_holds() -> None:
     for sizes, distance in ((True, -0.2), (False, -0.1)):
         containment = Containment(borders, {})
         containment.begin(Start.SEQUENCE, Walls(tether=False, sizes=sizes))
-        containment.step(at(0.0), *NOBODY)
+        containment.step(at(reach), *NOBODY)
         assert [state.distance for state in containment.states()] == pytest.approx([distance, -0.2])
 
 
@@ -293,6 +294,43 @@ def test_without_new_anchors_a_hand_reaches_the_tether(anew: bool, law: Law) -> 
         if decision.law is not Law.FREE:
             break
     assert decision.law is law
+
+
+@pytest.mark.parametrize("anew", [True, False])
+def test_without_new_anchors_every_wall_is_a_fixed_one(anew: bool) -> None:
+    """VW-3 to VW-5; an area is one anyhow."""
+    containment = Containment((Wall(name="w", shape=Sphere(radius=0.2), policy=Policy.USER), FLOOR), {})
+    containment.enter(Walls(anew=anew))
+    containment.step(at(0.0), *NOBODY)
+    policies = [border.policy for border, _ in containment.places() if isinstance(border, Wall)]
+    assert policies == ([Policy.AVERAGE, Policy.USER] if anew else [Policy.FIXED, Policy.FIXED])
+
+
+@pytest.mark.parametrize(("load", "ticks"), [(0.0, 50), (0.5, 75), (1.0, 100)])
+def test_a_safety_period_alone_follows_the_payload(load: float, ticks: int) -> None:
+    """VW-3: 0.1 s, or twice as long with 1 kg."""
+    dependence = Dependence(measure=Measure.PAYLOAD, low=0.0, high=1.0, at_low=1.0, at_high=2.0)
+    wall = Wall(name="w", shape=Sphere(radius=0.2), literal=True, safety_period=0.1, safety_dependence=dependence)
+    containment = Containment((wall,), {})
+    containment.enter(Walls(tether=False))
+    containment.step(at(0.0, load_mass=load), *NOBODY)
+    distances = []
+    for _ in range(101):
+        containment.step(at(0.1, load_mass=load), *NOBODY)
+        distances += [state.distance for state in containment.states()]
+    assert distances == pytest.approx([-0.1] * (ticks - 1) + [-0.2] * (102 - ticks)), "from the tick after it is anchored anew"
+
+
+@pytest.mark.parametrize(("z", "near", "exceeded", "force"), [(0.0, 0.0, False, 0.0), (-0.12, 1.0, True, 80.0)])
+def test_of_every_border_is_told_what_the_law_needs(z: float, near: float, exceeded: bool, force: float) -> None:
+    """VW-7, VW-10."""
+    containment = Containment((FLOOR,), {})
+    containment.enter(Walls(tether=False))
+    containment.step(at(0.0), *NOBODY)
+    containment.step(at(0.1, 0.2, z), *NOBODY)
+    (state,) = containment.states()
+    distance, forces = pytest.approx(-0.1 - z), pytest.approx((0.0, 0.0, force))
+    assert state == WallState("floor", "flange", (0.1, 0.2, z), distance, (0.0, 0.0, -1.0), near, exceeded, forces)
 
 
 @pytest.mark.parametrize(("resistance", "near"), [(True, 0.5), (False, 0.0)])

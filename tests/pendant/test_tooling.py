@@ -339,6 +339,20 @@ def test_a_program_that_waits_may_be_measured_in() -> None:
     assert [event.kind for event in bench.run(50)] == [Kind.POSTURE_MEASURED]
 
 
+def test_what_is_asked_for_in_one_tick_is_all_answered() -> None:
+    bench = Bench()
+    events = bench.step(Command.WIZARD_APPLY, tool="hook", tools=(BARE, GRIPPER, HOOK))
+    assert [event.kind for event in events] == [Kind.TOOLS_CHANGED, Kind.TOOL_CHANGED, Kind.TOOL_REFUSED]
+
+
+def test_a_refusal_is_told_while_a_posture_is_measured() -> None:
+    bench = Bench()
+    bench.step(Command.WIZARD_MEASURE)
+    (event,) = bench.step(tool="tongs")
+    assert event == Event(Kind.TOOL_REFUSED, 0, {"what": "tool tongs", "reason": "there is flange, gripper, anvil"})
+    assert [event.kind for event in bench.run(49)] == [Kind.POSTURE_MEASURED]
+
+
 class Robot:
     """The whole supervisor."""
 
