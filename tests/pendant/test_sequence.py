@@ -257,3 +257,13 @@ def test_equal_states_decide_equally_in_it() -> None:
     assert one.supervisor.state != other.supervisor.state
     other.step(HOLD, estimate(position=0.001))
     assert one.supervisor.state == other.supervisor.state
+
+
+def test_only_what_was_there_at_the_start_is_missed() -> None:
+    """FD-3a, FD-12."""
+    for broken, sensor in (
+        (estimate(wrench_valid=False), "flange force sensor"),
+        (estimate(acceleration_valid=False), "flange accelerometer"),
+    ):
+        assert sequence(estimate()).missing(around(broken)) == sensor
+        assert sequence(broken).missing(around(broken)) == ""
