@@ -235,3 +235,10 @@ def test_a_hand_that_does_not_leave_the_arm_is_named() -> None:
     last = round(off.within * 500)
     held = Event(Kind.REFUSED_STILL_HELD, last, {"force": 6.0, "limit": off.force, "within": off.within})
     assert alone.run(last, NONE, felt=6.0, hand_off=False) == [held]
+
+
+def test_a_refusal_in_the_first_tick_of_all_tells_no_way_back() -> None:
+    """FD-22: there is no posture yet to come back to."""
+    bench = Bench(activation__period=0.0)
+    bench.step(HOLD)
+    assert [event.kind for event in bench.last.events] == [Kind.ACTIVATION_STARTED, Kind.REFUSED_MOVING]
