@@ -31,7 +31,7 @@ PASSING = {"events": (), "periods": (), "walls": (), "monitored": (), "contacts"
 class Parts:
     """What a decision is made of, each value one of its own; those that the publisher must leave out are there as well."""
 
-    def __init__(self, settings: Settings = SETTINGS, **changes: object) -> None:
+    def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
             phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity"), helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,

@@ -11,7 +11,7 @@ from pendant.events import Event, Kind
 from pendant.freedrive import FreeDrive
 from pendant.joint_zones import JointZones
 from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import HandGuide, Move, Program, ProgramState, Wait
+from pendant.program import AnyStep, HandGuide, Program, ProgramState, Wait
 from pendant.robot import Robot
 from pendant.sequencer import Sequencer
 from tests.pendant.estimates import estimate
@@ -22,7 +22,7 @@ ENTERED, LEFT = Event(Kind.ENTERED, 7), Event(Kind.DEACTIVATED, 8)
 PAUSED = Event(Kind.PROGRAM_PAUSED, 7, {"name": "one step", "step": 1})
 
 
-def robot(step: Move | None = None) -> Robot:
+def robot(step: AnyStep | None = None) -> Robot:
     """One that runs a program of one step, or none."""
     made = Robot(FreeDrive(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED)), Sequencer())
     if step is not None:
