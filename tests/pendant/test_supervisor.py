@@ -283,6 +283,12 @@ def test_each_setting_changes_while_the_arm_is_held(row: Row) -> None:
     assert bench.step(change(row)).events == ()
 
 
+def test_where_nothing_is_free_there_is_nothing_to_leave() -> None:
+    bench = Bench()
+    assert bench.step(command(Command.LEAVE_FREE_DRIVE)).events == ()
+    assert (bench.last.mode, bench.last.phase) == (Mode.TEACH, Phase.OFF)
+
+
 def test_changed_settings_act_from_the_next_tick() -> None:
     bench = Bench()
     bench.step(Inputs(settings={"hold.silence": 0.1, "static.time": 0.5, "static.speed": 0.05}))
