@@ -115,7 +115,7 @@ def _within(change: Six, most: float) -> Vector:
 class Steps:
     """Looks for steps of the sensor that the joints do not feel."""
 
-    __slots__ = ("_age", "_felt", "_last", "_now", "_older", "_step", "_sum", "_zero")
+    __slots__ = ("_age", "_felt", "_last", "_older", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
         self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
@@ -123,7 +123,6 @@ class Steps:
         self._age = 0  # ticks since a step, 0: none
         self._zero: Vector = ORIGIN  # before it
         self._step: Vector = ORIGIN
-        self._now: Vector = ORIGIN  # what was felt in the tick before, without what was felt before the step
         self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
         self._felt: Vector = ORIGIN  # by the joints, then
 
@@ -149,10 +148,9 @@ class Steps:
             self._age = 0
             return None
         if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
-            self._step = self._sum = self._now = _less(change, self._zero)
+            self._step = self._sum = _less(change, self._zero)
             return None
-        now, before = _less(change, self._zero), self._now
-        self._now = now
+        before, now = _less(self._older, self._zero), _less(change, self._zero)
         off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
         x, y, z = self._sum
         self._sum = (x + now[0], y + now[1], z + now[2])
