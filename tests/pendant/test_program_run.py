@@ -1,4 +1,4 @@
-"""A command of a program that is not possible says why (FD-1, CD-15)."""
+"""A program in its modes: which commands are refused and why, what stops or pauses it, what it switches (FD-1, FD-12, CD-15)."""
 
 import pytest
 
