@@ -24,7 +24,7 @@ LASTS = apply(SETTINGS, {"free_drive.period": SECONDS + 1.0, "free_drive.restart
 STEPS = (5.0, 10.0, 20.0)  # [N]
 MOVED = 5.0  # [mm] beyond which the cause must be named
 
-NAMES = frozenset({Kind.WRENCH_LOST, Kind.WALL_REACHED, Kind.SENSOR_STEPPED})
+NAMES = frozenset({Kind.WRENCH_LOST, Kind.WALL_REACHED, Kind.SENSOR_STEPPED, Kind.SENSOR_DRIFTED})
 """What names a cause, besides every leaving but those by a period."""
 
 SILENT = frozenset({Kind.LEFT_PERIOD, Kind.LEFT_RESTART})

@@ -47,6 +47,7 @@ class Kind(StrEnum):
     SINGULARITY = "singularity"
     WRENCH_LOST = "wrench_lost"
     SENSOR_STEPPED = "sensor_stepped"
+    SENSOR_DRIFTED = "sensor_drifted"
     HOLD_SILENT = "hold_silent"
     LEFT_PERIOD = "left_period"
     LEFT_RESTART = "left_restart"

@@ -99,9 +99,9 @@ class FreeArm:
         hand.step(estimate, zero.used)
         self.user = hand.user
         if zero.used and settings.unexplained.sensor:
-            stepped = zero.step(estimate, hand, around.mean, waits)
-            if stepped is not None:
-                events.append(stepped)
+            told = zero.step(estimate, hand, around.mean, waits)
+            if told is not None:
+                events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload)
         before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:

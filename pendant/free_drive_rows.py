@@ -40,6 +40,13 @@ FREE_DRIVE: dict[Kind, Row] = {
         "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
         ("force",),
     ),
+    Kind.SENSOR_DRIFTED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The flange force sensor drifts",
+        "By {force:.1f} N, {torque:.1f} N·m since free-drive began, taken off. Leave and check it; if you press, let go.",
+        ("force", "torque"),
+    ),
     Kind.HOLD_SILENT: Row(
         Effect.INFO,
         Severity.WARNING,

@@ -186,7 +186,7 @@ class FreeDrive:
         """One tick of free-drive."""
         events = arm.step(around, settings, periods.waits)
         if not events or TABLE[events[-1].kind].effect not in ENDING:
-            events += periods.step(around, settings, self._gate, arm.user, self._zero.used)
+            events += periods.step(around, settings, self._gate, arm.user, self._zero.felt(around.estimate))
             self.phase = periods.phase
         return events
 
@@ -204,7 +204,7 @@ class FreeDrive:
         zero = self._zero
         self._activation.end()
         zero.begin(around.estimate, around.wrench_ok, around.mean)
-        self._periods = Periods(self._gate.held, around, settings, zero.used, self._joints)
+        self._periods = Periods(self._gate.held, around, settings, zero.felt(around.estimate), self._joints)
         self.arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
         self.phase = self._periods.phase
 

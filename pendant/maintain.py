@@ -6,6 +6,7 @@ from pendant.estimate import GRAVITY, Estimate
 from pendant.limits import Excess
 from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
+from pendant.pose import Wrench
 from pendant.residual import Split, upward
 from pendant.settings import Settings
 
@@ -20,17 +21,17 @@ class Maintained:
 
     __slots__ = ("_joints", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
 
-    def __init__(self, estimate: Estimate, settings: Settings, use_wrench: bool, joints: tuple[str, ...]) -> None:
+    def __init__(self, estimate: Estimate, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]) -> None:
         """
         Args:
             estimate: of the tick in which the period begins.
             settings: as they are now; they stay so to the end of the period.
-            use_wrench: False: judged by the joints alone (FD-3a).
+            wrench: F_user without what the sensor drifted by, axes of B [N, N·m]; None: judged by the joints alone (FD-3a).
             joints: names, base to flange.
         """
         self._monitor = Monitor(settings.limits.maintain)
         self._share = settings.limits.maintain.load_share
-        self._since: Reference = reference(estimate, use_wrench)
+        self._since: Reference = reference(estimate, wrench)
         self._joints = joints
         self._ones = (1.0,) * len(joints)
         self._up = upward(estimate.g_B.tolist())
@@ -41,22 +42,22 @@ class Maintained:
         """All of its state, to compare."""
         return (self._since, self._up, tuple(self._slow), self._monitor.memory)
 
-    def anew(self, estimate: Estimate, use_wrench: bool) -> None:
+    def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
         """The period begins anew in this tick."""
-        self._since = reference(estimate, use_wrench)
+        self._since = reference(estimate, wrench)
         self._slow = [0.0] * 6
 
-    def step(self, estimate: Estimate, use_wrench: bool) -> Excess | None:
+    def step(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
         """One tick; its joint values are finite. Returns the first parameter that exceeds its maintain limit, or None."""
-        parts = self._split(estimate) if use_wrench else None
+        parts = None if wrench is None else self._split(wrench)
         share = self._share
         heavier = share * GRAVITY * estimate.load_mass
         beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
         return beyond[0].excess if beyond else None
 
-    def _split(self, estimate: Estimate) -> Split:
+    def _split(self, wrench: Wrench) -> Split:
         """The change without its payload-like part: that which stays, along gravity (force) or across it (torque)."""
-        change = [now - then for now, then in zip(estimate.F_user.tolist(), self._since.wrench, strict=True)]
+        change = [now - then for now, then in zip(wrench, self._since.wrench, strict=True)]
         slow = self._slow
         for k in range(6):
             slow[k] += RATE * (change[k] - slow[k])

@@ -110,7 +110,7 @@ class Operation:
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
-        self._since: Reference = reference(estimate, False)
+        self._since: Reference = reference(estimate, None)
         self._offset = turned_back(flat(estimate.R_BF), (baseline[0], baseline[1], baseline[2]))
         self._soft = SoftLimits(settings, estimate)
         self._twist = turned_back(flat(estimate.R_BF), (baseline[3], baseline[4], baseline[5]))

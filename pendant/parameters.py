@@ -10,6 +10,7 @@ import msgspec
 from pendant.dynamic_limits import WHOLE, Shares
 from pendant.estimate import Estimate
 from pendant.limits import Gauge, Monitored
+from pendant.pose import Wrench
 from pendant.residual import Split
 from pendant.settings import Limit, Section, ticks
 
@@ -228,7 +229,6 @@ class Monitor:
         return tuple([gauge.memory for _, gauge in self._gauges])
 
 
-def reference(estimate: Estimate, use_wrench: bool) -> Reference:
-    """What is stored when a period begins."""
-    wrench = tuple(estimate.F_user.tolist()) if use_wrench else ZEROS
-    return Reference(tuple(estimate.p_BF.tolist()), wrench, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist()))
+def reference(estimate: Estimate, wrench: Wrench | None) -> Reference:
+    """What is stored when a period begins, with this F_user, axes of B [N, N·m]; None is without it."""
+    return Reference(tuple(estimate.p_BF.tolist()), wrench or ZEROS, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist()))

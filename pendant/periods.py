@@ -8,7 +8,7 @@ from pendant.events import Event, Kind, Values
 from pendant.gate import Gate
 from pendant.maintain import Maintained
 from pendant.modes import TICK, Phase
-from pendant.pose import Vector, norm
+from pendant.pose import Vector, Wrench, norm
 from pendant.settings import Settings, ticks
 from pendant.surroundings import Surroundings
 
@@ -36,13 +36,15 @@ class Periods:
         "phase",
     )
 
-    def __init__(self, held: bool, around: Surroundings, settings: Settings, used: bool, joints: tuple[str, ...]) -> None:
+    def __init__(
+        self, held: bool, around: Surroundings, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]
+    ) -> None:
         """
         Args:
             held: the button is, so that no period runs yet.
             around: the tick of entry.
             settings: as they are now.
-            used: the flange sensor is.
+            wrench: F_user without what the sensor drifted by, axes of B [N, N·m]; None: the flange sensor is not used.
             joints: names, base to flange.
         """
         self.phase = Phase.HELD
@@ -55,7 +57,7 @@ class Periods:
         self._pressed = -1  # ticks since a press that began in free-drive, -1 for the press that entered it
         self._maintained: Maintained | None = None  # of the running period
         if not held:
-            self._begin(Phase.PERIOD, around, settings, used)
+            self._begin(Phase.PERIOD, around, settings, wrench)
 
     @property
     def memory(self) -> tuple[object, ...]:
@@ -87,7 +89,7 @@ class Periods:
         """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
         self._registered = True
 
-    def step(self, around: Surroundings, settings: Settings, gate: Gate, user: Vector, used: bool) -> list[Event]:
+    def step(self, around: Surroundings, settings: Settings, gate: Gate, user: Vector, wrench: Wrench | None) -> list[Event]:
         """One tick, with valid joints. Returns what happened; free-drive is left where the last of it says so.
 
         Args:
@@ -95,26 +97,26 @@ class Periods:
             settings: as they are now.
             gate: the button, as sensed in this tick.
             user: the user's force, axes of B [N].
-            used: the flange sensor is.
+            wrench: as there.
         """
         anew, registered = self._anew, self._registered
         self._anew = self._registered = False
         if self.phase is _HELD:
-            return self._hold(around, settings, gate.ended, used)
+            return self._hold(around, settings, gate.ended, wrench)
         if gate.began:
             self.phase = Phase.HELD
             self._pressed = 0
             return []
         if self.phase is not Phase.GUIDED:
-            return self._count(around, settings, anew, registered, used)
+            return self._count(around, settings, anew, registered, wrench)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
         if settings.free_drive.maintained and self._left == 0 and self._rests(around, settings):
-            self._begin(Phase.RESTART, around, settings, used)
+            self._begin(Phase.RESTART, around, settings, wrench)
             return [Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})]
         return []
 
-    def _hold(self, around: Surroundings, settings: Settings, ended: bool, used: bool) -> list[Event]:
+    def _hold(self, around: Surroundings, settings: Settings, ended: bool, wrench: Wrench | None) -> list[Event]:
         """The button was held in the tick before."""
         tick = around.estimate.tick
         if self._pressed >= 0:
@@ -126,36 +128,38 @@ class Periods:
         if 0 <= self._pressed < ticks(settings.button.short_press):
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
             return [Event(Kind.LEFT_PRESS, tick, values)]
-        self._begin(Phase.PERIOD, around, settings, used)
+        self._begin(Phase.PERIOD, around, settings, wrench)
         return []
 
-    def _count(self, around: Surroundings, settings: Settings, anew: bool, registered: bool, used: bool) -> list[Event]:
+    def _count(
+        self, around: Surroundings, settings: Settings, anew: bool, registered: bool, wrench: Wrench | None
+    ) -> list[Event]:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick
         if anew:
-            self._begin(self.phase, around, settings, used)
+            self._begin(self.phase, around, settings, wrench)
             return [Event(Kind.PERIOD_ANEW, tick, {"period": self._total * TICK})]
         self._left -= 1
         maintained = self._maintained
         assert maintained is not None
-        excess = None if around.shaken else maintained.step(around.estimate, used)
+        excess = None if around.shaken else maintained.step(around.estimate, wrench)
         events: list[Event] = []
         if excess is not None and not self._stirred:
             events.append(Event(Kind.MANIPULATION, tick, dict(excess._asdict())))
         self._stirred = excess is not None
         if excess is not None or registered:
-            self._guide(around, settings, maintained, used)
+            self._guide(around, settings, maintained, wrench)
         elif self._left == 0:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
             events.append(Event(kind, tick, {"limit": self._total * TICK}))
         return events
 
-    def _guide(self, around: Surroundings, settings: Settings, maintained: Maintained, used: bool) -> None:
+    def _guide(self, around: Surroundings, settings: Settings, maintained: Maintained, wrench: Wrench | None) -> None:
         """The arm is guided: until it rests, or the restart period begins with every tick of it anew (FD-15)."""
         if settings.free_drive.restart_at_manipulation:
             self.phase = Phase.RESTART
             self._total = self._left = ticks(min(settings.free_drive.restart_period, settings.free_drive.longest))
-            maintained.anew(around.estimate, used)
+            maintained.anew(around.estimate, wrench)
             return
         self.phase, self._stirred, self._unpushed = Phase.GUIDED, False, 0
         # static again: for its whole time after the manipulation began
@@ -167,13 +171,13 @@ class Periods:
             return around.still.count >= self._total
         return self._unpushed >= self._total
 
-    def _begin(self, phase: Phase, around: Surroundings, settings: Settings, used: bool) -> None:
+    def _begin(self, phase: Phase, around: Surroundings, settings: Settings, wrench: Wrench | None) -> None:
         """The free-drive or the restart period begins; where none ends free-drive, the arm counts as guided (FD-24)."""
         use = settings.free_drive
         self.phase = phase if use.maintained else Phase.GUIDED
         self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
         self._stirred = False
-        self._maintained = Maintained(around.estimate, settings, used, self._joints)
+        self._maintained = Maintained(around.estimate, settings, wrench, self._joints)
 
 
 _HELD = Phase.HELD  # looked up in every tick

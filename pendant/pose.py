@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
+Wrench = tuple[float, ...]  # force and torque, six numbers [N, N·m]
 Quaternion = tuple[float, float, float, float]  # wxyz
 Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a matrix, row by row
 

@@ -37,7 +37,7 @@ class Stored:
         if wrench_ok is not self._wrench:
             self._states.clear()
             self._wrench = wrench_ok
-        self._states.append((estimate.tick, reference(estimate, False)._replace(wrench=mean.mean())))
+        self._states.append((estimate.tick, reference(estimate, mean.mean())))
 
     def forget(self) -> None:
         """What was kept is of another load or posture, or a sensor was out."""

@@ -15,7 +15,7 @@ from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS, beyond_gravity
-from pendant.pose import ORIGIN, UNTURNED, Rotation, Vector, dot, flat, norm, turned, turned_back
+from pendant.pose import ORIGIN, UNTURNED, Rotation, Vector, Wrench, dot, flat, norm, turned, turned_back
 from pendant.watch import WINDOW, WrenchMean
 
 SLOW = 3.0
@@ -23,6 +23,12 @@ SLOW = 3.0
 
 SLOW_TURN = 0.6
 """And a torque [N·m/s]."""
+
+NOISY, NOISY_TURN = 0.5, 0.1
+"""So much that a window's mean is beyond that waits for the next ones, for it may be noise; more is a hand's [N, N·m]."""
+
+FAR, FAR_TURN = 5.0, 1.0
+"""What has drifted so far is told [N, N·m]: a flange sensor is good to less."""
 
 QUIET = 2.5
 """Before a step nobody is felt: a hand that lets go is none [N]."""
@@ -54,8 +60,6 @@ LATER = 6
 ANSWER = -0.05
 """Share of the step that the joints must feel at least: a hand's push is felt as it is, and help alone the other way."""
 
-Six = tuple[float, ...]
-
 
 class Drift:
     """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
@@ -64,29 +68,29 @@ class Drift:
         lately: what was taken off in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_count", "_mean", "lately")
+    __slots__ = ("_count", "_followed", "lately")
 
     def __init__(self) -> None:
         self._count = 0
-        self._mean: Six | None = None
-        self.lately: deque[Six] = deque(maxlen=BEGINS)
+        self._followed: Wrench | None = None
+        self.lately: deque[Wrench] = deque(maxlen=BEGINS)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._count, self._mean, tuple(self.lately))
+        return (self._count, self._followed, tuple(self.lately))
 
     def restart(self) -> None:
         """The arm may be moved, or the sensor is not used."""
-        self._count, self._mean = 0, None
+        self._count, self._followed = 0, None
 
-    def give_back(self) -> list[Six]:
+    def give_back(self) -> list[Wrench]:
         """What was taken off lately was a hand's, axes of F [N, N·m]."""
         lately = list(self.lately)
         self.lately.clear()
         return lately
 
-    def keep(self, gone: Six) -> None:
+    def keep(self, gone: Wrench) -> None:
         """So much was taken off, axes of F [N, N·m]."""
         self.lately.append(gone)
 
@@ -95,17 +99,21 @@ class Drift:
         self._count = self._count % WINDOW + 1
         return self._count == 1
 
-    def step(self, mean: Six) -> Six | None:
+    def step(self, mean: Wrench) -> Wrench | None:
         """The mean of the last window, axes of B [N, N·m]: what is to be taken off; None after the first."""
-        before, self._mean = self._mean, mean
-        if before is None:
+        if self._followed is None:
+            self._followed = mean
             return None
-        change = tuple([now - then for now, then in zip(mean, before, strict=True)])
+        change = [now - then for now, then in zip(mean, self._followed, strict=True)]
         time = WINDOW * TICK
-        return (*_within(change[:3], SLOW * time), *_within(change[3:], SLOW_TURN * time))
+        gone = (*_within(change[:3], SLOW * time), *_within(change[3:], SLOW_TURN * time))
+        rest = [whole - part for whole, part in zip(change, gone, strict=True)]
+        later = (*_within(rest[:3], NOISY), *_within(rest[3:], NOISY_TURN))
+        self._followed = tuple([now - part for now, part in zip(mean, later, strict=True)])
+        return gone
 
 
-def _within(change: Six, most: float) -> Vector:
+def _within(change: list[float], most: float) -> Vector:
     """A change of three numbers, at most so large."""
     x, y, z = change
     share = most / max(math.sqrt(x * x + y * y + z * z), most)
@@ -186,32 +194,48 @@ class Zero:
     Attributes:
         used: the flange sensor is; it was valid in every tick since.
         baseline: F_user in the beginning, and what the sensor drifted by, axes of B [N, N·m]; zeros without the sensor.
+        drifted: what the sensor drifted by since, axes of F [N, N·m].
     """
 
-    __slots__ = ("_drift", "_steps", "_turned", "baseline", "used")
+    __slots__ = ("_drift", "_steps", "_told", "_turned", "baseline", "drifted", "used")
 
     def __init__(self) -> None:
         self.used = False
-        self.baseline: Six = ZEROS
-        self._drift, self._steps = Drift(), Steps()
+        self.baseline: Wrench = ZEROS
+        self.drifted: Wrench = ZEROS
+        self._drift, self._steps, self._told = Drift(), Steps(), False
         self._turned: Rotation = UNTURNED  # orientation of the flange in B in the beginning, in which `baseline` is
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.used, self.baseline, self._turned, self._drift.memory, self._steps.memory)
+        return (self.used, self.baseline, self.drifted, self._told, self._turned, self._drift.memory, self._steps.memory)
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
-        self.used, self.baseline = wrench_ok, mean.mean()
-        self._drift, self._steps, self._turned = Drift(), Steps(), flat(estimate.R_BF)
+        self.used, self.baseline, self.drifted = wrench_ok, mean.mean(), ZEROS
+        self._drift, self._steps, self._turned, self._told = Drift(), Steps(), flat(estimate.R_BF), False
 
     def leave(self) -> None:
         """The sensor is not used any more."""
-        self.used, self.baseline = False, ZEROS
+        self.used, self.baseline, self.drifted = False, ZEROS, ZEROS
+
+    def felt(self, estimate: Estimate) -> Wrench | None:
+        """F_user without what the sensor drifted by, axes of B [N, N·m]; None where the sensor is not used."""
+        if not self.used:
+            return None
+        wrench = tuple(estimate.F_user.tolist())
+        if self.drifted is ZEROS:
+            return wrench
+        x, y, z, a, b, c = self.drifted
+        R_BF = flat(estimate.R_BF)
+        drifted = (*turned(R_BF, (x, y, z)), *turned(R_BF, (a, b, c)))
+        return tuple([value - part for value, part in zip(wrench, drifted, strict=True)])
 
     def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
         """One tick of free-drive with a valid sensor: what it drifts by is taken off; one that steps is not used any more.
+
+        Returns an event where the sensor steps, or where it has drifted far.
 
         Args:
             estimate: of this tick.
@@ -236,10 +260,21 @@ class Zero:
                 force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
                 self._drift.keep((*force, *torque))
                 self._take_off(force, torque, hand)
+                return self._tell(estimate)
         return None
+
+    def _tell(self, estimate: Estimate) -> Event | None:
+        """That the sensor has drifted far, once."""
+        x, y, z, a, b, c = self.drifted
+        force, torque = norm((x, y, z)), norm((a, b, c))
+        if self._told or (force < FAR and torque < FAR_TURN):
+            return None
+        self._told = True
+        return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": force, "torque": torque})
 
     def _take_off(self, force: Vector, torque: Vector, hand: Hand) -> None:
         """So much [N, N·m], axes of F, is an offset of the sensor."""
         hand.shift(force)
+        self.drifted = tuple([a + b for a, b in zip(self.drifted, (*force, *torque), strict=True)])
         at_begin = (*turned(self._turned, force), *turned(self._turned, torque))
         self.baseline = tuple([a + b for a, b in zip(self.baseline, at_begin, strict=True)])

@@ -10,6 +10,7 @@ from pendant.estimate import Estimate
 from pendant.limits import Excess
 from pendant.maintain import SETTLING, Maintained
 from pendant.modes import TICK
+from pendant.pose import Wrench
 from pendant.settings import Settings, apply
 from tests.pendant.estimates import estimate
 
@@ -34,9 +35,18 @@ def at(value: float, index: int, length: int) -> list[float]:
     return [value if k == index else 0.0 for k in range(length)]
 
 
-def maintained(start: Estimate | None = None, use_wrench: bool = True, **changes: float | bool) -> Maintained:
+def felt(value: Estimate) -> Wrench:
+    return tuple(value.F_user.tolist())
+
+
+def see(watch: Maintained, value: Estimate) -> Excess | None:
+    return watch.step(value, felt(value))
+
+
+def maintained(start: Estimate | None = None, sensed: bool = True, **changes: float | bool) -> Maintained:
     names = {f"limits.maintain.{name.replace('__', '.')}": value for name, value in changes.items()}
-    return Maintained(start or estimate(), apply(Settings(), names), use_wrench, JOINTS)
+    start = start or estimate()
+    return Maintained(start, apply(Settings(), names), felt(start) if sensed else None, JOINTS)
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
@@ -46,7 +56,7 @@ def test_beyond_the_limit_and_not_at_it(name: str) -> None:
     for component in range(count):
         for value in near:
             for sign in (1.0, -1.0):
-                excess = maintained().step(make(sign * value, component), use_wrench=True)
+                excess = see(maintained(), make(sign * value, component))
                 part = JOINTS[component] if name in JOINT else "flange"
                 expected = Excess(name, part, value, limit, unit) if value > limit else None
                 assert excess == expected, (value, component)
@@ -58,15 +68,15 @@ def test_a_limit_that_is_off_is_not_checked_and_one_with_time_is_late(name: str)
     key = {"joint external torque": "joint_torque"}.get(name, name.replace(" ", "_"))
     beyond = make(1.01 * limit, 0)
     off = maintained(**{f"{key}__on": False})
-    assert all(off.step(beyond, use_wrench=True) is None for _ in range(20))
+    assert all(see(off, beyond) is None for _ in range(20))
     late = maintained(**{f"{key}__time": 0.02})
-    assert [late.step(beyond, use_wrench=True) is None for _ in range(11)] == [True] * 10 + [False]
+    assert [see(late, beyond) is None for _ in range(11)] == [True] * 10 + [False]
 
 
 def test_vectors_count_by_their_length() -> None:
-    excess = maintained().step(estimate(force=[5.0, 7.0, 0.0]), use_wrench=True)
+    excess = see(maintained(), estimate(force=[5.0, 7.0, 0.0]))
     assert excess == Excess("user force", "flange", math.sqrt(74.0), 8.0, "N")
-    excess = maintained().step(estimate(speed=[0.012, -0.012, 0.012]), use_wrench=True)
+    excess = see(maintained(), estimate(speed=[0.012, -0.012, 0.012]))
     assert excess is not None
     assert excess.value == pytest.approx(0.012 * math.sqrt(3.0))
 
@@ -74,12 +84,12 @@ def test_vectors_count_by_their_length() -> None:
 def test_forces_count_from_what_they_were_when_the_period_began() -> None:
     joints = [9.0, -20.0, 3.0, 1.0, 0.5, 0.2]
     leaning = estimate(force=[30.0, -12.0, 7.0], torque=[2.0, 1.0, -3.0], tau_ext=joints)
-    assert maintained(leaning).step(leaning, use_wrench=True) is None
-    let_go = maintained(leaning).step(estimate(tau_ext=joints), use_wrench=True)
+    assert see(maintained(leaning), leaning) is None
+    let_go = see(maintained(leaning), estimate(tau_ext=joints))
     assert let_go is not None
     assert let_go.parameter == "user force"
     assert let_go.value == pytest.approx(math.sqrt(900 + 144 + 49), rel=1e-3)
-    joints_only = maintained(estimate(tau_ext=joints)).step(estimate(), use_wrench=True)
+    joints_only = see(maintained(estimate(tau_ext=joints)), estimate())
     assert joints_only == Excess("joint external torque", "shoulder", 20.0, 8.0, "N·m")
 
 
@@ -97,7 +107,7 @@ def test_what_counts_of_a_wrench_that_stays_is_what_no_payload_explains(g: list[
         start, pushed = estimate(), estimate(force=force.tolist(), torque=torque.tolist())
         start.g_B = pushed.g_B = 9.81 * np.array(g)
         watch = maintained(start, **changes)
-        excess = [watch.step(pushed, use_wrench=True) for _ in range(ticks)][-1]
+        excess = [see(watch, pushed) for _ in range(ticks)][-1]
         assert excess is not None
         assert (excess.parameter, excess.value) == (name, pytest.approx(expected[name]))
 
@@ -108,8 +118,8 @@ def drift(rate: float, seconds: float, direction: list[float], g: list[float]) -
     for k in range(round(500 * seconds)):
         value = estimate(force=(np.array(direction) * rate * k / 500).tolist())
         value.g_B = 9.81 * np.array(g)
-        watch = watch or Maintained(value, Settings(), True, JOINTS)
-        excess = watch.step(value, use_wrench=True)
+        watch = watch or Maintained(value, Settings(), felt(value), JOINTS)
+        excess = see(watch, value)
         if excess is not None:
             return excess
     return None
@@ -133,9 +143,9 @@ def test_what_stays_along_gravity_is_a_payload_and_no_manipulation(g: list[float
 def test_a_torque_that_stays_across_gravity_is_a_payload_and_one_about_it_is_not() -> None:
     watch = maintained()
     for k in range(2500):
-        assert watch.step(estimate(torque=[0.002 * k, -0.001 * k, 0.0]), use_wrench=True) is None
+        assert see(watch, estimate(torque=[0.002 * k, -0.001 * k, 0.0])) is None
     watch = maintained()
-    values = [watch.step(estimate(torque=[0.0, 0.0, 0.002 * k]), use_wrench=True) for k in range(800)]
+    values = [see(watch, estimate(torque=[0.0, 0.0, 0.002 * k])) for k in range(800)]
     assert next(k for k, value in enumerate(values) if value) == 751
 
 
@@ -143,24 +153,24 @@ def test_without_the_flange_sensor_the_joints_judge_alone() -> None:
     """FD-3a."""
     pushed = estimate(force=100.0, torque=20.0, acceleration=30.0, acceleration_valid=False)
     pushed.F_user[:] = math.nan
-    watch = maintained(pushed, use_wrench=False)
-    assert watch.step(pushed, use_wrench=False) is None
+    watch = maintained(pushed, sensed=False)
+    assert watch.step(pushed, None) is None
     pushed.qd[3] = 0.3
-    assert watch.step(pushed, use_wrench=False) == Excess("joint speed", "wrist_1", 0.3, 0.05, "rad/s")
+    assert watch.step(pushed, None) == Excess("joint speed", "wrist_1", 0.3, 0.05, "rad/s")
 
 
 def test_any_number_of_joints() -> None:
     names = tuple(f"joint {k}" for k in range(1, 8))
-    watch = Maintained(estimate(n=7), Settings(), True, names)
-    excess = watch.step(estimate(n=7, tau_ext=at(12.0, 6, 7)), use_wrench=True)
+    watch = Maintained(estimate(n=7), Settings(), (0.0,) * 6, names)
+    excess = see(watch, estimate(n=7, tau_ext=at(12.0, 6, 7)))
     assert excess == Excess("joint external torque", "joint 7", 12.0, 8.0, "N·m")
 
 
 def test_its_memory_tells_all_of_it() -> None:
     one, other = maintained(), maintained()
-    one.step(estimate(force=[1.0, 0.0, 0.5]), use_wrench=True)
+    see(one, estimate(force=[1.0, 0.0, 0.5]))
     assert one.memory != other.memory
-    other.step(estimate(force=[1.0, 0.0, 0.5]), use_wrench=True)
+    see(other, estimate(force=[1.0, 0.0, 0.5]))
     assert one.memory == other.memory
 
 
@@ -171,16 +181,16 @@ def test_force_limits_may_rise_with_the_load(share: float, force: float, torque:
     for value, within in ((0.999, True), (1.001, False)):
         module = maintained(start, load_share=share)
         push = estimate(load_mass=3.0, tau_J=40.0, force=value * force)
-        assert (module.step(push, use_wrench=True) is None) is within
+        assert (see(module, push) is None) is within
         module = maintained(start, load_share=share)
         push = estimate(load_mass=3.0, tau_J=40.0, tau_ext=value * torque)
-        assert (module.step(push, use_wrench=True) is None) is within
+        assert (see(module, push) is None) is within
 
 
 def test_a_period_that_begins_anew_is_as_one_that_begins() -> None:
     """FD-16: also what has been smoothed of the load begins with nothing."""
     watch, pushed = maintained(), estimate(force=[3.0, 1.0, -5.0], torque=[0.3, 0.2, 0.1])
     for _ in range(20):
-        watch.step(pushed, True)
-    watch.anew(pushed, True)
+        see(watch, pushed)
+    watch.anew(pushed, felt(pushed))
     assert [watch.memory[k] for k in (0, 2)] == [maintained(pushed).memory[k] for k in (0, 2)]

@@ -136,8 +136,10 @@ def test_a_reference_is_what_is_so_now() -> None:
     value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
     value.q[2] = 0.5
     torques, angles = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.0, 0.5, 0.0, 0.0, 0.0)
-    assert reference(value, use_wrench=True) == Reference((1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques, angles)
-    assert reference(value, use_wrench=False) == Reference((1.0, 2.0, 3.0), ZEROS, torques, angles)
+    assert reference(value, tuple(value.F_user.tolist())) == Reference(
+        (1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques, angles
+    )
+    assert reference(value, None) == Reference((1.0, 2.0, 3.0), ZEROS, torques, angles)
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,13 @@ def around(value: Estimate, tick: int = 0) -> Surroundings:
 def sequence(start: Estimate, stored: Estimate | None = None, **changes: float | bool) -> Sequence:
     """Begun at `start`; settings by dotted name with __ for the dot."""
     settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
-    return Sequence(around(start), settings, JOINTS, (100.0,) * 6, None if stored is None else reference(stored, True))
+    return Sequence(
+        around(start),
+        settings,
+        JOINTS,
+        (100.0,) * 6,
+        None if stored is None else reference(stored, tuple(stored.F_user.tolist())),
+    )
 
 
 VERTICAL: dict[str, float | bool] = {"sequence__dynamic__vertical": True, "soft__vertical_share": 0.5}

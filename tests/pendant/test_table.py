@@ -30,6 +30,7 @@ EXAMPLE: Values = {
     "from": "FREE_DRIVE",
     "gain": 1.0,
     "force": 17.6,
+    "torque": 1.23,
     "joint": "shoulder",
     "joint_speed": 1.0,
     "joints": "shoulder +12.3°, base -10.4°, wrist_1 +3.2°, wrist_2 +1.1°",

@@ -14,6 +14,8 @@ from pendant.watch import WrenchMean
 from pendant.zeroing import (
     ANSWER,
     BEGINS,
+    FAR,
+    FAR_TURN,
     JUMP,
     LATER,
     LEAST,
@@ -150,12 +152,59 @@ def test_only_the_last_windows_are_given_back() -> None:
     assert drift.give_back() == []
 
 
-def test_a_drift_that_seems_to_be_a_hand_but_moves_nothing_is_not_given_back() -> None:
-    bench = Bench(free_drive__period=30.0, free_drive__restart_period=30.0).in_period()
-    for tick in range(2500):
-        bench.step(NOTHING, estimate(force=[0.004 * tick, 0.0, 0.0]))
-    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.RESTARTED]
-    assert bench.last.baseline[0] == pytest.approx(10.0, abs=0.5)
+@pytest.mark.parametrize("torque", [0.0, 0.5])
+def test_a_drift_never_counts_as_guiding_and_is_told_once_when_it_has_gone_far(torque: float) -> None:
+    """FD-13, FD-19: by 20 N, and by more of a torque than its limit; the arm is left to its period."""
+    bench = Bench(free_drive__period=10.0).in_period()
+    force = 1.0 if torque else 2.0
+    for tick in range(5000):
+        bench.step(NOTHING, estimate(force=[0.002 * force * tick, 0.0, 0.0], torque=[0.0, 0.0, 0.002 * torque * tick]))
+    assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED, Kind.LEFT_PERIOD]
+    told = bench.events[0].values
+    expected = {"force": 2.0, "torque": FAR_TURN} if torque else {"force": FAR, "torque": 0.0}
+    assert told == {name: pytest.approx(value, abs=0.21) for name, value in expected.items()}
+    assert told["torque" if torque else "force"] >= (FAR_TURN if torque else FAR)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_drift_turns_with_the_flange(turned: bool) -> None:
+    R_BF = TURNED if turned else np.eye(3)
+    before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
+    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero.begin(before, True, mean)
+    for value in [before] * 50 + [after] * 51:
+        mean.step(value)
+        zero.step(value, hand, mean, True)
+    assert zero.felt(after) == pytest.approx((0.0,) * 6)
+    drifted = np.concatenate([R_BF @ zero.drifted[:3], R_BF @ zero.drifted[3:]])
+    after.R_BF = R_BF
+    after.F_user[:] = drifted + np.arange(1.0, 7.0)
+    assert zero.felt(after) == pytest.approx((1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
+    zero.leave()
+    assert zero.felt(after) is None
+
+
+def test_a_drift_is_followed_through_the_sensors_noise() -> None:
+    """2 N/s and 0.4 N·m/s with noise of their size upon the means: what of a mean is beyond the limits waits for the next."""
+    rng = np.random.default_rng(3)
+    rate = np.array([0.0, 0.16, -0.12, 0.04, 0.0, 0.0])
+    noise = np.array([0.15] * 3 + [0.015] * 3)
+    drift, gone = Drift(), np.zeros(6)
+    for window in range(300):
+        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()))
+        gone += taken or (0.0,) * 6
+    assert gone == pytest.approx(299 * rate, abs=1.0)
+
+
+@pytest.mark.parametrize(("size", "next_one"), [(0.3, 0.0), (0.5, 0.2), (0.8, 0.3), (1.1, 0.3), (20.0, 0.3)])
+def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
+    """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
+    drift = Drift()
+    drift.step((0.0,) * 6)
+    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size)) for _ in range(4)]
+    force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
+    assert [step[1] for step in taken if step] == pytest.approx(force)
+    assert [-5.0 * step[5] for step in taken if step] == pytest.approx(force)
 
 
 @pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
