@@ -2,9 +2,8 @@
 
 A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
 taken off. A hand that begins to push cannot be told from it before the arm moves; then what was taken off lately is given back,
-for push after push it would add up to an offset that drives the arm when it is let go. A sensor that steps does so in no time,
-where a hand needs 10 ms or more; and the joints do not feel it. They feel the opposite first: the help that the step calls for
-pushes them from within.
+for push after push it would add up to an offset that drives the arm when it is let go. A sensor that steps is not used any more
+(`pendant.sensor_steps`).
 """
 
 import math
@@ -14,8 +13,9 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
-from pendant.parameters import ZEROS, beyond_gravity
-from pendant.pose import ORIGIN, UNTURNED, Rotation, Vector, Wrench, dot, flat, norm, turned, turned_back
+from pendant.parameters import ZEROS
+from pendant.pose import UNTURNED, Rotation, Vector, Wrench, flat, norm, turned, turned_back
+from pendant.sensor_steps import Steps
 from pendant.watch import WINDOW, WrenchMean
 
 SLOW = 3.0
@@ -30,35 +30,11 @@ NOISY, NOISY_TURN = 0.5, 0.1
 FAR, FAR_TURN = 5.0, 1.0
 """What has drifted so far is told [N, N·m]: a flange sensor is good to less."""
 
-QUIET = 2.5
-"""Before a step nobody is felt: a hand that lets go is none [N]."""
-
 BEGINS = 5
 """Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
 
 MOVED = 0.03
 """A joint that is faster is moved by somebody [rad/s]."""
-
-JUMP = 3.5
-"""Smallest step [N] of a tick or two: the sensor's noise and a hand's first touch look like smaller ones."""
-
-STRAY, NOISE = 0.3, 1.0
-"""Share of it by which the mean of two ticks may stray until it is judged, and what noise adds [N]: a knock is over by then."""
-
-LEAST = 3.0
-"""Smallest mean of a step [N]: what is less was noise on top of a hand's first touch."""
-
-SHAKEN = 1.5
-"""What is felt by the accelerometer as well, in the step's first ticks, is a hand's or a knock [m/s²]."""
-
-SOON = 3
-"""Ticks of a step in which a hand's shakes the flange; later the help does that a step of the sensor calls for."""
-
-LATER = 6
-"""Ticks from a step to the joints' answer."""
-
-ANSWER = -0.05
-"""Share of the step that the joints must feel at least: a hand's push is felt as it is, and help alone the other way."""
 
 
 class Drift:
@@ -118,74 +94,6 @@ def _within(change: list[float], most: float) -> Vector:
     x, y, z = change
     share = most / max(math.sqrt(x * x + y * y + z * z), most)
     return share * x, share * y, share * z
-
-
-class Steps:
-    """Looks for steps of the sensor that the joints do not feel."""
-
-    __slots__ = ("_age", "_felt", "_last", "_older", "_step", "_sum", "_zero")
-
-    def __init__(self) -> None:
-        self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
-        self._older: Vector = ORIGIN
-        self._age = 0  # ticks since a step, 0: none
-        self._zero: Vector = ORIGIN  # before it
-        self._step: Vector = ORIGIN
-        self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
-        self._felt: Vector = ORIGIN  # by the joints, then
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
-    def step(self, estimate: Estimate, change: Vector) -> Vector | None:
-        """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
-        older, self._older, self._last = self._older, self._last, change
-        if self._age:
-            return self._judge(estimate, change)
-        x, y, z = _less(change, older)
-        if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
-            self._age = 1
-            self._zero, self._felt = older, _felt(estimate)
-        return None
-
-    def _judge(self, estimate: Estimate, change: Vector) -> Vector | None:
-        self._age += 1
-        if self._age <= SOON and not (estimate.acceleration_valid and beyond_gravity(estimate) <= SHAKEN):
-            self._age = 0
-            return None
-        if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
-            self._step = self._sum = _less(change, self._zero)
-            return None
-        before, now = _less(self._older, self._zero), _less(change, self._zero)
-        off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
-        x, y, z = self._sum
-        self._sum = (x + now[0], y + now[1], z + now[2])
-        size = dot(self._step, self._step)
-        if norm(off) > STRAY * math.sqrt(size) + NOISE:
-            self._age = 0
-            return None
-        if self._age <= LATER:
-            return None
-        self._age = 0
-        answer = dot(_less(_felt(estimate), self._felt), self._step)
-        x, y, z = self._sum
-        count = LATER  # ticks 2 to LATER + 1 of its age
-        mean = (x / count, y / count, z / count)
-        if answer >= ANSWER * size or norm(mean) < LEAST:
-            return None
-        self._last = self._older = ORIGIN
-        return mean
-
-
-def _less(a: Vector, b: Vector) -> Vector:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-def _felt(estimate: Estimate) -> Vector:
-    x, y, z = estimate.F_joints.tolist()
-    return x, y, z
 
 
 class Zero:

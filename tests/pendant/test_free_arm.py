@@ -15,13 +15,14 @@ from pendant.modes import TICK, Mode
 from pendant.nearness import Nearness
 from pendant.operation import CERTAIN
 from pendant.pose import ORIGIN
+from pendant.sensor_steps import LATER
 from pendant.sequence import JOINTS_SENSED
 from pendant.settings import Settings, apply
 from pendant.shapes import HalfSpace
 from pendant.surroundings import Surroundings
 from pendant.walls import AnyBorder, Area, Reaction
 from pendant.watch import Stillness, WrenchMean
-from pendant.zeroing import LATER, Zero
+from pendant.zeroing import Zero
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 

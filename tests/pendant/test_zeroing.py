@@ -1,7 +1,5 @@
 """The flange sensor's zero: drifts and steps are taken off, hands are not (FD-19)."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -9,25 +7,16 @@ from pendant.events import Kind
 from pendant.hand import Hand
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
-from pendant.pose import Vector
+from pendant.sensor_steps import LATER
 from pendant.watch import WrenchMean
 from pendant.zeroing import (
-    ANSWER,
     BEGINS,
     FAR,
     FAR_TURN,
-    JUMP,
-    LATER,
-    LEAST,
     MOVED,
-    NOISE,
-    QUIET,
     SLOW,
     SLOW_TURN,
-    SOON,
-    STRAY,
     Drift,
-    Steps,
     Zero,
 )
 from tests.pendant.estimates import estimate
@@ -36,70 +25,6 @@ from tests.pendant.test_freedrive import Bench
 PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
 WINDOW = 0.1  # [s]
 TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
-
-
-def seen(steps: Steps, forces: list[Vector], felt: list[float] | None = None) -> list[Vector]:
-    """What is taken off, for these forces; from the fourth tick on the joints feel `felt`."""
-    joints = [[0.0] * 3] * 3 + [felt or [0.0] * 3] * (len(forces) - 3)
-    found = [steps.step(estimate(felt=by_joints), force) for force, by_joints in zip(forces, joints, strict=True)]
-    return [step for step in found if step is not None]
-
-
-def stepping(size: float, count: int = 20, before: float = 0.0) -> list[Vector]:
-    return [(0.0, 0.0, before)] * 2 + [(0.0, 0.0, before + size)] * count
-
-
-def against(steps: list[Vector], share: float) -> list[float]:
-    return [share * (now - then) for now, then in zip(steps[-1], steps[0], strict=True)]
-
-
-@pytest.mark.parametrize(("size", "before"), [(JUMP, 0.0), (5.0, 0.0), (-20.0, 0.0), (60.0, 0.0), (20.0, QUIET)])
-def test_a_step_that_the_joints_feel_the_other_way_is_the_sensors(size: float, before: float) -> None:
-    forces = stepping(size, before=before)
-    assert seen(Steps(), forces, against(forces, 2.0 * ANSWER)) == [(0.0, 0.0, pytest.approx(size))]
-
-
-@pytest.mark.parametrize("share", [ANSWER, 0.99 * ANSWER, 0.0, 0.5, 1.0])
-def test_a_step_that_the_joints_feel_or_do_not_is_a_hands(share: float) -> None:
-    forces = stepping(20.0)
-    assert seen(Steps(), forces, against(forces, share)) == []
-
-
-def test_it_is_judged_in_its_tick() -> None:
-    forces = stepping(20.0, LATER)
-    assert seen(Steps(), forces, against(forces, -0.5)) == []
-    forces = stepping(20.0, LATER + 1)
-    assert len(seen(Steps(), forces, against(forces, -0.5))) == 1
-
-
-@pytest.mark.parametrize(("before", "size"), [(0.0, 0.99 * JUMP), (1.01 * QUIET, 20.0), (20.0, -20.0)])
-def test_small_ones_and_those_of_a_hand_that_is_there_are_none(before: float, size: float) -> None:
-    steps = Steps()
-    assert seen(steps, [(0.0, 0.0, 0.01 * k * before) for k in range(101)]) == []
-    forces = stepping(size, before=before)
-    assert seen(steps, forces, against(forces, -0.5)) == []
-
-
-def test_a_knock_and_a_hand_that_comes_are_none() -> None:
-    knock = [(0.0, 0.0, 20.0 * math.sin(math.pi * k / 10)) for k in range(11)]
-    assert seen(Steps(), knock, [0.0, 0.0, -10.0]) == []
-    grab = [(0.0, 0.0, 2.0 * k) for k in range(11)] + [(0.0, 0.0, 20.0)] * 20
-    assert seen(Steps(), grab, [0.0, 0.0, -10.0]) == []
-
-
-def test_its_size_is_the_mean_of_what_was_seen() -> None:
-    stray = 0.9 * STRAY * 10.0
-    forces = [(0.0, 0.0, 0.0)] * 2 + [(0.0, 0.0, 10.0)] * 2 + [(0.0, 0.0, 10.0 + stray), (0.0, 0.0, 10.0 - stray)] * 3
-    found = seen(Steps(), forces, [0.0, 0.0, -5.0])
-    assert len(found) == 1
-    assert found[0][2] == pytest.approx(10.0, abs=stray / LATER + 1e-9)
-
-
-def test_after_a_step_the_next_one_is_found() -> None:
-    steps = Steps()
-    forces = stepping(10.0, LATER + 1)
-    assert len(seen(steps, forces, [0.0, 0.0, -5.0])) == 1
-    assert len(seen(steps, forces, [0.0, 0.0, -5.0])) == 1
 
 
 @pytest.mark.parametrize(
@@ -243,48 +168,6 @@ def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
     assert (bench.last.baseline, bench.last.gain) == ((0.0,) * 6, 0.0)
 
 
-@pytest.mark.parametrize("how", [{"acceleration": 2.0}, {"acceleration_valid": False}])
-def test_a_step_that_shakes_the_flange_or_that_nobody_can_tell_from_one_that_does_is_a_hands(how: dict[str, float]) -> None:
-    steps = Steps()
-    forces = stepping(20.0)
-    found = [
-        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > 2)], **(how if k > 2 else {})), force)  # type: ignore[arg-type]
-        for k, force in enumerate(forces)
-    ]
-    assert found == [None] * len(forces)
-
-
-@pytest.mark.parametrize(("quiet", "told"), [(SOON - 1, True), (SOON - 2, False)])
-def test_help_that_comes_soon_shakes_the_flange_later_than_a_hand_does(quiet: int, told: bool) -> None:
-    """A step of 20 N moves a light wrist within four ticks, as the help that it calls for does."""
-    steps, first = Steps(), 2  # the step's first tick
-    found = [
-        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > first)], acceleration=2.0 * (k > first + quiet)), force)
-        for k, force in enumerate(stepping(20.0))
-    ]
-    assert any(step is not None for step in found) is told
-
-
-@pytest.mark.parametrize(("share", "told"), [(0.99, True), (1.0, True), (1.01, False)])
-@pytest.mark.parametrize("strays", [1, 2, 3])
-@pytest.mark.parametrize("axis", range(3))
-def test_the_sensors_noise_does_not_hide_a_small_step(strays: int, share: float, told: bool, axis: int) -> None:
-    """A stray tick counts by half, two in a row count whole."""
-    stray = share * (STRAY * 5.0 + NOISE) * (2.0 if strays == 1 else 1.0)
-    turned = [[0.0] * axis + [value] + [0.0] * (2 - axis) for value in (0.0, 5.0)]
-    beside = [value + stray * (k == (axis + 1) % 3) for k, value in enumerate(turned[1])]
-    forces = [tuple(value) for value in (turned[0],) * 2 + (turned[1],) * 2 + (beside,) * strays + (turned[1],) * 6]
-    assert bool(seen(Steps(), [(x, y, z) for x, y, z in forces], [-0.4 * value for value in turned[1]])) is told
-
-
-@pytest.mark.parametrize(("last", "told"), [(2.51, True), (2.5, True), (2.49, False)])
-def test_a_step_that_fades_is_noise_upon_a_hands_first_touch(last: float, told: bool) -> None:
-    """Its mean over six ticks is LEAST with a last one of 2.5 N."""
-    forces: list[Vector] = [(0.0, 0.0, z) for z in (0.0, 0.0, JUMP, JUMP, 3.0, 3.0, 3.0, 3.0, last)]
-    assert sum([JUMP, 3.0, 3.0, 3.0, 3.0, 2.5]) == LATER * LEAST
-    assert bool(seen(Steps(), forces, [0.0, 0.0, -2.0])) is told
-
-
 def test_the_baseline_is_in_the_axes_of_the_flange_at_entry() -> None:
     bench = Bench(free_drive__period=30.0).in_period()
     for tick in range(1000):
@@ -321,25 +204,3 @@ def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
     assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     zero.leave()
     assert zero.memory == Zero().memory
-
-
-def test_a_step_in_space_is_taken_off_as_the_mean_of_what_was_felt() -> None:
-    rng = np.random.default_rng(1)
-    step = np.array([6.0, -8.0, 4.0])
-    felt = [(x, y, z) for x, y, z in (step + rng.uniform(-0.5, 0.5, (20, 3))).tolist()]
-    forces: list[Vector] = [(0.0, 0.0, 0.0)] * 2 + felt
-    assert seen(Steps(), forces, (-0.5 * step).tolist()) == [pytest.approx(np.mean(felt[1 : LATER + 1], axis=0))]
-
-
-@pytest.mark.parametrize(
-    ("acceleration", "when", "found"), [(1.51, 1, False), (1.51, SOON - 1, False), (1.51, SOON, True), (1.5, 1, True)]
-)
-def test_an_arm_that_is_shaken_just_then_was_knocked(acceleration: float, when: int, found: bool) -> None:
-    """Beyond 1.5 m/s² within the first ticks, `when` after the step, even in one of them."""
-    steps, forces = Steps(), stepping(20.0)
-    joints = against(forces, -0.5)
-    said = []
-    for tick, force in enumerate(forces):
-        shaken = acceleration if tick == 2 + when else 0.0
-        said.append(steps.step(estimate(felt=joints if tick > 2 else 0.0, acceleration=shaken), force))
-    assert any(step is not None for step in said) is found
