@@ -29,16 +29,19 @@ SOON = 3
 """Ticks of a step in which a hand's shakes the flange; later the help does that a step of the sensor calls for."""
 
 LATER = 6
-"""Ticks from a step to the joints' answer."""
+"""Ticks for which a step lasts, and for which the joints are asked what they feel of it."""
 
-ANSWER = -0.05
-"""Share of the step that the joints must feel at least: a hand's push is felt as it is, and help alone the other way."""
+EARLIER = 0.2
+"""Weight of a tick in what the joints felt before: their noise in one alone is as large as a fifth of a small step."""
+
+ANSWER = 0.3
+"""Share of a step from which on it is a hand's, for the joints feel it; of a sensor's only the help for it, the other way."""
 
 
 class Steps:
     """Looks for steps of the sensor that the joints do not feel."""
 
-    __slots__ = ("_age", "_felt", "_last", "_older", "_step", "_sum", "_zero")
+    __slots__ = ("_age", "_before", "_felt", "_last", "_older", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
         self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
@@ -47,7 +50,8 @@ class Steps:
         self._zero: Vector = ORIGIN  # before it
         self._step: Vector = ORIGIN
         self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
-        self._felt: Vector = ORIGIN  # by the joints, then
+        self._before: Vector | None = None  # what the joints feel without one [N]
+        self._felt: Vector = ORIGIN  # sum of what they felt since, beyond that
 
     @property
     def memory(self) -> tuple[object, ...]:
@@ -57,26 +61,31 @@ class Steps:
     def step(self, estimate: Estimate, change: Vector) -> Vector | None:
         """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
         older, self._older, self._last = self._older, self._last, change
+        x, y, z = estimate.F_joints.tolist()
+        bx, by, bz = self._before or (x, y, z)
+        x, y, z = x - bx, y - by, z - bz
         if self._age:
-            return self._judge(estimate, change)
+            return self._judge(estimate, change, (x, y, z))
+        self._before = (bx + EARLIER * x, by + EARLIER * y, bz + EARLIER * z)
         x, y, z = _less(change, older)
         if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
             self._age = 1
-            self._zero, self._felt = older, _felt(estimate)
+            self._zero = older
         return None
 
-    def _judge(self, estimate: Estimate, change: Vector) -> Vector | None:
+    def _judge(self, estimate: Estimate, change: Vector, felt: Vector) -> Vector | None:
+        """A tick after a step; the joints feel so much more than before [N]."""
         self._age += 1
         if self._age <= SOON and not (estimate.acceleration_valid and beyond_gravity(estimate) <= SHAKEN):
             self._age = 0
             return None
         if self._age == 2:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._step = self._sum = _less(change, self._zero)
+            self._felt = felt
             return None
         before, now = _less(self._older, self._zero), _less(change, self._zero)
         off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
-        x, y, z = self._sum
-        self._sum = (x + now[0], y + now[1], z + now[2])
+        self._sum, self._felt = _more(self._sum, now), _more(self._felt, felt)
         size = dot(self._step, self._step)
         if norm(off) > STRAY * math.sqrt(size) + NOISE:
             self._age = 0
@@ -84,11 +93,9 @@ class Steps:
         if self._age <= LATER:
             return None
         self._age = 0
-        answer = dot(_less(_felt(estimate), self._felt), self._step)
-        x, y, z = self._sum
-        count = LATER  # ticks 2 to LATER + 1 of its age
-        mean = (x / count, y / count, z / count)
-        if answer >= ANSWER * size or norm(mean) < LEAST:
+        x, y, z = self._sum  # of ticks 2 to LATER + 1 of its age
+        mean = (x / LATER, y / LATER, z / LATER)
+        if dot(self._felt, self._step) >= ANSWER * LATER * size or norm(mean) < LEAST:
             return None
         self._last = self._older = ORIGIN
         return mean
@@ -98,6 +105,5 @@ def _less(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-def _felt(estimate: Estimate) -> Vector:
-    x, y, z = estimate.F_joints.tolist()
-    return x, y, z
+def _more(a: Vector, b: Vector) -> Vector:
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]

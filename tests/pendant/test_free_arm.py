@@ -201,7 +201,8 @@ def test_a_payload_that_drops_is_missed_by_the_sensor(sensor: bool) -> None:
 def test_a_payload_that_drops_behind_a_hand_is_told_by_what_the_arm_carries(payload: float) -> None:
     """FD-19: 1 kg of 2 drops as a hand lets go that bore the weight of both."""
     free = Free(payload=payload)
-    free.during(20, estimate(force=TWO, needed=TWO, load_mass=2.0))
-    half = estimate(force=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
+    free.see(estimate(needed=TWO, load_mass=2.0))
+    free.during(19, estimate(force=TWO, felt=TWO, needed=TWO, load_mass=2.0))
+    half = estimate(force=[0.0, 0.0, GRAVITY], felt=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
     told = [Event(Kind.STOPPED_PAYLOAD, 21 + LASTS, {"mass": pytest.approx(-1.0), "force": pytest.approx(GRAVITY)})]
     assert free.during(LASTS + 1, half) == (told if payload else [])
