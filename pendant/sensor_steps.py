@@ -16,7 +16,7 @@ QUIET = 2.5
 JUMP = 3.5
 """Smallest step [N] of a tick or two: the sensor's noise and a hand's first touch look like smaller ones."""
 
-STRAY, NOISE = 0.3, 1.0
+STRAY, NOISE = 0.3, 1.5
 """Share of it by which the mean of two ticks may stray until it is judged, and what noise adds [N]: a knock is over by then."""
 
 LEAST = 3.0
@@ -44,8 +44,8 @@ class Steps:
     __slots__ = ("_age", "_before", "_felt", "_last", "_older", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
-        self._last: Vector = ORIGIN  # the force that is felt, a tick and two ticks before
-        self._older: Vector = ORIGIN
+        self._last: Vector | None = None  # the force that is felt, a tick and two ticks before
+        self._older: Vector | None = None
         self._age = 0  # ticks since a step, 0: none
         self._zero: Vector = ORIGIN  # before it
         self._step: Vector = ORIGIN
@@ -60,21 +60,25 @@ class Steps:
 
     def step(self, estimate: Estimate, change: Vector) -> Vector | None:
         """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
-        older, self._older, self._last = self._older, self._last, change
+        older, last = self._older, self._last
+        self._older, self._last = last, change
         x, y, z = estimate.F_joints.tolist()
         bx, by, bz = self._before or (x, y, z)
         x, y, z = x - bx, y - by, z - bz
         if self._age:
-            return self._judge(estimate, change, (x, y, z))
+            assert last is not None
+            return self._judge(estimate, last, change, (x, y, z))
         self._before = (bx + EARLIER * x, by + EARLIER * y, bz + EARLIER * z)
+        if older is None:
+            return None
         x, y, z = _less(change, older)
         if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
             self._age = 1
             self._zero = older
         return None
 
-    def _judge(self, estimate: Estimate, change: Vector, felt: Vector) -> Vector | None:
-        """A tick after a step; the joints feel so much more than before [N]."""
+    def _judge(self, estimate: Estimate, last: Vector, change: Vector, felt: Vector) -> Vector | None:
+        """A tick after a step: `last` and now its `change`; the joints feel so much more than before [N]."""
         self._age += 1
         if self._age <= SOON and not (estimate.acceleration_valid and beyond_gravity(estimate) <= SHAKEN):
             self._age = 0
@@ -83,7 +87,7 @@ class Steps:
             self._step = self._sum = _less(change, self._zero)
             self._felt = felt
             return None
-        before, now = _less(self._older, self._zero), _less(change, self._zero)
+        before, now = _less(last, self._zero), _less(change, self._zero)
         off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
         self._sum, self._felt = _more(self._sum, now), _more(self._felt, felt)
         size = dot(self._step, self._step)
@@ -97,7 +101,7 @@ class Steps:
         mean = (x / LATER, y / LATER, z / LATER)
         if dot(self._felt, self._step) >= ANSWER * LATER * size or norm(mean) < LEAST:
             return None
-        self._last = self._older = ORIGIN
+        self._last = self._older = None
         return mean
 
 

@@ -67,6 +67,7 @@ def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:
                 wrench_valid=step.wrench,
                 qd=step.qd,
                 force=step.force,
+                felt=step.force,
                 tau_ext=step.tau,
                 move_refused="too far" if step.cannot else "",
             )

@@ -156,8 +156,8 @@ def test_the_arm_stops_at_the_wall_and_goes_free_when_pushed_back() -> None:
     assert bench.events[-1] == Event(Kind.WALL_REACHED, bench.tick, out(0.5, "-x", (0.0305, 0.0, 0.0)))
     bench.run(20, NOTHING, at(0.0305))
     assert bench.kinds().count(Kind.WALL_REACHED) == 1
-    assert bench.run(60, NOTHING, at(0.0305, force=20.0)).law is Law.HOLD
-    assert bench.run(60, NOTHING, at(0.0305, force=-20.0)).law is Law.FREE
+    assert bench.run(60, NOTHING, at(0.0305, force=20.0, felt=20.0)).law is Law.HOLD
+    assert bench.run(60, NOTHING, at(0.0305, force=-20.0, felt=-20.0)).law is Law.FREE
     assert bench.run(150, NOTHING, at(0.0305)).law is Law.HOLD  # let go, still outside
 
 

@@ -138,7 +138,7 @@ def test_the_baseline_is_the_mean_force_of_the_last_tenth_of_a_second_before_ent
     assert bench.last.baseline == pytest.approx((24.5, 2.0, -1.0, 0.5, 0.0, 2.45))
     kept = bench.last.baseline
     bench.step(LET_GO)
-    assert bench.run(100, NOTHING, estimate(force=40.0)).baseline == kept
+    assert bench.run(100, NOTHING, estimate(force=40.0, felt=40.0)).baseline == kept
     assert bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,))).baseline == (0.0,) * 6
 
 

@@ -182,7 +182,7 @@ def test_the_restart_period_may_begin_with_the_manipulation() -> None:
 
 def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
     bench = Quick(free_drive__restart_at_manipulation=True, free_drive__restart_period=1.0).in_period()
-    pushed = estimate(force=20.0)
+    pushed = estimate(force=20.0, felt=20.0)
     bench.step(NOTHING, pushed)
     assert bench.last.phase is Phase.RESTART
     bench.run(499, NOTHING, pushed)
@@ -193,7 +193,7 @@ def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
 def test_the_restart_period_may_begin_when_the_hand_is_off_while_the_arm_still_moves(after_force: bool, rests: bool) -> None:
     names = {f"limits__maintain__{name}__on": False for name in ("joint_speed", "flange_speed")}
     bench = Quick(free_drive__restart_after_force=after_force, unexplained__motion=False, **names).in_period()
-    bench.run(200, NOTHING, estimate(force=20.0, qd=0.3))
+    bench.run(200, NOTHING, estimate(force=20.0, felt=20.0, qd=0.3))
     assert bench.last.phase is Phase.GUIDED
     bench.run(150, NOTHING, estimate(qd=0.3))
     assert (bench.last.phase is Phase.RESTART) is rests
@@ -278,7 +278,7 @@ def test_the_restart_period_begins_when_the_arm_is_static_again(seconds: float) 
 
 def test_a_push_that_moves_nothing_guides_for_the_static_time() -> None:
     bench = Quick().in_period()
-    pushed = estimate(force=20.0)
+    pushed = estimate(force=20.0, felt=20.0)
     assert bench.step(NOTHING, pushed).phase is Phase.GUIDED
     assert bench.run(49, NOTHING, pushed).phase is Phase.GUIDED
     assert bench.step(NOTHING, pushed).phase is Phase.RESTART

@@ -58,6 +58,13 @@ def test_of_what_the_joints_felt_before_a_smoothed_value_counts(stray: float, to
     assert (found[-1] is not None) is told
 
 
+@pytest.mark.parametrize(("ticks", "told"), [(0, False), (1, False), (2, True)])
+def test_in_the_first_ticks_there_is_nothing_that_a_step_could_begin_from(ticks: int, told: bool) -> None:
+    """A hand may have come in the tick of entry; it counts from the mean before."""
+    forces = [(0.0, 0.0, 0.0)] * ticks + [(0.0, 0.0, 20.0)] * (LATER + 1)
+    assert bool(seen(Steps(), forces)) is told
+
+
 def test_it_is_judged_in_its_tick() -> None:
     forces = stepping(20.0, LATER)
     assert seen(Steps(), forces, against(forces, -0.5)) == []
@@ -74,10 +81,11 @@ def test_small_ones_and_those_of_a_hand_that_is_there_are_none(before: float, si
 
 
 def test_a_knock_and_a_hand_that_comes_are_none() -> None:
+    quiet: list[Vector] = [(0.0, 0.0, 0.0)] * 2
     knock = [(0.0, 0.0, 20.0 * math.sin(math.pi * k / 10)) for k in range(11)]
-    assert seen(Steps(), knock, [0.0, 0.0, -10.0]) == []
+    assert seen(Steps(), quiet + knock, [0.0, 0.0, -10.0]) == []
     grab = [(0.0, 0.0, 2.0 * k) for k in range(11)] + [(0.0, 0.0, 20.0)] * 20
-    assert seen(Steps(), grab, [0.0, 0.0, -10.0]) == []
+    assert seen(Steps(), quiet + grab, [0.0, 0.0, -10.0]) == []
 
 
 def test_its_size_is_the_mean_of_what_was_seen() -> None:
