@@ -208,7 +208,7 @@ def test_a_shaken_arm_is_moved_by_nobody() -> None:
     assert [each.kind for each in bench.events] == [Kind.MANIPULATION]
 
 
-def test_no_contact_is_seen_and_no_signal_while_the_arm_shakes() -> None:
+def test_who_leaves_feels_it_and_the_arm_is_held_in_the_end() -> None:
     bench = Bench(haptics__on=True, contact__on=True, signals__push__on=True, activation__period=0.02, let_go__on=False)
     bench.in_period()
     bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)))
