@@ -74,6 +74,9 @@ def test_free_drive_needs_it() -> None:
     bench.step(holding(FREE))
     assert bench.last.events == (Event(Kind.REFUSED_ENABLING, bench.tick, {"grip": "released"}),)
     assert bench.last.grip is Grip.RELEASED
+
+
+def test_in_its_middle_free_drive_begins() -> None:
     bench = device_bench()
     bench.run(501, holding(FREE, MIDDLE))
     assert (bench.last.mode, bench.last.grip) == (Mode.FREE_DRIVE, Grip.MIDDLE)

@@ -73,6 +73,14 @@ def test_the_check_is_that_of_free_drive() -> None:
 
 
 def test_refused_at_once_it_fails_at_once() -> None:
+    """FD-9: so short a sequence needs the handshake, so that signal and refusal fall into one tick."""
+    bench = guided(GUIDE, activation__period=0.0, sequence__on=True, sequence__period=0.2)
+    bench.step()
+    assert kinds(bench)[-3:] == [Kind.SIGNAL_SEEN, Kind.REFUSED_SHORT, Kind.PROGRAM_FAILED]
+    assert (bench.last.mode, bench.last.program) == (Mode.TEACH, ProgramState.STOPPED)
+
+
+def test_what_ends_or_forbids_the_program_itself_is_no_refusal() -> None:
     bench = guided(GUIDE, activation__period=0.0)
     bench.events.clear()
     bench.step(value=estimate(joints_valid=False))
