@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from pendant.joint_zones import JointZones
 from pendant.modes import TICK
 from pendant.settings import JointLimits
+from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
+from tests.pendant.test_freedrive import Bench
 
 RATED, RANGE = (100.0, 20.0), (3.0, 2.0)
 SETTINGS = JointLimits()  # damping zone from 2.85 rad, stiff zone from 2.95 rad, 25 and 5 N·m·s/rad, 2000 and 400 N·m/rad
@@ -117,3 +119,12 @@ def test_it_is_never_a_push_outwards_and_never_beyond_the_rated_torque(angle: fl
     torque = at(zones(), (angle, speed), (0.0, 0.0)) or (0.0, 0.0)
     assert abs(torque[0]) <= 100.0
     assert torque[0] * angle <= 0.0
+
+
+def test_the_supervisor_holds_each_joint_back_by_its_own_torque_before_its_own_range_ends() -> None:
+    bench = Bench(activation__period=0.0)
+    bench.supervisor = Supervisor(bench.supervisor.settings, 2, rated=RATED, ranges=RANGE)
+    at_rest = estimate(n=2)
+    bench.entered(at_rest)
+    assert bench.last.zones == ()
+    assert bench.step(value=estimate(n=2, theta=[2.9, 1.9], theta_d=[2.0, 2.0])).zones == pytest.approx((-25.0, -5.0))

@@ -7,10 +7,12 @@ import pytest
 
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
+from pendant.inputs import Command, Inputs
 from pendant.load import Load
 from pendant.payload_wizard import IDLE, MOST, UNSTEADY, PayloadWizard
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
+from tests.pendant.test_freedrive import Bench
 
 G = 9.81
 TICKS = 10
@@ -220,3 +222,13 @@ def test_there_is_an_end_to_postures() -> None:
     assert wizard.progress.postures == MOST
     (event,) = wizard.begin(standing(turned(0.123)), TICKS, "")
     assert event.values == {"reason": f"{MOST} postures are enough: clear them to begin again"}
+
+
+@pytest.mark.parametrize(("ticks", "reasons"), [(48, ["the arm moves"]), (49, []), (50, [])])
+def test_the_supervisor_lets_it_measure_once_the_arm_is_static(ticks: int, reasons: list[str]) -> None:
+    """Static is slow for 0.1 s: 50 ticks, with that of the command."""
+    bench = Bench()
+    bench.step(value=estimate(qd=0.3))
+    bench.run(ticks, value=standing(WRIST[0]))
+    events = bench.step(Inputs(commands=(Command.WIZARD_MEASURE,)), standing(WRIST[0])).events
+    assert [event.values["reason"] for event in events] == reasons
