@@ -1,7 +1,5 @@
 """What the supervisor decides in one tick: the only thing that the control law and every interface read from it."""
 
-from typing import NamedTuple
-
 import msgspec
 
 from pendant.axis_locks import AxisLocks
@@ -21,7 +19,7 @@ from pendant.soft_limits import Damping
 from pendant.tooling import Fitting
 
 
-class Remaining(NamedTuple):
+class Remaining(msgspec.Struct, frozen=True, gc=False):
     """A running period (FD-20)."""
 
     name: str  # "activation", "free-drive", "restart", ...

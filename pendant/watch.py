@@ -26,9 +26,9 @@ def motion_ok(estimate: Estimate) -> bool:
 
 
 def _finite(estimate: Estimate) -> bool:
-    q, theta, qd, theta_d = estimate.q.tolist(), estimate.theta.tolist(), estimate.qd.tolist(), estimate.theta_d.tolist()
-    tau_ext, tau_J, v_F = estimate.tau_ext.tolist(), estimate.tau_J.tolist(), estimate.v_F.tolist()
-    return math.isfinite(sum([*q, *theta, *qd, *theta_d, *tau_ext, *tau_J, *v_F]))
+    angles = sum(estimate.q.tolist()) + sum(estimate.theta.tolist())
+    speeds = sum(estimate.qd.tolist()) + sum(estimate.theta_d.tolist()) + sum(estimate.v_F.tolist())
+    return math.isfinite(angles + speeds + sum(estimate.tau_ext.tolist()) + sum(estimate.tau_J.tolist()))
 
 
 def wrench_ok(estimate: Estimate) -> bool:

@@ -103,7 +103,7 @@ class Writer:
             "mode": decision.mode,
             "safety": decision.safety.name,
             "phase": decision.phase,
-            "periods": [period._asdict() for period in decision.periods],
+            "periods": [msgspec.structs.asdict(period) for period in decision.periods],
             "touches": [
                 {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
             ],
