@@ -22,6 +22,12 @@ STRAY, NOISE = 0.3, 1.5
 LEAST = 3.0
 """Smallest mean of a step [N]: what is less was noise on top of a hand's first touch."""
 
+MOVED = 0.03
+"""A joint that is faster is moved by somebody [rad/s]."""
+
+LEAST_MOVED = 10.0
+"""Then a step is at least so large [N]: a hand that guides an arm shoves by up to 9 N at once, from hardly any force."""
+
 SHAKEN = 1.5
 """What is felt by the accelerometer as well, in the step's first ticks, is a hand's or a knock [m/s²]."""
 
@@ -41,12 +47,13 @@ ANSWER = 0.3
 class Steps:
     """Looks for steps of the sensor that the joints do not feel."""
 
-    __slots__ = ("_age", "_before", "_felt", "_last", "_older", "_step", "_sum", "_zero")
+    __slots__ = ("_age", "_before", "_felt", "_last", "_least", "_older", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
         self._last: Vector | None = None  # the force that is felt, a tick and two ticks before
         self._older: Vector | None = None
         self._age = 0  # ticks since a step, 0: none
+        self._least = LEAST
         self._zero: Vector = ORIGIN  # before it
         self._step: Vector = ORIGIN
         self._sum: Vector = ORIGIN  # of what was felt since, without what was felt before
@@ -75,6 +82,7 @@ class Steps:
         if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
             self._age = 1
             self._zero = older
+            self._least = LEAST_MOVED if any(abs(speed) > MOVED for speed in estimate.qd.tolist()) else LEAST
         return None
 
     def _judge(self, estimate: Estimate, last: Vector, change: Vector, felt: Vector) -> Vector | None:
@@ -99,7 +107,7 @@ class Steps:
         self._age = 0
         x, y, z = self._sum  # of ticks 2 to LATER + 1 of its age
         mean = (x / LATER, y / LATER, z / LATER)
-        if dot(self._felt, self._step) >= ANSWER * LATER * size or norm(mean) < LEAST:
+        if dot(self._felt, self._step) >= ANSWER * LATER * size or norm(mean) < self._least:
             return None
         self._last = self._older = None
         return mean

@@ -15,7 +15,7 @@ from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS
 from pendant.pose import UNTURNED, Rotation, Vector, Wrench, flat, norm, turned, turned_back
-from pendant.sensor_steps import Steps
+from pendant.sensor_steps import MOVED, Steps
 from pendant.watch import WINDOW, WrenchMean
 
 SLOW = 3.0
@@ -32,9 +32,6 @@ FAR, FAR_TURN = 5.0, 1.0
 
 BEGINS = 5
 """Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
-
-MOVED = 0.03
-"""A joint that is faster is moved by somebody [rad/s]."""
 
 
 class Drift:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pendant.pose import Vector
-from pendant.sensor_steps import ANSWER, JUMP, LATER, LEAST, NOISE, QUIET, SOON, STRAY, Steps
+from pendant.sensor_steps import ANSWER, JUMP, LATER, LEAST, LEAST_MOVED, MOVED, NOISE, QUIET, SOON, STRAY, Steps
 from tests.pendant.estimates import estimate
 
 
@@ -56,6 +56,18 @@ def test_of_what_the_joints_felt_before_a_smoothed_value_counts(stray: float, to
     for tick, force in enumerate([(0.0, 0.0, 0.0)] * 41 + stepping(5.0, LATER + 1)[2:]):
         found.append(steps.step(estimate(felt=[0.0, 0.0, before[tick] if tick < 41 else 4.0]), force))
     assert (found[-1] is not None) is told
+
+
+@pytest.mark.parametrize("size", [5.0, 9.0, 0.999 * LEAST_MOVED, LEAST_MOVED, -30.0])
+@pytest.mark.parametrize("joint", range(6))
+@pytest.mark.parametrize("speed", [0.999 * MOVED, 1.001 * MOVED, -1.001 * MOVED])
+def test_while_a_hand_moves_the_arm_only_large_ones_are_told(size: float, joint: int, speed: float) -> None:
+    """A hand that guides shoves at once from hardly any force; how fast the help then moves the arm does not matter."""
+    steps, found = Steps(), []
+    for tick, force in enumerate(stepping(size, LATER + 1)):
+        moving = [speed * (k == joint) * (tick < 3) for k in range(6)]
+        found.append(steps.step(estimate(felt=0.0, qd=moving), force))
+    assert (found[-1] is not None) is (abs(size) >= (LEAST_MOVED if abs(speed) > MOVED else LEAST))
 
 
 @pytest.mark.parametrize(("ticks", "told"), [(0, False), (1, False), (2, True)])

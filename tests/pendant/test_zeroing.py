@@ -7,13 +7,12 @@ from pendant.events import Kind
 from pendant.hand import Hand
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
-from pendant.sensor_steps import LATER
+from pendant.sensor_steps import LATER, MOVED
 from pendant.watch import WrenchMean
 from pendant.zeroing import (
     BEGINS,
     FAR,
     FAR_TURN,
-    MOVED,
     SLOW,
     SLOW_TURN,
     Drift,
