@@ -38,6 +38,9 @@ class Calls:
         use = settings.signals
         by_hand = (use.push.on, use.push.told, use.twist.on, use.joints.on, use.pattern.on, use.turn.on)
         self.feeling = any((*by_hand, use.force_step.on, use.tap.on))
+        self._sources.refresh(use)
+        if not self.feeling:
+            self.hand_off, self.touched, self.force = True, False, 0.0
 
     def step(
         self,

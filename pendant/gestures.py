@@ -38,6 +38,10 @@ class PatternSignal:
         return True
 
 
+LONG_AGO = ticks(1000.0)
+"""More ticks than a force may rise for: it was not looked at before."""
+
+
 class StepSignal:
     """The force rises within a short time, and the arm was at rest for a while before."""
 
@@ -47,7 +51,7 @@ class StepSignal:
 
     def __init__(self) -> None:
         self.present = False
-        self._rising = 0  # ticks since the force was quiet
+        self._rising = LONG_AGO  # ticks since the force was quiet
 
     @property
     def memory(self) -> tuple[object, ...]:

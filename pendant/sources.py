@@ -80,6 +80,28 @@ class Sources:
         values = [getattr(self, name) for name in self.__slots__]
         return tuple([tuple(value) if isinstance(value, list) else getattr(value, "memory", value) for value in values])
 
+    def refresh(self, use: Signals) -> None:
+        """The settings are new: what a source felt that is off is over, and it begins afresh when it is on again."""
+        pushing, by_wrench = _asked(use)
+        if not by_wrench:
+            self._wrench.restart()
+        if not pushing:
+            self._push = PushSignal()
+        if not use.twist.on:
+            self._twist = TwistSignal()
+        if not use.pattern.on:
+            self._pattern = PatternSignal()
+        if not use.force_step.on:
+            self._step = StepSignal()
+        if not use.joints.on:
+            self._joints.restart()
+        if not use.turn.on:
+            self._turn = TurnSignal()
+        if not use.tap.on:
+            self._tap = TapSignal()
+        if not (by_wrench or use.joints.on or use.turn.on or use.tap.on):
+            self._held_at = []  # nobody looks at postures meanwhile
+
     def step(self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: Signals) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.
 
@@ -95,10 +117,10 @@ class Sources:
         if joints_ok:
             self._settle(estimate, holding, running)
         found = NONE
-        pushing = use.push.on or use.push.told or use.pattern.on
+        pushing, by_wrench = _asked(use)
         if not (pushing and wrench_ok):
             self._told = 0
-        if pushing or use.twist.on or use.force_step.on:
+        if by_wrench:
             if wrench_ok:
                 found = self._by_wrench(estimate, pushing, use)
             else:
@@ -187,3 +209,9 @@ class Sources:
         if use.force_step.on and self._step.step(self.force(), self._quiet, use.force_step) and found is NONE:
             found = Presence("force step", by_hand=True)
         return found
+
+
+def _asked(use: Signals) -> tuple[bool, bool]:
+    """Whether pushes are looked for, and whether anything is that the flange sensor feels."""
+    pushing = use.push.on or use.push.told or use.pattern.on
+    return pushing, pushing or use.twist.on or use.force_step.on

@@ -179,3 +179,17 @@ def test_what_the_joints_feel_is_learned_anew_after_a_program_has_moved_the_arm(
     found = [bench.step(tau_ext=20.0) for _ in range(120)][-1]
     learned = state is ProgramState.RUNNING
     assert found == (NONE if learned else Presence("push felt by joints", by_hand=True), (), [])
+
+
+def test_where_the_last_source_by_hand_is_switched_off_no_hand_is_felt() -> None:
+    """FD-8a."""
+    bench = Bench(push__on=True).quiet()
+    for _ in range(60):
+        bench.step(PUSHED)
+    assert (bench.calls.hand_off, bench.calls.touched) == (False, True)
+    assert bench.calls.force > 40.0
+    bench.settings = Settings()
+    bench.calls.refresh(bench.settings)
+    for _ in range(10):
+        assert (bench.calls.hand_off, bench.calls.touched, bench.calls.force) == (True, False, 0.0)
+        bench.step(PUSHED)

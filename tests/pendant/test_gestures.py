@@ -54,11 +54,20 @@ def stepped(forces: list[float], quiet: int = 250) -> list[bool]:
 
 @pytest.mark.parametrize(("rise", "seen"), [(1, True), (50, True), (51, False)])
 @pytest.mark.parametrize("low", [3.0, 9.0])
-@pytest.mark.parametrize("before", [0, 5])
+@pytest.mark.parametrize("before", [1, 5])
 def test_a_force_step_rises_in_time(rise: int, seen: bool, low: float, before: int) -> None:
     """FD-5h: from 3 N, which is no quiet any more, to beyond 10 N in 0.1 s."""
     assert stepped([0.0] * before + [low] * (rise - 1) + [10.1])[-1] is seen
     assert stepped([2.9] * 100 + [10.1])[-1]
+
+
+@pytest.mark.parametrize("count", [1, 2, 60])
+def test_a_force_that_is_there_from_the_first_tick_has_not_risen(count: int) -> None:
+    """FD-5h."""
+    signal = StepSignal()
+    assert not any(signal.step(10.1, 250, ForceStep()) for _ in range(count))
+    assert signal.step(2.9, 250, ForceStep()) is False
+    assert signal.step(10.1, 250, ForceStep())
 
 
 @pytest.mark.parametrize(("force", "quiet", "seen"), [(10.1, 250, True), (10.0, 250, False), (10.1, 249, False)])
