@@ -50,7 +50,7 @@ class Decision(msgspec.Struct, frozen=True):
     move: Move | None  # the move to follow, under Law.FOLLOW
     gain: float  # factor on J^T F_user, under Law.FREE (FD-3)
     force_cap: float  # largest force of F_user that is amplified [N] (FD-3)
-    baseline: tuple[float, ...]  # F_user when free-drive began [N, N·m], subtracted under Law.FREE
+    baseline: tuple[float, ...]  # F_user that is nobody's, axes of F [N, N·m], subtracted under Law.FREE
     periods: tuple[Remaining, ...]
     events: tuple[Event, ...]  # what happened in this tick
     program: ProgramState = ProgramState.NONE

@@ -44,7 +44,7 @@ FREE_DRIVE: dict[Kind, Row] = {
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor drifts",
-        "By {force:.1f} N, {torque:.1f} N·m since free-drive began, taken off. Leave and check it; if you press, let go.",
+        "Gone by {force:.1f} N, {torque:.1f} N·m while nobody moved the arm: no help from it any more. Leave, and check it.",
         ("force", "torque"),
     ),
     Kind.HOLD_SILENT: Row(

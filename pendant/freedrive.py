@@ -105,7 +105,7 @@ class FreeDrive:
 
     @property
     def baseline(self) -> tuple[float, ...]:
-        """F_user that is nobody's, axes of B [N, N·m]; zeros without the flange sensor."""
+        """F_user that is nobody's, axes of F [N, N·m]; zeros without the flange sensor."""
         return self._zero.baseline
 
     @property

@@ -108,20 +108,21 @@ class TapSignal:
 class TurnSignal:
     """A joint turned away from where it is held."""
 
-    __slots__ = ("_held", "present")
+    __slots__ = ("_held", "_joint", "present")
 
     def __init__(self) -> None:
         self._held: float | None = None  # its angle [rad]
+        self._joint = 0.0  # which one it is
         self.present = False
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._held, self.present)
+        return (self._held, self._joint, self.present)
 
     def step(self, angle: float, holding: bool, use: Turn) -> bool:
         """One tick; `angle` of the joint [rad]."""
-        if not holding or self._held is None:
-            self._held = angle
+        if not holding or self._held is None or use.joint != self._joint:
+            self._held, self._joint = angle, use.joint
         self.present = abs(angle - self._held) > use.angle
         return self.present

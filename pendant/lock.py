@@ -12,14 +12,14 @@ def change(settings: Settings, changes: dict[str, Value], mode: Mode, trying: bo
         settings: as they are.
         changes: by dotted name.
         mode: of the robot.
-        trying: the activation sequence runs.
+        trying: free-drive is being activated, from the signal on.
         tick: for the events.
     """
     events: list[Event] = []
     for name, value in changes.items():
         try:
             if find(name).locked and (trying or mode in (Mode.RUN, Mode.FREE_DRIVE)):
-                where = "the activation sequence" if trying else mode
+                where = mode if mode is Mode.FREE_DRIVE or not trying else "the activation of free-drive"
                 raise SettingError(name, value, f"no change of a limit in {where}")
             old = value_of(settings, name)
             settings = apply(settings, {name: value})

@@ -8,16 +8,15 @@ at no force at all.
 import math
 from typing import NamedTuple
 
+from pendant.alone import Alone
 from pendant.estimate import GRAVITY, Estimate
 from pendant.events import Kind, Values
-from pendant.hand import CARRIED, Hand
+from pendant.hand import Hand
 from pendant.hidden_drop import LEAST, HiddenDrop
-from pendant.link_push import LinkPush
-from pendant.modes import TICK
 from pendant.parameters import Monitor, Reference, View, reference
-from pendant.pose import ORIGIN, Vector, flat, norm, turned_back
+from pendant.pose import ORIGIN, Vector, Wrench, flat, norm, turned_back
 from pendant.residual import Split
-from pendant.settings import Settings, ticks
+from pendant.settings import Settings
 from pendant.soft_limits import Damping, SoftLimits
 
 STEP = 2
@@ -69,14 +68,12 @@ class Operation:
     """
 
     __slots__ = (
-        "_allowed",
         "_alone",
         "_calm",
         "_followed",
         "_hidden",
         "_joints",
         "_level",
-        "_link",
         "_missed",
         "_monitor",
         "_offset",
@@ -115,9 +112,7 @@ class Operation:
         self._soft = SoftLimits(settings, estimate)
         self._twist = turned_back(flat(estimate.R_BF), (baseline[3], baseline[4], baseline[5]))
         self._on = settings.unexplained
-        self._allowed = ticks(self._on.time)
-        self._alone = 0  # ticks in a row in which the arm moved and nobody moved it
-        self._link = LinkPush(self._since.torques, rated)
+        self._alone = Alone(self._on, self._since.torques, rated)
         self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
@@ -131,7 +126,6 @@ class Operation:
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
         own = (
-            self._alone,
             tuple(self._missed),
             self._calm,
             self._level,
@@ -142,19 +136,19 @@ class Operation:
             self._twist,
             self._since,
         )
-        return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._link.memory)
+        return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
+    def step(self, estimate: Estimate, hand: Hand, drifted: Wrench | None, driven: bool) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
             estimate: of this tick.
             hand: after its step.
-            use_wrench: the flange sensor is valid.
+            drifted: what the flange sensor has drifted by since entry, axes of F [N, N·m]; None where it is not used.
             driven: a wall or another device moves the arm, or holds it.
         """
-        if self._on.payload and use_wrench:
-            lost = self._lost(estimate)
+        if self._on.payload and drifted is not None:
+            lost = self._lost(estimate, drifted)
             if lost is not None:
                 return lost
         else:
@@ -162,50 +156,27 @@ class Operation:
             self._hidden.forget()
         soft = self._soft
         if soft.pushed:
-            soft.step(estimate, norm(hand.user), self._torque(estimate) if use_wrench else 0.0)
+            soft.step(estimate, norm(hand.user), 0.0 if drifted is None else self._torque(estimate, drifted))
         else:
             soft.step(estimate)
         self.damping = soft.damping
-        parts = Split(0.0, 0.0, norm(hand.change), 0.0) if use_wrench else None
+        parts = None if drifted is None else Split(0.0, 0.0, norm(hand.change), 0.0)
         beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
-        return self._moved(estimate, hand, use_wrench, driven) if self._on.motion else None
+        values = self._alone.step(estimate, hand, drifted is not None, driven) if self._on.motion else None
+        return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
-    def _torque(self, estimate: Estimate) -> float:
+    def _torque(self, estimate: Estimate, drifted: Wrench) -> float:
         """The hand's torque: its change since before entry, with an offset that turns with the flange [N·m]."""
         x, y, z = estimate.F_user.tolist()[3:]
         ox, oy, oz = self._twist
         x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
-        return norm((x - ox, y - oy, z - oz))
+        _, _, _, dx, dy, dz = drifted
+        return norm((x - ox - dx, y - oy - dy, z - oz - dz))
 
-    def _moved(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Ending | None:
-        """Motion that nobody causes."""
-        x, y, z = hand.user
-        least = self._on.force
-        if driven or x * x + y * y + z * z >= least * least:
-            self._alone = 0
-            return None
-        vx, vy, vz = estimate.v_F.tolist()[:3]
-        motion = norm((vx, vy, vz))
-        if motion < self._on.speed:
-            self._alone = 0
-            return None
-        link = self._link
-        if self._alone == 0:
-            link.begin()
-        self._alone += 1
-        link.step(estimate)
-        if self._alone <= self._allowed:
-            return None
-        if use_wrench and norm(hand.change) < CARRIED and link.told(estimate):
-            self._alone = 0
-            return None
-        values: Values = {"value": motion, "limit": self._on.speed, "time": self._alone * TICK}
-        return Ending(Kind.STOPPED_MOTION, values)
-
-    def _lost(self, estimate: Estimate) -> Ending | None:
+    def _lost(self, estimate: Estimate, drifted: Wrench) -> Ending | None:
         """A payload-like step."""
         mass = estimate.load_mass
         weight = mass * GRAVITY
@@ -216,7 +187,8 @@ class Operation:
         wx, wy, wz, _, _, _ = estimate.w_sensor.tolist()
         nx, ny, nz = rx + wx, ry + wy, rz + wz  # what the configured load needs in this motion
         ox, oy, oz = self._offset
-        mx, my, mz = rx - ox, ry - oy, rz - oz  # what is missing of it
+        dx, dy, dz, _, _, _ = drifted
+        mx, my, mz = rx - ox - dx, ry - oy - dy, rz - oz - dz  # what is missing of it
         square = nx * nx + ny * ny + nz * nz
         share = (mx * nx + my * ny + mz * nz) / max(square, 1e-9)
         missed = self._missed

@@ -100,7 +100,7 @@ class Sources:
         if not use.tap.on:
             self._tap = TapSignal()
         if not (by_wrench or use.joints.on or use.turn.on or use.tap.on):
-            self._held_at = []  # nobody looks at postures meanwhile
+            self._held_at, self._quiet = [], 0  # nobody looks at postures and motions meanwhile
 
     def step(self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: Signals) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.

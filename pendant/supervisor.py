@@ -146,7 +146,7 @@ class Supervisor:
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
-            trying = self._free.phase is Phase.SEQUENCE
+            trying = self._free.phase is not _OFF
             self.settings, changed = change(self.settings, wanted, self._robot.mode, trying, estimate.tick)
             events += changed
             self._refresh()

@@ -14,7 +14,7 @@ from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS
-from pendant.pose import UNTURNED, Rotation, Vector, Wrench, flat, norm, turned, turned_back
+from pendant.pose import Vector, Wrench, flat, norm, turned, turned_back
 from pendant.sensor_steps import MOVED, Steps
 from pendant.watch import WINDOW, WrenchMean
 
@@ -25,10 +25,11 @@ SLOW_TURN = 0.6
 """And a torque [N·m/s]."""
 
 NOISY, NOISY_TURN = 0.5, 0.1
-"""So much that a window's mean is beyond that waits for the next ones, for it may be noise; more is a hand's [N, N·m]."""
+"""What of a change was too fast waits for the next windows up to so much [N, N·m], for it may be noise; more is a hand's."""
 
-FAR, FAR_TURN = 5.0, 1.0
-"""What has drifted so far is told [N, N·m]: a flange sensor is good to less."""
+FAR, FAR_TURN = 4.0, 1.0
+"""A sensor that has drifted so far [N, N·m] is not used any more: it is not so good as it should be, or a hand presses slowly on
+an arm that does not move, and would seem to push the other way when it lets go."""
 
 BEGINS = 5
 """Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
@@ -73,7 +74,7 @@ class Drift:
         return self._count == 1
 
     def step(self, mean: Wrench) -> Wrench | None:
-        """The mean of the last window, axes of B [N, N·m]: what is to be taken off; None after the first."""
+        """The mean of the last window, axes of B [N, N·m]: what is to be taken off; None for the first one."""
         if self._followed is None:
             self._followed = mean
             return None
@@ -98,28 +99,27 @@ class Zero:
 
     Attributes:
         used: the flange sensor is; it was valid in every tick since.
-        baseline: F_user in the beginning, and what the sensor drifted by, axes of B [N, N·m]; zeros without the sensor.
+        baseline: F_user in the beginning, and what the sensor drifted by, axes of F [N, N·m]; zeros without the sensor.
         drifted: what the sensor drifted by since, axes of F [N, N·m].
     """
 
-    __slots__ = ("_drift", "_steps", "_told", "_turned", "baseline", "drifted", "used")
+    __slots__ = ("_drift", "_steps", "baseline", "drifted", "used")
 
     def __init__(self) -> None:
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench = ZEROS
-        self._drift, self._steps, self._told = Drift(), Steps(), False
-        self._turned: Rotation = UNTURNED  # orientation of the flange in B in the beginning, in which `baseline` is
+        self._drift, self._steps = Drift(), Steps()
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.used, self.baseline, self.drifted, self._told, self._turned, self._drift.memory, self._steps.memory)
+        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory)
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
-        self.used, self.baseline, self.drifted = wrench_ok, mean.mean(), ZEROS
-        self._drift, self._steps, self._turned, self._told = Drift(), Steps(), flat(estimate.R_BF), False
+        self.used, self.baseline, self.drifted = wrench_ok, _in_flange(estimate, mean.mean()), ZEROS
+        self._drift, self._steps = Drift(), Steps()
 
     def leave(self) -> None:
         """The sensor is not used any more."""
@@ -138,9 +138,9 @@ class Zero:
         return tuple([value - part for value, part in zip(wrench, drifted, strict=True)])
 
     def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
-        """One tick of free-drive with a valid sensor: what it drifts by is taken off; one that steps is not used any more.
+        """One tick of free-drive with a valid sensor: what it drifts by is taken off.
 
-        Returns an event where the sensor steps, or where it has drifted far.
+        One that steps, or has drifted far, is not used any more; that is returned.
 
         Args:
             estimate: of this tick.
@@ -156,30 +156,30 @@ class Zero:
             self._drift.restart()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.
             if self._drift.lately and any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
-                for x, y, z, a, b, c in self._drift.give_back():
-                    self._take_off((-x, -y, -z), (-a, -b, -c), hand)
+                for taken in self._drift.give_back():
+                    self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
             gone = self._drift.step(mean.mean())
             if gone is not None:
-                R_BF = flat(estimate.R_BF)
-                force, torque = turned_back(R_BF, (gone[0], gone[1], gone[2])), turned_back(R_BF, (gone[3], gone[4], gone[5]))
-                self._drift.keep((*force, *torque))
-                self._take_off(force, torque, hand)
-                return self._tell(estimate)
+                gone = _in_flange(estimate, gone)
+                self._drift.keep(gone)
+                self._take_off(gone, hand)
+                x, y, z, a, b, c = self.drifted
+                far, turn = norm((x, y, z)), norm((a, b, c))
+                if far >= FAR or turn >= FAR_TURN:
+                    self.leave()
+                    return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
 
-    def _tell(self, estimate: Estimate) -> Event | None:
-        """That the sensor has drifted far, once."""
-        x, y, z, a, b, c = self.drifted
-        force, torque = norm((x, y, z)), norm((a, b, c))
-        if self._told or (force < FAR and torque < FAR_TURN):
-            return None
-        self._told = True
-        return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": force, "torque": torque})
+    def _take_off(self, gone: Wrench, hand: Hand) -> None:
+        """So much, axes of F [N, N·m], is an offset of the sensor."""
+        hand.shift((gone[0], gone[1], gone[2]))
+        self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])
+        self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])
 
-    def _take_off(self, force: Vector, torque: Vector, hand: Hand) -> None:
-        """So much [N, N·m], axes of F, is an offset of the sensor."""
-        hand.shift(force)
-        self.drifted = tuple([a + b for a, b in zip(self.drifted, (*force, *torque), strict=True)])
-        at_begin = (*turned(self._turned, force), *turned(self._turned, torque))
-        self.baseline = tuple([a + b for a, b in zip(self.baseline, at_begin, strict=True)])
+
+def _in_flange(estimate: Estimate, wrench: Wrench) -> Wrench:
+    """A wrench in axes of B, in those of the flange now."""
+    x, y, z, a, b, c = wrench
+    R_BF = flat(estimate.R_BF)
+    return (*turned_back(R_BF, (x, y, z)), *turned_back(R_BF, (a, b, c)))

@@ -73,7 +73,6 @@ class FreeDriveLaw:
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
         # Asked and felt, filtered; what is usual; transmission torque, `_late`; angles in which free-drive began.
         self._memory = np.zeros((7, n))
-        self._turned = np.eye(3)
 
     def _moving(self, part: str) -> int:
         """How many joints move a part."""
@@ -90,7 +89,6 @@ class FreeDriveLaw:
         self._memory[2] = estimate.tau_ext
         self._memory[LATE:BEGAN] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
         self._memory[BEGAN] = estimate.q
-        self._turned[:] = estimate.R_BF
         self._damping.start()
         self._balancing.start()
         self._constraint.release()
@@ -135,7 +133,7 @@ class FreeDriveLaw:
         hand = self._hand
         if estimate.wrench_valid and decision.gain > 0.0:
             cap, gain = decision.force_cap, help * decision.gain
-            _ask(estimate.F_user, decision.baseline, estimate.R_BF, self._turned, jacobian, cap, gain, hand, torque)
+            _ask(estimate.F_user, decision.baseline, estimate.R_BF, jacobian, cap, gain, hand, torque)
             if locks is not None:
                 constraint.project(hand[1], gain, torque)
         else:
@@ -166,15 +164,14 @@ def _push(jacobian, p_BF, p, force, moving, torque) -> None:
 
 
 @numba.njit(cache=True)
-def _ask(F_user, baseline, R, R_before, jacobian, cap, gain, hand, torque) -> None:
+def _ask(F_user, baseline, R, jacobian, cap, gain, hand, torque) -> None:
     """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
     wrench = np.empty(6)
     for k in range(3):
         wrench[k], wrench[3 + k] = F_user[k], F_user[3 + k]
         for m in range(3):
-            turn = R[k, 0] * R_before[m, 0] + R[k, 1] * R_before[m, 1] + R[k, 2] * R_before[m, 2]
-            wrench[k] -= turn * baseline[m]
-            wrench[3 + k] -= turn * baseline[3 + m]
+            wrench[k] -= R[k, m] * baseline[m]
+            wrench[3 + k] -= R[k, m] * baseline[3 + m]
     size = math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
     share = cap / size if size > cap else 1.0
     for i in range(torque.size):

@@ -18,7 +18,7 @@ from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, Mode
 from pendant.operation import CERTAIN, SWINGS, Ending, Operation, way_back
 from pendant.operation import LASTS as STEP_LASTS
-from pendant.pose import Vector
+from pendant.pose import Vector, Wrench
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
 from tests.pendant.estimates import estimate
@@ -40,10 +40,10 @@ class Free:
         self.operation = Operation(estimate(), settings, baseline, JOINTS, RATED, held)
         self.ticks = 0
 
-    def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False) -> Ending | None:
+    def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False, drifted: Wrench = ZEROS) -> Ending | None:
         self.ticks += 1
         self.hand.step(value, use_wrench)
-        return self.operation.step(value, self.hand, use_wrench, driven)
+        return self.operation.step(value, self.hand, drifted if use_wrench else None, driven)
 
     def until(self, values: Iterable[Estimate], **how: bool) -> Ending | None:
         return next((ending for value in values if (ending := self.see(value, **how)) is not None), None)
@@ -125,7 +125,7 @@ def test_a_hand_has_its_least_force_in_whatever_direction(user: Vector, moved: b
     """FD-19: at it, 3 N, the hand moves the arm."""
     free = Free(unexplained__force=3.0)
     free.hand.user = user
-    endings = [free.operation.step(estimate(speed=0.03), free.hand, True, False) for _ in range(151)]
+    endings = [free.operation.step(estimate(speed=0.03), free.hand, ZEROS, False) for _ in range(151)]
     assert (endings[-1] is None) is moved
 
 
@@ -194,7 +194,7 @@ def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
     settings = Settings()
     operation = Operation(elbow(5.0), settings, ZEROS, JOINTS, RATED, 0.0)
     hand = Hand(elbow(5.0), ZEROS)
-    assert any(operation.step(elbow(5.0), hand, True, False) for _ in range(151))
+    assert any(operation.step(elbow(5.0), hand, ZEROS, False) for _ in range(151))
 
 
 def test_motion_can_be_switched_off() -> None:
@@ -314,9 +314,9 @@ def test_what_drops_is_reckoned_along_what_the_load_needs_in_the_flanges_axes() 
     baseline = (*(R_BF @ offset), 0.7, 0.8, 0.9)
     operation = Operation(felt(hand), Settings(), baseline, JOINTS, RATED, 0.0)
     watched = Hand(felt(hand), baseline)
-    endings = [operation.step(felt(hand), watched, True, False) for _ in range(20)]
+    endings = [operation.step(felt(hand), watched, ZEROS, False) for _ in range(20)]
     missing = 0.9 * needs + np.array([0.4, 0.3, -0.2])
-    endings += [operation.step(felt(missing), watched, True, False) for _ in range(1 + CERTAIN)]
+    endings += [operation.step(felt(missing), watched, ZEROS, False) for _ in range(1 + CERTAIN)]
     share = missing @ needs / (needs @ needs)
     values = {"mass": pytest.approx(-2.0 * share), "force": pytest.approx(2.0 * GRAVITY * share)}
     assert endings == [*[None] * (19 + 1 + CERTAIN), Ending(Kind.STOPPED_PAYLOAD, values)]
@@ -604,4 +604,21 @@ def test_a_share_of_the_load_lies_along_it_and_is_hardly_more_than_all(share: fl
 def test_the_hands_torque_is_its_change_in_every_axis() -> None:
     """FD-12b."""
     free = Free((0.0, 0.0, 0.0, 0.1, 0.2, 0.3))
-    assert free.operation._torque(estimate(torque=[0.3, 0.6, -0.1])) == pytest.approx(0.6)
+    assert free.operation._torque(estimate(torque=[0.3, 0.6, -0.1]), ZEROS) == pytest.approx(0.6)
+    drifted = (9.0, 9.0, 9.0, 0.4, 0.2, 0.0)
+    assert free.operation._torque(estimate(torque=[0.7, 0.8, -0.1]), drifted) == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("size", [-3.9, 0.0, 3.9])
+def test_a_drop_is_told_whatever_the_sensor_has_drifted_by(size: float, axis: int) -> None:
+    """FD-19: what was taken off is missing of no load."""
+    free = Free(held=2.0)
+    drifted = tuple([size if k == axis else 0.0 for k in range(6)])
+    force = np.array(drifted[:3])
+    for _ in range(20):
+        assert free.see(loaded(force.tolist()), drifted=drifted) is None
+    endings = [free.see(loaded((force + TWO).tolist()), drifted=drifted) for _ in range(CERTAIN + 1)]
+    assert endings[:-1] == [None] * CERTAIN
+    assert endings[-1] is not None
+    assert endings[-1].values == {"mass": pytest.approx(-2.0), "force": pytest.approx(TWO[2])}

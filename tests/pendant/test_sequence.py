@@ -254,7 +254,7 @@ def test_limits_are_locked_in_it() -> None:
     bench = tried()
     bench.step(Inputs(settings={"limits.activation.user_force.max": 50.0, "free_drive.period": 5.0}))
     assert [event.kind for event in bench.last.events] == [Kind.SETTING_REFUSED, Kind.SETTING_CHANGED]
-    assert bench.last.events[0].values["reason"] == "no change of a limit in the activation sequence"
+    assert bench.last.events[0].values["reason"] == "no change of a limit in the activation of free-drive"
 
 
 def test_equal_states_decide_equally_in_it() -> None:

@@ -126,7 +126,7 @@ def ended(speed: float, **changes: float | bool) -> Ending | None:
     now = estimate(load_mass=4.0, v_tcp=speed)
     operation = Operation(now, settings, ZEROS, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6, 0.0)
     assert operation.damping is None
-    found = operation.step(now, Hand(now, ZEROS), True, False)
+    found = operation.step(now, Hand(now, ZEROS), ZEROS, False)
     assert operation.damping is not None
     return found
 

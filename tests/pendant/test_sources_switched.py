@@ -77,6 +77,26 @@ def test_a_push_that_was_switched_off_has_to_come_again(switch: str, other: str,
     assert COURSES[switch][1] not in [given for given, _ in bench.run(60, switch, other, **felt)]
 
 
+def test_another_joint_that_is_asked_begins_where_it_is() -> None:
+    """FD-5g."""
+    bench, posture = Bench(), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+    bench.run(100, "turn.on", q=posture)
+    bench.turning = 5
+    assert {given for given, _ in bench.run(100, "turn.on", q=posture)} == {NONE}
+    posture[4] = 0.52
+    assert bench.run(1, "turn.on", q=posture)[-1][0] == COURSES["turn.on"][1]
+
+
+@pytest.mark.parametrize(("held", "seen"), [(247, False), (248, False), (249, True), (250, True)])
+def test_for_how_long_the_arm_was_held_is_not_known_while_no_source_is_on(held: int, seen: bool) -> None:
+    """FD-5h."""
+    bench = Bench()
+    bench.run(1000, "force_step.on")
+    bench.run(0)
+    bench.run(held, "force_step.on")
+    assert (bench.run(1, "force_step.on", force=200.0)[0][0] is not NONE) is seen
+
+
 @pytest.mark.parametrize("elsewhere", [0.02, -0.3])
 def test_a_joint_that_a_program_turned_while_nobody_looked_is_not_turned_by_hand(elsewhere: float) -> None:
     """FD-5g."""

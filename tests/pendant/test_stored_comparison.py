@@ -96,13 +96,14 @@ def test_with_the_handshake_it_lasts_its_period_to_the_tick(period: float) -> No
 
 
 def test_a_handshake_switched_on_too_late_is_none() -> None:
-    """An attempt that began without it ends without it."""
+    """An attempt that began without it ends without it: limits are locked from the signal on."""
     made = Bench(**{**SHORT, "sequence__stored": False, "sequence__period": 0.1})
     made.run(60)
     made.run(19, HOLD)
     made.step(Inputs(held=HOLD.held, settings={"handshake.on": True}))
+    assert [event.kind for event in made.last.events] == [Kind.SETTING_REFUSED]
     made.step(HOLD)
-    assert made.supervisor.settings.handshake.on
+    assert not made.supervisor.settings.handshake.on
     assert made.last.events[-1].kind is Kind.REFUSED_SHORT
 
 

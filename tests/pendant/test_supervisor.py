@@ -252,14 +252,31 @@ def test_programs_that_cannot_be_loaded() -> None:
     assert bench.last.events[0].values == {"name": "two moves", "reason": "stop the program first"}
 
 
-@pytest.mark.parametrize(("make", "mode"), [(lambda: Bench().in_period(), Mode.FREE_DRIVE), (running, Mode.RUN)])
-def test_limits_are_locked_in_free_drive_and_run(make: Callable[[], Bench], mode: Mode) -> None:
+def activating() -> Bench:
+    bench = Bench(activation__period=5.0, hold__silence=1.0)
+    bench.run(60)
+    bench.run(10, HOLD)
+    return bench
+
+
+@pytest.mark.parametrize(
+    ("make", "mode", "where"),
+    [
+        (lambda: Bench().in_period(), Mode.FREE_DRIVE, Mode.FREE_DRIVE),
+        (running, Mode.RUN, Mode.RUN),
+        (activating, Mode.TEACH, "the activation of free-drive"),
+    ],
+)
+def test_limits_are_locked_in_free_drive_and_run_and_from_the_signal_on(
+    make: Callable[[], Bench], mode: Mode, where: str
+) -> None:
+    """A hand that is on the arm would be forgotten where its source is switched off under it (FD-8a)."""
     bench = make()
     before = bench.supervisor.settings
     for row in LOCKED:
         value = another(row)
         bench.step(change(row))
-        values: Values = {"name": row.name, "value": value, "reason": f"no change of a limit in {mode}"}
+        values: Values = {"name": row.name, "value": value, "reason": f"no change of a limit in {where}"}
         assert (bench.last.mode, bench.last.events) == (mode, (Event(Kind.SETTING_REFUSED, bench.tick, values),))
         assert bench.supervisor.settings == before
 

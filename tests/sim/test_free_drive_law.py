@@ -50,7 +50,7 @@ def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:
     module = law()
     turn = rotation(2, 1.1)
     turned = np.concatenate([turn @ offset[:3], turn @ offset[3:]])
-    seen = estimate(q=Q, R_BF=turn @ R, F_user=turned)
+    seen = estimate(q=Q, R_BF=turn, F_user=turned)
     torque = module.torque(seen, decision(Law.FREE, gain=1.0, baseline=tuple(offset)), JACOBIAN, AdaptiveFriction(UR5E), True)
     np.testing.assert_allclose(torque, GRAVITY, atol=1e-9)
 
