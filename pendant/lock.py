@@ -1,4 +1,4 @@
-"""Settings at run time: limits are locked while the arm moves by hand or by program."""
+"""Settings at run time: limits are locked while the arm moves by hand or by program, and while free-drive is being activated."""
 
 from pendant.events import Event, Kind
 from pendant.modes import Mode
