@@ -64,9 +64,8 @@ class FreeArm:
         """
         estimate = around.estimate
         self._zero, self._containment, self._zones = zero, containment, zones
-        felt = around.mean.mean()
-        self._hand = Hand(estimate, felt)
-        self._operation = Operation(estimate, settings, felt, joints, rated, around.payload)
+        self._hand = Hand(estimate, around.mean.mean())
+        self._operation = Operation(estimate, settings, joints, rated, around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = False
         self.user: Vector = ORIGIN
@@ -116,8 +115,8 @@ class FreeArm:
             values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, tick, values))
         self.singularity = self._singularity.status
-        drifted = zero.drifted if zero.used else None
-        ending = operation.step(estimate, hand, drifted, around.shaken or self.caught or self._zones.pushing)
+        baseline = zero.baseline if zero.used else None
+        ending = operation.step(estimate, hand, baseline, around.shaken or self.caught or self._zones.pushing)
         self.damping, self.suspect = operation.damping, operation.suspect
         if ending is not None:
             events.append(Event(ending.kind, tick, ending.values))

@@ -76,13 +76,11 @@ class Operation:
         "_level",
         "_missed",
         "_monitor",
-        "_offset",
         "_on",
         "_rated",
         "_since",
         "_soft",
         "_stepped",
-        "_twist",
         "damping",
         "suspect",
     )
@@ -91,7 +89,6 @@ class Operation:
         self,
         estimate: Estimate,
         settings: Settings,
-        baseline: tuple[float, ...],
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         held: float,
@@ -100,7 +97,6 @@ class Operation:
         Args:
             estimate: of the tick of entry; its joint values are finite.
             settings: as they are now; they stay so to the end.
-            baseline: mean of F_user before entry, axes of B [N, N·m]; zeros without a sensor.
             joints: names, base to flange.
             rated: torque of each joint [N·m].
             held: configured payload without the tool, what may drop [kg].
@@ -108,9 +104,7 @@ class Operation:
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
         self._since: Reference = reference(estimate, None)
-        self._offset = turned_back(flat(estimate.R_BF), (baseline[0], baseline[1], baseline[2]))
         self._soft = SoftLimits(settings, estimate)
-        self._twist = turned_back(flat(estimate.R_BF), (baseline[3], baseline[4], baseline[5]))
         self._on = settings.unexplained
         self._alone = Alone(self._on, self._since.torques, rated)
         self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
@@ -132,23 +126,21 @@ class Operation:
             self._stepped,
             self._followed,
             self.suspect,
-            self._offset,
-            self._twist,
             self._since,
         )
         return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, drifted: Wrench | None, driven: bool) -> Ending | None:
+    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
             estimate: of this tick.
             hand: after its step.
-            drifted: what the flange sensor has drifted by since entry, axes of F [N, N·m]; None where it is not used.
+            baseline: what of F_user is nobody's, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
         """
-        if self._on.payload and drifted is not None:
-            lost = self._lost(estimate, drifted)
+        if self._on.payload and baseline is not None:
+            lost = self._lost(estimate, baseline)
             if lost is not None:
                 return lost
         else:
@@ -156,27 +148,27 @@ class Operation:
             self._hidden.forget()
         soft = self._soft
         if soft.pushed:
-            soft.step(estimate, norm(hand.user), 0.0 if drifted is None else self._torque(estimate, drifted))
+            soft.step(estimate, norm(hand.user), 0.0 if baseline is None else self._torque(estimate, baseline))
         else:
             soft.step(estimate)
         self.damping = soft.damping
-        parts = None if drifted is None else Split(0.0, 0.0, norm(hand.change), 0.0)
+        parts = None if baseline is None else Split(0.0, 0.0, norm(hand.change), 0.0)
         beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
-        values = self._alone.step(estimate, hand, drifted is not None, driven) if self._on.motion else None
+        values = self._alone.step(estimate, hand, baseline is not None, driven) if self._on.motion else None
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
-    def _torque(self, estimate: Estimate, drifted: Wrench) -> float:
-        """The hand's torque: its change since before entry, with an offset that turns with the flange [N·m]."""
+    @staticmethod
+    def _torque(estimate: Estimate, baseline: Wrench) -> float:
+        """The hand's torque: what is beyond a baseline that turns with the flange [N·m]."""
         x, y, z = estimate.F_user.tolist()[3:]
-        ox, oy, oz = self._twist
+        _, _, _, ox, oy, oz = baseline
         x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
-        _, _, _, dx, dy, dz = drifted
-        return norm((x - ox - dx, y - oy - dy, z - oz - dz))
+        return norm((x - ox, y - oy, z - oz))
 
-    def _lost(self, estimate: Estimate, drifted: Wrench) -> Ending | None:
+    def _lost(self, estimate: Estimate, baseline: Wrench) -> Ending | None:
         """A payload-like step."""
         mass = estimate.load_mass
         weight = mass * GRAVITY
@@ -186,9 +178,8 @@ class Operation:
         rx, ry, rz = turned_back(flat(estimate.R_BF), (fx, fy, fz))
         wx, wy, wz, _, _, _ = estimate.w_sensor.tolist()
         nx, ny, nz = rx + wx, ry + wy, rz + wz  # what the configured load needs in this motion
-        ox, oy, oz = self._offset
-        dx, dy, dz, _, _, _ = drifted
-        mx, my, mz = rx - ox - dx, ry - oy - dy, rz - oz - dz  # what is missing of it
+        ox, oy, oz, _, _, _ = baseline
+        mx, my, mz = rx - ox, ry - oy, rz - oz  # what is missing of it
         square = nx * nx + ny * ny + nz * nz
         share = (mx * nx + my * ny + mz * nz) / max(square, 1e-9)
         missed = self._missed

@@ -159,7 +159,7 @@ def ended(now: Estimate, ticks: int = 1, force: list[float] | None = None, **cha
     """What ends a free-drive that began at rest, of a hand that lasts; the limit that says it is the changed one alone."""
     use = settings(soft__hard=True, unexplained__motion=False, unexplained__payload=False, **changes)
     first = estimate()
-    operation, hand = Operation(first, use, ZEROS, JOINTS, (100.0,) * 6, 0.0), Hand(first, ZEROS)
+    operation, hand = Operation(first, use, JOINTS, (100.0,) * 6, 0.0), Hand(first, ZEROS)
     for _ in range(ticks):
         hand.step(now, True)
         found = operation.step(now, hand, ZEROS, False)
@@ -234,7 +234,7 @@ def test_the_hands_force_lowers_the_limit_on_speed_and_its_torque_that_on_joint_
 
 def test_without_the_flange_sensor_no_torque_lowers_anything() -> None:
     use, now = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0), estimate(qd=2.9, torque=9.0)
-    operation = Operation(now, use, ZEROS, JOINTS, (100.0,) * 6, 0.0)
+    operation = Operation(now, use, JOINTS, (100.0,) * 6, 0.0)
     assert operation.step(now, Hand(now, ZEROS), None, False) is None
     assert operation.step(now, Hand(now, ZEROS), ZEROS, False) is not None
 
@@ -242,8 +242,8 @@ def test_without_the_flange_sensor_no_torque_lowers_anything() -> None:
 def test_what_the_sensor_was_off_before_entry_is_no_torque_of_the_hand() -> None:
     now = estimate(qd=2.9, torque=[3.0, 0.0, 4.0])
     use = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0)
-    operation = Operation(now, use, (0.0, 0.0, 0.0, 3.0, 0.0, 4.0), JOINTS, (100.0,) * 6, 0.0)
-    assert operation.step(now, Hand(now, ZEROS), ZEROS, False) is None
+    operation = Operation(now, use, JOINTS, (100.0,) * 6, 0.0)
+    assert operation.step(now, Hand(now, ZEROS), (0.0, 0.0, 0.0, 3.0, 0.0, 4.0), False) is None
 
 
 SEQUENCE: dict[str, tuple[str, float, Any]] = {
