@@ -206,3 +206,16 @@ def test_a_payload_that_drops_behind_a_hand_is_told_by_what_the_arm_carries(payl
     half = estimate(force=[0.0, 0.0, GRAVITY], felt=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
     told = [Event(Kind.STOPPED_PAYLOAD, 21 + LASTS, {"mass": pytest.approx(-1.0), "force": pytest.approx(GRAVITY)})]
     assert free.during(LASTS + 1, half) == (told if payload else [])
+
+
+@pytest.mark.parametrize("drift", [-3.5, 3.5])
+def test_a_drop_is_told_beyond_what_the_sensor_has_drifted_by(drift: float) -> None:
+    """FD-19: while nobody moves the arm, at 1.75 N/s along gravity; 1 kg of 2 drops."""
+    free = Free(payload=1.0)
+    for tick in range(1000):
+        assert free.see(estimate(force=[0.0, 0.0, 0.001 * tick * drift], needed=TWO, load_mass=2.0), waits=True) == []
+    assert free.zero.baseline[2] == pytest.approx(drift, abs=0.4)
+    dropped = estimate(force=[0.0, 0.0, drift + GRAVITY], felt=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
+    events = free.during(20, dropped)
+    assert [event.kind for event in events[:1]] == [Kind.STOPPED_PAYLOAD]
+    assert events[0].values["mass"] == pytest.approx(-1.0, abs=0.05)
