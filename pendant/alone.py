@@ -1,40 +1,86 @@
 """Motion in free-drive that nobody causes (FD-19)."""
 
+import math
+
 from pendant.estimate import Estimate
 from pendant.events import Values
 from pendant.hand import CARRIED, Hand
 from pendant.link_push import LinkPush
 from pendant.modes import TICK
-from pendant.pose import ORIGIN, Vector, norm
+from pendant.parameters import Reference
+from pendant.pose import norm
 from pendant.settings import Unexplained, ticks
 
-AWAY = 0.01
-"""Without the flange sensor an arm at rest that nobody touches goes no farther on its own [m]: a payload that friction held has
-broken away, and in 0.3 s it is as fast as a hand."""
+AWAY = 0.015
+"""An arm at rest that nobody touches goes no farther on its own [m], however slowly: friction all but holds a wrong payload."""
+
+UNFELT = 0.01
+"""Without the flange sensor no farther once it counts as moving [m]: a light hand is not felt then, but an arm that breaks away
+from its friction is as fast as a hand in 0.3 s."""
+
+CREEPS = 0.5
+"""Of the speed that counts as moving: of a slower arm nothing is said of who turns its joints."""
+
+
+class Way:
+    """From where an arm goes on its own, and what its joints feel meanwhile."""
+
+    __slots__ = ("_began", "_pushed")
+
+    def __init__(self, since: Reference, rated: tuple[float, ...]) -> None:
+        """
+        Args:
+            since: what held at entry; the way begins there.
+            rated: torque of each joint [N·m].
+        """
+        self._began = since.position
+        self._pushed = LinkPush(since.torques, rated)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._began, self._pushed.memory)
+
+    def begin(self, estimate: Estimate) -> None:
+        """It begins anew here."""
+        self._began = tuple(estimate.p_BF.tolist())
+        self._pushed.begin()
+
+    def step(self, estimate: Estimate) -> None:
+        """One tick in which the arm moves."""
+        self._pushed.step(estimate)
+
+    def length(self, estimate: Estimate) -> float:
+        """From there to where the flange is [m]."""
+        return math.dist(self._began, estimate.p_BF.tolist())
+
+    def pushed(self, estimate: Estimate) -> bool:
+        """Whether a hand on a link moves the arm."""
+        return self._pushed.told(estimate)
 
 
 class Alone:
     """Counts for how long, and how far, the arm moves and nobody moves it."""
 
-    __slots__ = ("_allowed", "_at_rest", "_began", "_link", "_on", "_ticks")
+    __slots__ = ("_allowed", "_at_rest", "_on", "_run", "_ticks", "_whole")
 
-    def __init__(self, on: Unexplained, torques: tuple[float, ...], rated: tuple[float, ...]) -> None:
+    def __init__(self, on: Unexplained, since: Reference, rated: tuple[float, ...]) -> None:
         """
         Args:
             on: settings.
-            torques: tau_ext at entry [N·m].
+            since: what held at entry.
             rated: torque of each joint [N·m].
         """
         self._on, self._allowed = on, ticks(on.time)
         self._ticks = 0  # in a row in which the arm moved and nobody moved it
-        self._at_rest = True  # before these; nobody let it go while it moved
-        self._began: Vector = ORIGIN  # where the flange was then, in B [m]
-        self._link = LinkPush(torques, rated)
+        self._run = Way(since, rated)  # of these ticks
+        self._at_rest = True  # before; nobody let it go while it moved
+        self._whole = Way(since, rated)  # since it has been at rest
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._ticks, self._at_rest, self._began, self._link.memory)
+        return (self._ticks, self._run.memory, self._at_rest, self._whole.memory)
 
     def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
@@ -52,21 +98,34 @@ class Alone:
             return None
         vx, vy, vz = estimate.v_F.tolist()[:3]
         motion = norm((vx, vy, vz))
-        if motion < self._on.speed:
-            self._ticks, self._at_rest = 0, True
+        way = self._beyond(estimate, motion, use_wrench)
+        if way is None:
             return None
-        link = self._link
-        px, py, pz = estimate.p_BF.tolist()
-        if self._ticks == 0:
-            link.begin()
-            self._began = (px, py, pz)
-        self._ticks += 1
-        link.step(estimate)
-        x, y, z = self._began
-        away = self._at_rest and not use_wrench and norm((px - x, py - y, pz - z)) > AWAY
-        if self._ticks <= self._allowed and not away:
+        if use_wrench and norm(hand.change) < CARRIED and way.pushed(estimate):
+            self._ticks, self._at_rest = 0, False
             return None
-        if use_wrench and norm(hand.change) < CARRIED and link.told(estimate):
+        return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
+
+    def _beyond(self, estimate: Estimate, motion: float, use_wrench: bool) -> Way | None:
+        """One tick in which nobody is felt at the flange, which has this speed [m/s]. Returns which way is too long."""
+        run, whole = self._run, self._whole
+        moves = motion >= self._on.speed
+        if moves:
+            if self._ticks == 0:
+                run.begin(estimate)
+            self._ticks += 1
+            run.step(estimate)
+        else:
             self._ticks = 0
+            if not self._at_rest:
+                self._at_rest = True
+                whole.begin(estimate)
+        if self._ticks > self._allowed:
+            return run
+        if not self._at_rest:
             return None
-        return {"value": motion, "limit": self._on.speed, "time": self._ticks * TICK}
+        if motion >= CREEPS * self._on.speed:
+            whole.step(estimate)
+        if use_wrench:
+            return whole if whole.length(estimate) > AWAY else None
+        return run if moves and run.length(estimate) > UNFELT else None

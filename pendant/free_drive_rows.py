@@ -78,8 +78,8 @@ FREE_DRIVE: dict[Kind, Row] = {
     ),
     Kind.STOPPED_MOTION: stopped(
         "Stopped: the arm moved and nobody moved it",
-        "{value:.3f} m/s for {time:.2f} s, limit {limit:.3f} m/s. Check payload and mounting, then reset.",
-        ("value", "limit", "time"),
+        "{distance:.0f} mm on its own, at last {time:.2f} s above {limit:.3f} m/s. Check payload and mounting, then reset.",
+        ("distance", "time", "limit"),
     ),
     Kind.STOPPED_PAYLOAD: stopped(
         "Stopped: the payload dropped or changed",

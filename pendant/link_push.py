@@ -51,4 +51,6 @@ class LinkPush:
     def told(self, estimate: Estimate) -> bool:
         """Whether a joint was pushed, in the mean over those ticks."""
         each = zip(self._sums, self._rated, estimate.tau_ext_deviation.tolist(), strict=True)
-        return any(felt >= self._ticks * max(LEAST * rated, UNSURE * deviation) for felt, rated, deviation in each)
+        return self._ticks > 0 and any(
+            felt >= self._ticks * max(LEAST * rated, UNSURE * deviation) for felt, rated, deviation in each
+        )

@@ -106,7 +106,7 @@ class Operation:
         self._since: Reference = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
-        self._alone = Alone(self._on, self._since.torques, rated)
+        self._alone = Alone(self._on, self._since, rated)
         self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step

@@ -1,72 +1,170 @@
-"""How far an arm without its flange sensor goes on its own (FD-19); test_operation.py has for how long any arm does."""
+"""How far an arm goes on its own (FD-19); test_operation.py has for how long any arm does."""
+
+from collections.abc import Iterable
 
 import pytest
 
-from pendant.alone import AWAY, Alone
+from pendant.alone import AWAY, CREEPS, UNFELT, Alone
 from pendant.estimate import Estimate
 from pendant.events import Values
-from pendant.hand import Hand
+from pendant.hand import CARRIED, Hand
 from pendant.modes import TICK
+from pendant.parameters import reference
 from pendant.settings import Settings
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
 RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
+HERE = [0.3, 0.1, 0.2]
 WAYS = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8)]
+MOVING = Settings().unexplained.speed
+STEP = 0.0001  # in a tick that creeps [m]
+
+
+def at(way: float, speed: float, to: tuple[float, float, float] = WAYS[0], turns: float = 0.0, felt: float = 0.0) -> Estimate:
+    """The flange so far from where it entered [m]; the elbow turns at 0.2 rad/s where `turns` is 1, and feels this [N·m]."""
+    third = [0.0, 0.0, 0.2 * turns, 0.0, 0.0, 0.0]
+    place = [a + way * b for a, b in zip(HERE, to, strict=True)]
+    return estimate(position=place, speed=speed, qd=third, tau_ext=[0.0, 0.0, felt, 0.0, 0.0, 0.0])
 
 
 class Bench:
     """An arm that was at rest, moved by hand tick by tick."""
 
-    def __init__(self, sensor: bool = False) -> None:
-        self.alone, self.hand, self.sensor = Alone(Settings().unexplained, ZEROS, RATED), Hand(estimate(), ZEROS), sensor
+    def __init__(self, sensor: bool = True) -> None:
+        start = at(0.0, 0.0)
+        self.alone, self.hand = Alone(Settings().unexplained, reference(start, None), RATED), Hand(start, ZEROS)
+        self.sensor, self.ticks = sensor, 0
 
     def see(self, value: Estimate, driven: bool = False) -> Values | None:
+        self.ticks += 1
         self.hand.step(value, self.sensor)
         return self.alone.step(value, self.hand, self.sensor, driven)
 
-    def go(self, distance: float, way: tuple[float, float, float] = WAYS[0], start: float = 0.3) -> Values | None:
-        """Two ticks of motion, and what is told in the second, after so much of a way."""
-        assert self.see(estimate(position=[start, 0.1, 0.2], speed=0.1)) is None
-        x, y, z = (distance * share for share in way)
-        return self.see(estimate(position=[start + x, 0.1 + y, 0.2 + z], speed=0.1))
+    def until(self, values: Iterable[Estimate]) -> Values | None:
+        return next((told for value in values if (told := self.see(value)) is not None), None)
+
+    def held(self, value: Estimate) -> None:
+        """A hand at the flange for one tick, which the force tells as it is."""
+        self.hand.user = (0.0, 0.0, 40.0)
+        assert self.alone.step(value, self.hand, self.sensor, False) is None
+        self.hand.user = (0.0, 0.0, 0.0)
+
+
+def creep(ticks: int, speed: float = 0.019, begins: float = 0.0, turns: float = 0.0, felt: float = 0.0) -> list[Estimate]:
+    """It goes on slowly, `STEP` in each tick."""
+    return [at(begins + STEP * tick, speed, turns=turns, felt=felt) for tick in range(1, ticks + 1)]
+
+
+LEAST_CREPT = round(AWAY / STEP)  # ticks that are just allowed
 
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(("share", "stopped"), [(0.99, False), (1.01, True), (30.0, True)])
-@pytest.mark.parametrize("sensor", [True, False])
-def test_an_arm_that_nobody_touches_goes_so_far_without_the_sensor(
-    sensor: bool, share: float, stopped: bool, way: tuple[float, float, float]
+@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
+def test_an_arm_that_nobody_touches_goes_so_far(
+    sensor: bool, most: float, share: float, stopped: bool, way: tuple[float, float, float]
 ) -> None:
-    told = Bench(sensor).go(share * AWAY, way)
-    assert told == ({"value": 0.1, "limit": 0.02, "time": pytest.approx(2 * TICK)} if stopped and not sensor else None)
+    bench = Bench(sensor)
+    assert bench.see(at(0.0, 0.1)) is None
+    told = bench.see(at(share * most, 0.1, way))
+    assert told == ({"distance": pytest.approx(1000.0 * share * most), "time": 2 * TICK, "limit": MOVING} if stopped else None)
 
 
-def test_its_way_begins_where_it_begins_to_move() -> None:
-    """An arm that creeps slower than what counts as motion has no way."""
+@pytest.mark.parametrize("speed", [0.0, 0.005, 0.019])
+def test_however_slowly_with_the_sensor(speed: float) -> None:
     bench = Bench()
-    for tick in range(1000):
-        assert bench.see(estimate(position=[0.0001 * tick, 0.0, 0.0], speed=0.019)) is None
-    assert bench.go(0.99 * AWAY) is None
-    assert bench.see(estimate(speed=0.019)) is None
-    assert bench.go(0.99 * AWAY, start=0.7) is None
-    assert bench.see(estimate(position=[0.7 + 1.01 * AWAY, 0.1, 0.2], speed=0.1)) is not None
+    told = bench.until(creep(1000, speed))
+    assert bench.ticks in (LEAST_CREPT, LEAST_CREPT + 1)
+    assert told == {"distance": pytest.approx(1000.0 * AWAY, abs=0.11), "time": 0.0, "limit": MOVING}
 
 
+def test_without_it_a_light_hand_is_not_felt_and_the_way_begins_with_the_motion() -> None:
+    bench = Bench(sensor=False)
+    assert bench.until(creep(1000)) is None
+    assert bench.until([at(0.1, 0.1), at(0.1 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.until([at(0.2, 0.019), at(0.3, 0.1), at(0.3 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.see(at(0.3 + 1.01 * UNFELT, 0.1)) is not None
+
+
+def test_with_it_what_it_crept_before_it_moved_counts() -> None:
+    bench = Bench()
+    assert bench.until(creep(LEAST_CREPT - 20)) is None
+    assert bench.until([at(AWAY - 0.001, 0.1), at(AWAY + 0.001, 0.1)]) is not None
+    assert bench.ticks == LEAST_CREPT - 18
+
+
+@pytest.mark.parametrize("sensor", [True, False])
 @pytest.mark.parametrize("driven", [True, False])
-def test_an_arm_that_a_hand_or_a_wall_has_let_go_while_it_moved_has_its_time_alone(driven: bool) -> None:
+def test_an_arm_that_a_hand_or_a_wall_has_let_go_while_it_moved_has_its_time_alone(driven: bool, sensor: bool) -> None:
     """A hand that guides is light now and then; the arm comes to rest within its time, or is stopped."""
-    bench, moved = Bench(), estimate(speed=0.1)
-    bench.hand.user = (0.0, 0.0, 0.0 if driven else 40.0)
-    assert bench.alone.step(moved, bench.hand, False, driven) is None
-    assert bench.go(30.0 * AWAY) is None
-    bench.see(estimate())
-    assert bench.go(1.01 * AWAY) is not None
+    bench = Bench(sensor)
+    if driven:
+        assert bench.see(at(0.0, 0.1), driven) is None
+    else:
+        bench.held(at(0.0, 0.1))
+    assert bench.until([at(0.0, 0.1), at(0.5, 0.1)]) is None
+    bench.see(at(0.6, 0.0))
+    assert bench.until([at(0.6, 0.1), at(0.6 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.see(at(0.6 + 1.01 * AWAY, 0.1)) is not None
+
+
+def test_a_way_begins_where_the_arm_came_to_rest_after_a_hand() -> None:
+    bench = Bench()
+    assert bench.until(creep(LEAST_CREPT - 5)) is None
+    bench.held(at(AWAY, 0.019))
+    assert bench.until(creep(LEAST_CREPT - 5, begins=AWAY)) is None
+    assert bench.until(creep(20, begins=2 * AWAY)) is not None
+
+
+@pytest.mark.parametrize(("felt", "pushed"), [(1.79, False), (1.81, True)])
+def test_a_hand_on_a_link_may_creep(felt: float, pushed: bool) -> None:
+    """1.8 N·m on a joint of 150 N·m is a hand that turns it."""
+    bench = Bench()
+    told = bench.until(creep(6 * LEAST_CREPT, turns=1.0, felt=felt))
+    assert (told is None) is pushed
+
+
+def test_what_the_joints_feel_counts_from_where_the_arm_rested() -> None:
+    """All of it, also what they felt while the arm was faster for a moment; not what was before a hand."""
+    bench = Bench()
+    assert bench.until(creep(50, turns=1.0, felt=3.0)) is None
+    assert bench.until(at(0.006, 0.1, turns=1.0, felt=3.0) for _ in range(100)) is None
+    assert bench.until(creep(60, begins=0.0095, turns=1.0)) is None, "150 of 206 ticks at 3 N·m"
+    bench = Bench()
+    assert bench.until(creep(100, turns=1.0, felt=9.0)) is None
+    bench.held(at(0.0, 0.019))
+    assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=1.0)) is not None
+
+
+@pytest.mark.parametrize(("share", "counts"), [(0.99, False), (1.01, True)])
+def test_of_a_slow_arm_nobody_is_said_to_push_it(share: float, counts: bool) -> None:
+    bench = Bench()
+    assert bench.until(creep(100, turns=1.0, felt=2.5)) is None
+    assert (bench.until(creep(LEAST_CREPT, share * CREEPS * MOVING, 0.01, 1.0, 0.0)) is not None) is counts
+
+
+def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
+    bench = Bench()
+    bench.hand.change = (0.0, 0.0, -CARRIED)
+    told = (bench.alone.step(value, bench.hand, True, False) for value in creep(400, turns=1.0, felt=5.0))
+    assert any(values is not None for values in told)
+
+
+def test_after_a_hand_on_a_link_it_has_its_time_and_a_way_of_its_own() -> None:
+    """Pushed on by a link for longer than its time it may run on for as long; once at rest its way is measured from there."""
+    bench = Bench()
+    assert bench.until(at(0.001, 0.1, turns=1.0, felt=5.0) for _ in range(151)) is None
+    assert bench.until([at(0.1, 0.1)] * 150) is None
+    assert bench.see(at(0.2, 0.0)) is None
+    assert bench.until(creep(LEAST_CREPT - 5, begins=0.2)) is None
+    assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
 
 
 def test_its_memory_tells_all_of_it() -> None:
     one, other = Bench(), Bench()
-    one.see(estimate(speed=0.1))
-    assert one.alone.memory != other.alone.memory
-    other.see(estimate(speed=0.1))
-    assert one.alone.memory == other.alone.memory
+    for value in (at(0.0, 0.1), at(0.001, 0.015, turns=1.0, felt=1.0)):
+        one.see(value)
+        assert one.alone.memory != other.alone.memory
+        other.see(value)
+        assert one.alone.memory == other.alone.memory

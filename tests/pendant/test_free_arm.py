@@ -130,7 +130,7 @@ def beneath(depth: float) -> dict[str, Any]:
 
 def test_a_wall_that_keeps_the_arm_is_told_each_time_it_is_reached() -> None:
     """VW-6."""
-    free = Free(floor())
+    free = Free(floor(), unexplained__motion=False)
     for first in (3, 7):
         assert free.during(2, below(-0.01)) == []
         assert free.arm.caught is False
@@ -141,7 +141,7 @@ def test_a_wall_that_keeps_the_arm_is_told_each_time_it_is_reached() -> None:
 @pytest.mark.parametrize(("reaction", "kind"), [(Reaction.LEAVE, Kind.LEFT_WALL), (Reaction.STOP, Kind.STOPPED_WALL)])
 def test_a_wall_that_ends_free_drive_is_all_that_is_told(reaction: Reaction, kind: Kind) -> None:
     """VW-6: of a tool that is too fast in the same tick nothing is told."""
-    free = Free(floor(reaction))
+    free = Free(floor(reaction), unexplained__motion=False)
     assert free.see(below(-0.01)) == []
     assert free.see(below(0.01, v_tcp=9.0)) == [Event(kind, 2, beneath(0.01))]
     assert free.arm.caught is False
@@ -171,7 +171,7 @@ def test_what_ends_it_is_told_with_its_numbers() -> None:
     """FD-19."""
     free = Free()
     assert free.during(AFTER - 1, estimate(**MOVING)) == []
-    values = {"value": 0.03, "limit": 0.02, "time": pytest.approx(AFTER * TICK)}
+    values = {"distance": 0.0, "time": pytest.approx(AFTER * TICK), "limit": 0.02}
     assert free.see(estimate(**MOVING)) == [Event(Kind.STOPPED_MOTION, AFTER, values)]
 
 

@@ -239,7 +239,7 @@ def test_off_nothing_is_felt() -> None:
 
 def test_a_wall_that_comes_close_is_felt_once_and_only_in_free_drive() -> None:
     """HF-1: the tether's band begins 5 mm before its 30 mm."""
-    bench = Bench(haptics__on=True)
+    bench = Bench(haptics__on=True, unexplained__motion=False)
     bench.run(60)
     assert bench.last.shake is None
     bench.in_period()

@@ -60,3 +60,7 @@ def test_it_begins_anew() -> None:
     assert push.memory != fresh
     push.begin()
     assert push.memory == fresh
+
+
+def test_without_a_tick_nobody_is_told() -> None:
+    assert not told()

@@ -108,7 +108,7 @@ def test_motion_that_nobody_causes_is_stopped_after_its_time() -> None:
     free = Free()
     assert free.until([estimate(speed=0.03)] * 150) is None
     ending = free.see(estimate(speed=0.03))
-    assert ending == Ending(Kind.STOPPED_MOTION, {"value": pytest.approx(0.03), "limit": 0.02, "time": pytest.approx(151 * TICK)})
+    assert ending == Ending(Kind.STOPPED_MOTION, {"distance": 0.0, "time": pytest.approx(151 * TICK), "limit": 0.02})
 
 
 @pytest.mark.parametrize(
