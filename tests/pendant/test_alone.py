@@ -15,7 +15,7 @@ from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
 RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
-HERE = [0.3, 0.1, 0.2]
+HERE = [0.0, 0.1, 0.2]
 WAYS = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8)]
 MOVING = Settings().unexplained.speed
 STEP = 0.0001  # in a tick that creeps [m]
@@ -69,6 +69,11 @@ def test_an_arm_that_nobody_touches_goes_so_far(
     assert bench.see(at(0.0, 0.1)) is None
     told = bench.see(at(share * most, 0.1, way))
     assert told == ({"distance": pytest.approx(1000.0 * share * most), "time": 2 * TICK, "limit": MOVING} if stopped else None)
+
+
+@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
+def test_at_the_limit_it_may_be(sensor: bool, most: float) -> None:
+    assert Bench(sensor).until([at(0.0, 0.1), at(most, 0.1)]) is None
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.005, 0.019])
@@ -137,7 +142,7 @@ def test_what_the_joints_feel_counts_from_where_the_arm_rested() -> None:
     assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=1.0)) is not None
 
 
-@pytest.mark.parametrize(("share", "counts"), [(0.99, False), (1.01, True)])
+@pytest.mark.parametrize(("share", "counts"), [(0.99, False), (1.0, True), (1.01, True)])
 def test_of_a_slow_arm_nobody_is_said_to_push_it(share: float, counts: bool) -> None:
     bench = Bench()
     assert bench.until(creep(100, turns=1.0, felt=2.5)) is None

@@ -48,19 +48,22 @@ def test_of_what_the_joints_feel_the_mean_counts(ticks: int, told: bool) -> None
     assert (found[-1] is not None) is told
 
 
+@pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize(("stray", "told"), [(-9.3, True), (-9.4, False)])
-def test_of_what_the_joints_felt_before_a_smoothed_value_counts(stray: float, told: bool) -> None:
+def test_of_what_the_joints_felt_before_a_smoothed_value_counts(stray: float, told: bool, axis: int) -> None:
     """The last tick before has a fifth of the weight, less what the step's first takes of it; what they always feel has none."""
     steps, found = Steps(), []
     before = [4.0] * 40 + [4.0 + stray]
-    for tick, force in enumerate([(0.0, 0.0, 0.0)] * 41 + stepping(5.0, LATER + 1)[2:]):
-        found.append(steps.step(estimate(felt=[0.0, 0.0, before[tick] if tick < 41 else 4.0]), force))
+    for tick, size in enumerate([0.0] * 41 + [5.0] * (LATER + 1)):
+        felt, force = [0.0] * 3, [0.0] * 3
+        felt[axis], force[axis] = before[tick] if tick < 41 else 4.0, size
+        found.append(steps.step(estimate(felt=felt), (force[0], force[1], force[2])))
     assert (found[-1] is not None) is told
 
 
 @pytest.mark.parametrize("size", [5.0, 9.0, 0.999 * LEAST_MOVED, LEAST_MOVED, -30.0])
 @pytest.mark.parametrize("joint", range(6))
-@pytest.mark.parametrize("speed", [0.999 * MOVED, 1.001 * MOVED, -1.001 * MOVED])
+@pytest.mark.parametrize("speed", [0.999 * MOVED, MOVED, 1.001 * MOVED, -1.001 * MOVED])
 def test_while_a_hand_moves_the_arm_only_large_ones_are_told(size: float, joint: int, speed: float) -> None:
     """A hand that guides shoves at once from hardly any force; how fast the help then moves the arm does not matter."""
     steps, found = Steps(), []

@@ -60,6 +60,7 @@ def test_in_which_posture_the_arm_was_held_is_not_known_while_no_source_is_on() 
     assert {given for given, _ in bench.run(100, "push.on", force=40.0)} == {NONE}
 
 
+@pytest.mark.parametrize("stays", [True, False])
 @pytest.mark.parametrize(
     ("switch", "other", "felt"),
     [
@@ -68,13 +69,14 @@ def test_in_which_posture_the_arm_was_held_is_not_known_while_no_source_is_on() 
         ("force_step.on", "twist.on", {"force": 8.5}),
     ],
 )
-def test_a_push_that_was_switched_off_has_to_come_again(switch: str, other: str, felt: dict[str, Any]) -> None:
-    """FD-5: what would be enough to stay is not enough to come."""
+def test_a_push_that_was_switched_off_has_to_come_again(switch: str, other: str, felt: dict[str, Any], stays: bool) -> None:
+    """FD-5: what would be enough to stay is not enough to come; to other sources nothing happens."""
     bench = Bench()
     bench.run(300, switch, other)
     assert bench.run(40, switch, other, **COURSES[switch][0][0][1])[-1][0] == COURSES[switch][1]
-    bench.run(60, other, **felt)
-    assert COURSES[switch][1] not in [given for given, _ in bench.run(60, switch, other, **felt)]
+    bench.run(60, switch if stays else other, **felt)
+    given = [given for given, _ in bench.run(60, switch, other, **felt)]
+    assert (given.count(COURSES[switch][1]) > 0) is stays
 
 
 def test_another_joint_that_is_asked_begins_where_it_is() -> None:
@@ -95,6 +97,17 @@ def test_for_how_long_the_arm_was_held_is_not_known_while_no_source_is_on(held: 
     bench.run(0)
     bench.run(held, "force_step.on")
     assert (bench.run(1, "force_step.on", force=200.0)[0][0] is not NONE) is seen
+
+
+@pytest.mark.parametrize("switch", ["turn.on", "tap.on", "joints.on"])
+def test_it_is_known_while_any_is(switch: str) -> None:
+    """Also where another setting is changed."""
+    bench = Bench()
+    bench.run(250, switch)
+    bench.switched = None
+    bench.run(100, switch)
+    bench.run(100, "force_step.on")
+    assert bench.run(1, "force_step.on", force=200.0)[0][0] is not NONE
 
 
 @pytest.mark.parametrize("elsewhere", [0.02, -0.3])
