@@ -16,10 +16,11 @@ QUIET = 2.5
 JUMP = 3.5
 """Smallest step [N] of a tick or two: the sensor's noise and a hand's first touch look like smaller ones."""
 
-STRAY, NOISE = 0.3, 1.5
-"""Share of it by which the mean of two ticks may stray until it is judged, and what noise adds [N]: a knock is over by then."""
+STRAY, NOISE, NOISE_OF_LOAD = 0.3, 0.9, 0.25
+"""Share of it by which the mean of two ticks may stray until it is judged, what noise adds [N], and what that of the acceleration
+adds for each kilogram of the load [m/s²]: a knock is over by then."""
 
-LEAST = 3.0
+LEAST = 3.3
 """Smallest mean of a step [N]: what is less was noise on top of a hand's first touch."""
 
 MOVED = 0.03
@@ -47,11 +48,12 @@ ANSWER = 0.3
 class Steps:
     """Looks for steps of the sensor that the joints do not feel."""
 
-    __slots__ = ("_age", "_before", "_felt", "_last", "_least", "_older", "_step", "_sum", "_zero")
+    __slots__ = ("_age", "_before", "_felt", "_last", "_least", "_older", "_oldest", "_step", "_sum", "_zero")
 
     def __init__(self) -> None:
-        self._last: Vector | None = None  # the force that is felt, a tick and two ticks before
+        self._last: Vector | None = None  # the force that is felt, one, two and three ticks before
         self._older: Vector | None = None
+        self._oldest: Vector | None = None
         self._age = 0  # ticks since a step, 0: none
         self._least = LEAST
         self._zero: Vector = ORIGIN  # before it
@@ -67,8 +69,8 @@ class Steps:
 
     def step(self, estimate: Estimate, change: Vector) -> Vector | None:
         """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
-        older, last = self._older, self._last
-        self._older, self._last = last, change
+        oldest, older, last = self._oldest, self._older, self._last
+        self._oldest, self._older, self._last = older, last, change
         x, y, z = estimate.F_joints.tolist()
         bx, by, bz = self._before or (x, y, z)
         x, y, z = x - bx, y - by, z - bz
@@ -78,10 +80,11 @@ class Steps:
         self._before = (bx + EARLIER * x, by + EARLIER * y, bz + EARLIER * z)
         if older is None:
             return None
-        x, y, z = _less(change, older)
-        if x * x + y * y + z * z >= JUMP * JUMP and dot(older, older) <= QUIET * QUIET:
+        zero = older if oldest is None else _mean(oldest, older)
+        x, y, z = _less(change, zero)
+        if x * x + y * y + z * z >= JUMP * JUMP and dot(zero, zero) <= QUIET * QUIET:
             self._age = 1
-            self._zero = older
+            self._zero = zero
             self._least = LEAST_MOVED if any(abs(speed) > MOVED for speed in estimate.qd.tolist()) else LEAST
         return None
 
@@ -95,11 +98,10 @@ class Steps:
             self._step = self._sum = _less(change, self._zero)
             self._felt = felt
             return None
-        before, now = _less(last, self._zero), _less(change, self._zero)
-        off = _less((0.5 * (now[0] + before[0]), 0.5 * (now[1] + before[1]), 0.5 * (now[2] + before[2])), self._step)
-        self._sum, self._felt = _more(self._sum, now), _more(self._felt, felt)
+        self._sum, self._felt = _more(self._sum, _less(change, self._zero)), _more(self._felt, felt)
+        off = _less(_less(_mean(last, change), self._zero), self._step)
         size = dot(self._step, self._step)
-        if norm(off) > STRAY * math.sqrt(size) + NOISE:
+        if norm(off) > STRAY * math.sqrt(size) + NOISE + NOISE_OF_LOAD * estimate.load_mass:
             self._age = 0
             return None
         if self._age <= LATER:
@@ -109,12 +111,16 @@ class Steps:
         mean = (x / LATER, y / LATER, z / LATER)
         if dot(self._felt, self._step) >= ANSWER * LATER * size or norm(mean) < self._least:
             return None
-        self._last = self._older = None
+        self._last = self._older = self._oldest = None
         return mean
 
 
 def _less(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _mean(a: Vector, b: Vector) -> Vector:
+    return 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
 
 
 def _more(a: Vector, b: Vector) -> Vector:
