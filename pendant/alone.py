@@ -23,9 +23,13 @@ CREEPS = 0.5
 
 
 class Way:
-    """From where an arm goes on its own, and what its joints feel meanwhile."""
+    """From where an arm goes on its own, and what its joints feel meanwhile.
 
-    __slots__ = ("_began", "_pushed")
+    Attributes:
+        link: tells of a hand on a link since then; to be stepped while the arm moves.
+    """
+
+    __slots__ = ("_began", "link")
 
     def __init__(self, since: Reference, rated: tuple[float, ...]) -> None:
         """
@@ -34,29 +38,21 @@ class Way:
             rated: torque of each joint [N·m].
         """
         self._began = since.position
-        self._pushed = LinkPush(since.torques, rated)
+        self.link = LinkPush(since.torques, rated)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._began, self._pushed.memory)
+        return (self._began, self.link.memory)
 
     def begin(self, estimate: Estimate) -> None:
         """It begins anew here."""
         self._began = tuple(estimate.p_BF.tolist())
-        self._pushed.begin()
-
-    def step(self, estimate: Estimate) -> None:
-        """One tick in which the arm moves."""
-        self._pushed.step(estimate)
+        self.link.begin()
 
     def length(self, estimate: Estimate) -> float:
         """From there to where the flange is [m]."""
         return math.dist(self._began, estimate.p_BF.tolist())
-
-    def pushed(self, estimate: Estimate) -> bool:
-        """Whether a hand on a link moves the arm."""
-        return self._pushed.told(estimate)
 
 
 class Alone:
@@ -101,7 +97,7 @@ class Alone:
         way = self._beyond(estimate, motion, use_wrench)
         if way is None:
             return None
-        if use_wrench and norm(hand.change) < CARRIED and way.pushed(estimate):
+        if use_wrench and norm(hand.change) < CARRIED and way.link.told(estimate):
             self._ticks, self._at_rest = 0, False
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
@@ -114,7 +110,7 @@ class Alone:
             if self._ticks == 0:
                 run.begin(estimate)
             self._ticks += 1
-            run.step(estimate)
+            run.link.step(estimate)
         else:
             self._ticks = 0
             if not self._at_rest:
@@ -125,7 +121,7 @@ class Alone:
         if not self._at_rest:
             return None
         if motion >= CREEPS * self._on.speed:
-            whole.step(estimate)
+            whole.link.step(estimate)
         if use_wrench:
             return whole if whole.length(estimate) > AWAY else None
         return run if moves and run.length(estimate) > UNFELT else None
