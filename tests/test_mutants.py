@@ -1,6 +1,9 @@
 """The sum of a mutation run."""
 
 import json
+import os
+import shutil
+import subprocess
 import sys
 from collections.abc import Callable
 from functools import wraps
@@ -9,7 +12,8 @@ from types import ModuleType
 
 import pytest
 
-from tests.mutant_order import call_straight, chosen
+from tests.mutant_detours import standing
+from tests.mutant_order import FIRST, chosen
 from tests.mutants import TABLES, main, second_trial, summary
 
 CODES = {
@@ -73,7 +77,7 @@ def test_survivors_of_what_runs_on_import_are_tried_again_with_the_mutant_set_be
 
 def test_tests_of_the_mutants_own_module_come_first_and_of_the_others_the_quickest() -> None:
     own = {"tests/pendant/test_a.py::test_long": 90.0, "tests/pendant/test_a.py::test_short[a/test_b.py::x]": 0.5}
-    others = {"tests/pendant/test_b.py::test_x": 9.5, "tests/pendant/test_b.py::test_y": 0.4, "tests/sim/test_c.py::test_z": 0.2}
+    others = {"tests/pendant/test_b.py::test_x": 5.5, "tests/pendant/test_b.py::test_y": 0.4, "tests/sim/test_c.py::test_z": 0.2}
     order = chosen([*own, *others], "a", own | others)
     assert [name.rpartition("::")[2] for name in order] == ["x]", "test_long", "test_z", "test_y"]
 
@@ -110,8 +114,56 @@ def test_all_functions_but_the_mutants_are_called_straight(monkeypatch: pytest.M
     monkeypatch.setitem(sys.modules, "pendant.a", module)
     monkeypatch.setitem(sys.modules, "tests.a", user)
 
-    call_straight("pendant.a.xǁArmǁg__mutmut_3")
-    assert [module.f(), user.f(), Arm().g(), Arm().h()] == ["f", "f", "round g", "h"]  # type: ignore[attr-defined]
-    module.f = detour(f)  # type: ignore[attr-defined]
-    call_straight("pendant.a.x_f__mutmut_3")
-    assert [module.f(), Arm().g()] == ["round f", "g"]  # type: ignore[attr-defined]
+    def calls() -> list[str]:
+        return [module.f(), user.f(), Arm().g(), Arm().h()]
+
+    detours = [detour for detour in standing() if detour.original.__module__ == "pendant.a"]
+    for mutant, expected in {
+        "": ["f", "f", "g", "h"],
+        "pendant.a.xǁArmǁg__mutmut_3": ["f", "f", "round g", "h"],
+        "pendant.a.x_f__mutmut_13": ["round f", "round f", "g", "h"],
+        "pendant.b.x_f__mutmut_13": ["f", "f", "g", "h"],
+    }.items():
+        for one in detours:
+            one.put(mutant)
+        assert calls() == expected
+    for one in detours:
+        one.put_back()
+    assert calls() == ["round f", "round f", "round g", "round h"]
+
+
+def test_the_first_tests_are_collected_alone_and_the_rest_where_they_pass(tmp_path: Path) -> None:
+    """With a mutant set, each test runs once, in the order chosen, up to the first that fails."""
+    names = [f"tests/pendant/test_a.py::test_{number:02d}" for number in range(2 * FIRST)]
+    for package in ("tests", "tests/pendant", "mutmut"):
+        (tmp_path / package).mkdir()
+        (tmp_path / package / "__init__.py").touch()
+    for plugin in ("mutant_order.py", "mutant_detours.py"):
+        shutil.copy(Path(__file__).parent / plugin, tmp_path / "tests")
+    lasts = {name: float(number) for number, name in enumerate(names)}
+    state = f"from types import SimpleNamespace\n\ndef state():\n    return SimpleNamespace(duration_by_test={lasts})\n"
+    (tmp_path / "mutmut" / "state.py").write_text(state)
+
+    def run(fails: int) -> tuple[int, list[str]]:
+        tests = [f"def {name.rpartition('::')[2]}():\n    assert {number} != {fails}\n" for number, name in enumerate(names)]
+        (tmp_path / "tests" / "pendant" / "test_a.py").write_text("\n".join(tests))
+        command = [
+            sys.executable,
+            "-B",
+            "-m",
+            "pytest",
+            "-x",
+            "-v",
+            "-p",
+            "tests.mutant_order",
+            "-p",
+            "no:cacheprovider",
+            *reversed(names),
+        ]
+        environment = {**os.environ, "MUTANT_UNDER_TEST": "pendant.a.x_f__mutmut_1", "PYTHONPATH": str(tmp_path)}
+        done = subprocess.run(command, cwd=tmp_path, env=environment, check=False, capture_output=True, text=True)
+        words = [line.split() for line in done.stdout.splitlines()]
+        return done.returncode, [line[0] for line in words if len(line) > 1 and line[1] in ("PASSED", "FAILED")]
+
+    for fails, code, count in ((0, 1, 1), (FIRST, 1, FIRST + 1), (len(names) - 1, 1, len(names)), (-1, 0, len(names))):
+        assert run(fails) == (code, names[:count])
