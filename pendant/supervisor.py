@@ -186,11 +186,10 @@ class Supervisor:
         on = (use.on or sequencer.until is not None) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
-            until = sequencer.until
-            taken = robot.mode is Mode.RUN and until is not None and sequencer.touch(contact)
-            if taken:
-                robot.braking = True
-            events.append(told(contact, estimate.tick, until.then if taken and until else "none"))
+            until, action = sequencer.until, "none"
+            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact):
+                robot.braking, action = True, until.then
+            events.append(told(contact, estimate.tick, action))
 
     def _obey(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         """Commands for the mode and for free-drive."""

@@ -12,8 +12,9 @@ from pendant.gate import Gate
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.modes import Law, Mode, Phase
 from pendant.program import Program, Wait
-from pendant.settings import Settings, apply
+from pendant.settings import Settings, Walls, apply
 from pendant.sources import BUTTON, NONE, Presence
+from pendant.walls import Start
 from pendant.watch import Stillness
 from pendant.zeroing import Zero
 from tests.pendant.estimates import estimate
@@ -23,12 +24,25 @@ from tests.pendant.test_sequence import around
 PUSH = Presence("push", by_hand=True)
 
 
+class Begun(Containment):
+    """Walls that note when they begin."""
+
+    def __init__(self) -> None:
+        super().__init__((), {})
+        self.starts: list[Start] = []
+
+    def begin(self, start: Start, walls: Walls) -> None:
+        self.starts.append(start)
+        super().begin(start, walls)
+
+
 class Alone:
     """The module alone. Ticks count from 0."""
 
     def __init__(self, **changes: float | bool) -> None:
         self.settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
-        self.activation = Activation(JOINTS, (100.0,) * 6, Containment((), {}), Zero())
+        self.walls, self.zero = Begun(), Zero()
+        self.activation = Activation(JOINTS, (100.0,) * 6, self.walls, self.zero)
         self.gate = Gate()
         self.tick = -1
 
@@ -242,3 +256,13 @@ def test_a_refusal_in_the_first_tick_of_all_tells_no_way_back() -> None:
     bench = Bench(activation__period=0.0)
     bench.step(HOLD)
     assert [event.kind for event in bench.last.events] == [Kind.ACTIVATION_STARTED, Kind.REFUSED_MOVING]
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_a_sequence_begins_with_its_walls_and_with_what_is_nobodys_at_the_sensor(sensor: bool) -> None:
+    """VW-6, FD-3a: after the activation period the walls begin anew; without the sensor nothing is taken off."""
+    alone = Alone(activation__period=0.004, sequence__on=True)
+    alone.run(3, BUTTON, wrench_ok=sensor)
+    assert alone.activation.phase is Phase.SEQUENCE
+    assert alone.walls.starts == [Start.ACTIVATION, Start.SEQUENCE]
+    assert alone.zero.used is sensor

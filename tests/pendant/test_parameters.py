@@ -93,6 +93,7 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
     assert monitor.step(view(estimate())) == []
     names = [PARAMETERS[name].text for name in PARAMETERS if name in LIMITS[stage] and f"{stage}.{name}" not in OFF]
     assert [item.name for item in monitor.monitored()] == names
+    assert {item.name for item in monitor.monitored() if math.isfinite(item.low)} <= {"payload-like force"}, "others are sizes"
     blind = Monitor(section)
     value = estimate(acceleration=90.0, force=95.0, torque=15.0, acceleration_valid=False)
     assert blind.step(msgspec.structs.replace(view(value), split=None)) == []
@@ -126,10 +127,13 @@ def test_limits_carry_reaction_and_time() -> None:
     assert [len(monitor.step(heavy)) for _ in range(3)] == [0, 0, 1]
     assert [gauge.stop for gauge in monitor.step(heavy)] == [False], "STOP is a reaction of limits that say so"
     (shown,) = monitor.monitored()
-    assert (shown.value, shown.limit) == (-5.1, -5.0)
+    assert (shown.value, shown.low, shown.limit, shown.high) == (-5.1, -5.0, -5.0, 5.0)
     within = view(estimate(force=[50.0, 0.0, -5.0]))
     assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time begins anew"
     assert monitor.memory != Monitor(Few()).memory
+    monitor.step(view(estimate(force=[50.0, 0.0, 2.5])))
+    monitor.step(view(estimate(force=[50.0, 0.0, 3.0])))
+    assert [shown.value for shown in monitor.monitored()] == [3.0], "what is within is shown as well"
 
 
 def test_a_reference_is_what_is_so_now() -> None:

@@ -74,6 +74,17 @@ def test_four_postures_lead_to_the_payload() -> None:
     assert (*finding.force_offset, *finding.torque_offset) == pytest.approx((0.0,) * 6, abs=1e-9)
 
 
+def test_while_a_posture_is_measured_no_other_is() -> None:
+    """Up to the last tick."""
+    wizard, value = PayloadWizard(), standing(WRIST[0])
+    wizard.begin(value, TICKS, "")
+    for _ in range(TICKS):
+        (event,) = wizard.begin(value, TICKS, "")
+        assert event.values["reason"] == "a posture is being measured"
+        ended = wizard.step(value, "", ())
+    assert [event.kind for event in ended] == [Kind.POSTURE_MEASURED]
+
+
 def test_what_is_found_is_told_in_millimetres_with_its_uncertainty() -> None:
     wizard = PayloadWizard()
     (*_, told) = [event for R in WRIST for event in measure(wizard, standing(R, centre=(0.02, -0.03, 0.08)))]

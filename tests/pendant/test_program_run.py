@@ -6,6 +6,7 @@ from pendant.enabling import Grip
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
 from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.load import Load
 from pendant.modes import Mode, Phase
 from pendant.program import Program, ProgramState, SwitchTool, Wait
 from tests.pendant.estimates import estimate
@@ -58,6 +59,16 @@ def test_while_free_drive_is_tried_no_program_moves_the_arm(before: tuple[Comman
     bench.events.clear()
     assert bench.step(Inputs(commands=(command,))).phase is Phase.SEQUENCE
     values = {"command": command, "mode": mode, "reason": "free-drive is being tried"}
+    assert bench.events == [Event(Kind.COMMAND_REFUSED, bench.tick, values)]
+
+
+def test_while_the_payload_is_changed_no_program_begins() -> None:
+    """The arm would be moved with a load that is none yet."""
+    bench = resting(LOADED)
+    bench.step(Inputs(load=Load(mass=2.0)))
+    bench.events.clear()
+    bench.step(Inputs(commands=(START,)))
+    values = {"command": START, "mode": Mode.TEACH, "reason": "the payload is being changed"}
     assert bench.events == [Event(Kind.COMMAND_REFUSED, bench.tick, values)]
 
 

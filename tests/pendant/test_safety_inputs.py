@@ -6,7 +6,7 @@ import pytest
 
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
-from pendant.inputs import NOTHING, Command, Inputs
+from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.modes import Mode, Phase, Safety
 from pendant.reduced import SpeedLimits
 from tests.pendant.estimates import estimate
@@ -56,6 +56,24 @@ def test_a_safeguard_that_is_closed_is_as_before_it_was_opened() -> None:
     assert bench.last.events == (Event(Kind.SAFEGUARD_CLOSED, bench.tick, {}),)
     assert bench.supervisor._safety.memory == before
     assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.SAFEGUARD_STOP), "no reset by itself"
+
+
+def test_no_reset_while_the_button_is_held_or_the_arm_moves() -> None:
+    """FD-1: a released button is asked for, however the robot was stopped, and then an arm at rest."""
+    held = frozenset({Button.FREE_DRIVE})
+    for stop in (OPEN, STOP):
+        bench = resting()
+        told(bench, stop)
+        told(bench, CLOSED)
+        bench.step(Inputs(held=held, commands=(RESET,)))
+        assert Event(Kind.RESET_REFUSED_SIGNAL, bench.tick, {}) in bench.last.events
+        assert bench.last.mode is Mode.STOP
+        bench.step(LET_GO, estimate(qd=0.4))
+        bench.step(Inputs(commands=(RESET,)))
+        values = {"joint": "base", "value": 0.4, "limit": 0.01, "time": 0.1}
+        assert bench.last.events == (Event(Kind.RESET_REFUSED_MOVING, bench.tick, values),)
+        bench.run(60)
+        assert told(bench, RESET) == [Kind.RESET]
 
 
 @pytest.mark.parametrize("held", [True, False])
