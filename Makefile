@@ -4,7 +4,7 @@
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
-#   make mutate      every small change of the pendant's logic that no test notices; about an hour on two cores
+#   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make clean       remove what the above made
 
 PYTHON ?= python3

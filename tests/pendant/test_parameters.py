@@ -61,18 +61,21 @@ def test_sizes(seed: int) -> None:
         assert where == part, name
 
 
+@pytest.mark.parametrize("strength", [1.0, 0.02], ids=["beyond", "within"])
 @pytest.mark.parametrize("seed", range(20))
-def test_the_joint_nearest_to_its_own_limit_counts(seed: int) -> None:
+def test_the_joint_nearest_to_its_own_limit_counts(seed: int, strength: float) -> None:
     """The limit is a share of the rated torque, and rises with the load."""
     rng = np.random.default_rng(seed)
     value = estimate()
-    value.tau_ext, value.tau_J = rng.normal(0.0, 5.0, (2, 6))
-    before = rng.normal(0.0, 2.0, 6)
+    value.tau_ext, value.tau_J = strength * rng.normal(0.0, 5.0, (2, 6))
+    before = strength * rng.normal(0.0, 2.0, 6)
     since = Reference((0.0,) * 3, ZEROS, tuple(before), (0.0,) * 6)
     gauge = Gauge("joint external torque", "N·m", high=0.04)
     size, part = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), gauge)
     limits = 0.04 * np.array(RATED) + 0.25 * np.abs(value.tau_J)
-    worst = int((np.abs(value.tau_ext - before) / limits).argmax())
+    shares = np.abs(value.tau_ext - before) / limits
+    worst = int(shares.argmax())
+    assert (shares[worst] > 1.0) == (strength == 1.0)
     assert part == JOINTS[worst]
     assert size == pytest.approx(abs(value.tau_ext[worst] - before[worst]))
     assert gauge.high == pytest.approx(limits[worst])
