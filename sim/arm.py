@@ -110,6 +110,20 @@ class Channels(Sourced, frozen=True):
     noise: NotNegative
 
 
+class Drift(Sourced, frozen=True):
+    """How the zero of the flange sensor moves: from its cold error to its warm one, and about that in a slow walk.
+
+    `sim.sensor_drift` has the model, and the largest error and the fastest change that these numbers allow.
+    """
+
+    warm_up: Positive  # time constant [s]; a sensor's own is half to one and a half times as long, by the seed
+    force: NotNegative  # largest zero error of an axis when warm [N]; each is drawn evenly within ±
+    torque: NotNegative  # the same [N·m]
+    walk_force: NotNegative  # standard deviation of the walk [N]
+    walk_torque: NotNegative  # the same [N·m]
+    walk_time: Positive  # time in which the walk forgets where it was (correlation time) [s]
+
+
 class ForceTorque(Sourced, frozen=True):
     """The flange sensor."""
 
@@ -120,6 +134,7 @@ class ForceTorque(Sourced, frozen=True):
     damping_ratio: NotNegative
     plate_mass: Positive  # of the tool-side face [kg]
     plate_length: NotNegative  # from the sensing plane to the tool-side face [m]
+    drift: Drift | None = None  # None: its zero stays where it is
 
 
 class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

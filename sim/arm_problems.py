@@ -9,6 +9,7 @@ import numpy as np
 
 from sim.arm import Arm, Sourced
 from sim.chain import chain
+from sim.sensor_drift import BOUND, most
 
 LONGEST = 4.0
 """Times its reach that an arm's links are long end to end, at most; the shipped arms 1.4 to 1.8 times."""
@@ -20,7 +21,7 @@ Problem = tuple[str, object, str]
 def problems(arm: Arm) -> list[Problem]:
     """What the types cannot say: lengths, ranges between fields, tensors of real bodies. Empty for a usable arm."""
     found = _lengths(arm)
-    found = found or [*_assumed(arm), *_reach(arm), *_postures(arm), *_tensors(arm), *_curves(arm), *_shapes(arm)]
+    found = found or [*_assumed(arm), *_reach(arm), *_postures(arm), *_tensors(arm), *_curves(arm), *_drift(arm), *_shapes(arm)]
     return found or _last_link(arm)
 
 
@@ -135,6 +136,19 @@ def _curves(arm: Arm) -> list[Problem]:
             found.append(("sensors.current.range", arm.sensors.current.range, allowed))
     if f.output_share > 1:
         found.append(("frictions.output_share", f.output_share, "expected 0 to 1"))
+    return found
+
+
+def _drift(arm: Arm) -> list[Problem]:
+    """A sensor that carries nothing is within its range, wherever its zero drifts."""
+    sensor = arm.sensors.force_torque
+    if sensor is None or sensor.drift is None:
+        return []
+    found: list[Problem] = []
+    for name, error, channels in zip(("force", "torque"), most(sensor.drift), (sensor.force, sensor.torque), strict=True):
+        if error >= channels.range:
+            allowed = f"expected it and {BOUND:g} times walk_{name} to stay below the sensor's range, {channels.range:g}"
+            found.append((f"sensors.force_torque.drift.{name}", getattr(sensor.drift, name), allowed))
     return found
 
 

@@ -19,8 +19,6 @@ ENCODER_RIPPLE = 1e-4  # [rad]
 WRENCH_GAIN = 0.01
 WRENCH_CROSS_TALK = 0.01  # of a channel's range, into every other channel
 FORCE_OFFSET, TORQUE_OFFSET = 4.0, 0.3  # [N], [N·m]
-FORCE_DRIFT = 0.5 / 60.0  # [N/s]
-TORQUE_DRIFT = FORCE_DRIFT * TORQUE_OFFSET / FORCE_OFFSET  # [N·m/s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +33,8 @@ class Calibration:
     ripple: Array  # (n, 2) amplitude [rad] of the output encoder's first and second harmonic
     ripple_phase: Array  # (n, 2) [rad]
     wrench_gain: Array  # (6, 6) true wrench to measured wrench
-    wrench_offset: Array  # (6,) [N, N·m]
-    wrench_drift: Array  # (6,) [N/s, N·m/s]
+    wrench_offset: Array  # (6,) zero error of the cold flange sensor [N, N·m]
+    wrench_warm: Array  # (6,) zero error when it is warm [N, N·m]; of use only where the arm's file has a drift
 
 
 def nominal(arm: Arm) -> Calibration:
@@ -54,10 +52,11 @@ def draw(arm: Arm, rng: np.random.Generator) -> Calibration:
         return 1.0 + bound * rng.uniform(-1.0, 1.0, n)
 
     scale = np.array([FORCE_OFFSET] * 3 + [TORQUE_OFFSET] * 3)
-    drift = np.array([FORCE_DRIFT] * 3 + [TORQUE_DRIFT] * 3)
     gain = np.diag(1.0 + WRENCH_GAIN * rng.uniform(-1.0, 1.0, 6))
     # Cross-talk is relative to the ranges: a full force shows as so much of a full torque.
     force_torque = arm.sensors.force_torque
+    drift = None if force_torque is None else force_torque.drift
+    warm = np.zeros(6) if drift is None else np.array([drift.force] * 3 + [drift.torque] * 3)
     full = np.ones(6) if force_torque is None else np.array([force_torque.force.range] * 3 + [force_torque.torque.range] * 3)
     cross = WRENCH_CROSS_TALK * rng.uniform(-1.0, 1.0, (6, 6)) * full[:, None] / full[None, :] / 5.0
     np.fill_diagonal(cross, 0.0)
@@ -73,7 +72,7 @@ def draw(arm: Arm, rng: np.random.Generator) -> Calibration:
         ripple_phase=rng.uniform(0.0, 2.0 * np.pi, (n, 2)),
         wrench_gain=gain + cross,
         wrench_offset=scale * rng.uniform(-1.0, 1.0, 6),
-        wrench_drift=drift * rng.uniform(-1.0, 1.0, 6),
+        wrench_warm=warm * rng.uniform(-1.0, 1.0, 6),
     )
 
 

@@ -10,13 +10,14 @@ from sim.arm import Arm, Channels
 from sim.calibration import Calibration
 from sim.changes import SensorFault
 from sim.plant import Plant
+from sim.sensor_drift import SensorDrift
 
 Array = NDArray[np.float64]
 
 LATENCY = 1
 """Ticks between a measurement and its arrival at the controller."""
 
-NOISE_BLOCK = 500  # ticks of noise drawn at once
+NOISE_BLOCK = 500  # ticks of noise drawn at once: a second
 TEMPERATURE_TICKS = 50  # a temperature is read every 0.1 s
 
 
@@ -43,12 +44,12 @@ class Sensors:
     """All sensors of an arm.
 
     Encoders are latched at the end of a tick, everything else is the mean over it. The errors come from `calibration`, the
-    noise from `rng`.
+    noise from `rng`. The zero of the flange sensor moves with `drift`; None: it stays where it is.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, rng: np.random.Generator) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, rng: np.random.Generator, drift: SensorDrift | None = None) -> None:
         n, sensors = arm.n, arm.sensors
-        self._n, self._rng = n, rng
+        self._n, self._rng, self._drift = n, rng, drift
         self._groups = {
             "motor_encoder": slice(0, n),
             "output_encoder": slice(n, 2 * n),
@@ -63,7 +64,7 @@ class Sensors:
         output = 2.0 * np.pi / encoders.output_counts
         # One block, for each array that is handed to a kernel costs as much as ten channels' arithmetic.
         self._channels = np.zeros((5, size))
-        self._bias, self._drifts, self._gain, self._quantum, self._range = self._channels
+        self._bias, self._rates, self._gain, self._quantum, self._range = self._channels
         self._gain[:], self._quantum[:], self._range[:] = 1.0, 1.0, np.inf
         self._sigma = np.zeros(size)
         self._quantum[:n], self._sigma[:n] = motor, encoders.noise_counts * motor
@@ -76,7 +77,7 @@ class Sensors:
                 part = slice(start, start + 3)
                 self._quantum[part], self._sigma[part], self._range[part] = channels.quantum, channels.noise, channels.range
         self._bias[self._groups["force_torque"]] = calibration.wrench_offset
-        self._drifts[self._groups["force_torque"]] = calibration.wrench_drift
+        self._fault_rates, self._drift_rate = np.zeros(size), np.zeros(6)  # the parts of `_rates` [unit/s]
         self._out = np.zeros(size, dtype=bool)
         for name, present in (("force_torque", force_torque), ("accelerometer", sensors.accelerometer), ("gyro", sensors.gyro)):
             if present is None:
@@ -102,16 +103,44 @@ class Sensors:
         return self._bias[self._groups["force_torque"]].copy()
 
     def fault(self, fault: SensorFault) -> None:
-        """Let a sensor drift, get noisier or fail, from now on; a later fault of the same channels replaces the drift."""
+        """Let a sensor drift, get noisier or fail, from now on; a later fault of the same channels replaces the fault's drift.
+
+        The flange sensor's own drift goes on beneath.
+        """
         part = self._groups[fault.sensor]
         index = np.arange(self._bias.size)[part]
         if fault.channel is not None:
             index = index[fault.channel]
         self._bias[index] += fault.offset
-        self._drifts[index] = fault.drift
+        self._fault_rates[index] = fault.drift
+        self._set_rates()
         self._gain[index] = fault.noise_factor
         self._out[index] = fault.outage
         self._any_out = bool(self._out.any())
+
+    def _set_rates(self) -> None:
+        self._rates[:] = self._fault_rates
+        self._rates[self._groups["force_torque"]] += self._drift_rate
+
+    def _begin_second(self, tick: int) -> None:
+        """Let the flange sensor's own drift go on through the second that begins at `tick`, unless it does so already."""
+        if self._drift is not None and tick >= NOISE_BLOCK * self._drift.second:
+            self._drift_rate = self._drift.step()
+            self._set_rates()
+
+    def rest(self, tick: int, seconds: int, tick_length: float) -> None:
+        """Let time pass without a measurement: zeros move as they would in ticks, bit for bit; what is on its way stays so.
+
+        Args:
+            tick: ticks done so far.
+            seconds: whole seconds that pass, of `NOISE_BLOCK` ticks.
+            tick_length: [s].
+        """
+        left = -tick % NOISE_BLOCK  # ticks until the next second begins
+        for begin in range(tick + left, tick + left + seconds * NOISE_BLOCK, NOISE_BLOCK):
+            _pass(self._channels, left, tick_length)
+            self._begin_second(begin)
+            _pass(self._channels, NOISE_BLOCK - left, tick_length)
 
     def read(self, plant: Plant, current: Array) -> Sample:
         """Measure the tick that `plant` has just finished; returns what arrives now, `LATENCY` ticks later.
@@ -120,24 +149,25 @@ class Sensors:
             plant: the true arm.
             current: true motor currents (n,) [A] during that tick.
         """
-        row = plant.tick % NOISE_BLOCK
-        if row == 0 or not self._line:
+        tick, line = plant.tick, self._line
+        row = tick % NOISE_BLOCK
+        if row == 0 or not line:
             self._rng.standard_normal(out=self._noise)
             self._noise *= self._sigma
-        if plant.tick % TEMPERATURE_TICKS == 0 or not self._line:
+            self._begin_second(tick)
+        if tick % TEMPERATURE_TICKS == 0 or not line:
             self._read_temperature(plant)
         self._next = (self._next + 1) % len(self._rows)
         sample = self._rows[self._next]
         value = sample.values
         gain, ripple, phase = self._distortion
+        passed = plant.step.tick if line else 0.0  # before the first sample no time has passed
         _measure(
-            plant.theta, plant.q, current, plant.flange, gain, ripple, phase, self._channels, self._noise, row,
-            plant.step.tick, value,
+            plant.theta, plant.q, current, plant.flange, gain, ripple, phase, self._channels, self._noise, row, passed, value,
         )  # fmt: skip
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
-        line = self._line
         line.append(sample)
         if len(line) > LATENCY + 1:
             line.pop(0)
@@ -185,7 +215,7 @@ def _sample(values: Array, n: int) -> Sample:
 
 @numba.njit(cache=True)
 def _measure(theta, q, current, flange, wrench_gain, ripple, phase, channels, noises, row, tick, out) -> None:
-    bias, drift, noise_gain, quantum, span = channels[0], channels[1], channels[2], channels[3], channels[4]
+    bias, rate, noise_gain, quantum, span = channels[0], channels[1], channels[2], channels[3], channels[4]
     n, noise = theta.size, noises[row]
     for i in range(n):
         out[i] = theta[i]
@@ -199,6 +229,15 @@ def _measure(theta, q, current, flange, wrench_gain, ripple, phase, channels, no
     for j in range(6, flange.size):
         out[3 * n + j] = flange[j]
     for k in range(out.size):
-        bias[k] += drift[k] * tick
+        bias[k] += rate[k] * tick
         value = np.rint((out[k] + bias[k] + noise[k] * noise_gain[k]) / quantum[k]) * quantum[k]
         out[k] = min(max(value, -span[k]), span[k])
+
+
+@numba.njit(cache=True)
+def _pass(channels, count, tick) -> None:
+    """`count` ticks of the zeros alone, added up one by one as `_measure` does."""
+    bias, rate = channels[0], channels[1]
+    for _ in range(count):
+        for k in range(bias.size):
+            bias[k] += rate[k] * tick

@@ -27,6 +27,7 @@ from sim.glance import Glance
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario, table
+from sim.sensor_drift import SensorDrift
 from sim.sensors import Sensors
 from sim.snapshot import Snapshot
 
@@ -58,10 +59,13 @@ class Simulation:
 
     def __init__(self, arm: Arm, scenario: Scenario, settings: Settings, step: Step | None = None) -> None:
         self.arm, self.scenario = arm, scenario
-        errors, noise = np.random.default_rng(scenario.seed).spawn(2)
+        errors, noise, walk = np.random.default_rng(scenario.seed).spawn(3)
         self.calibration = calibration.nominal(arm) if scenario.mismatch == "nominal" else calibration.draw(arm, errors)
+        wrench = arm.sensors.force_torque
+        drifts = None if wrench is None or scenario.mismatch == "nominal" else wrench.drift
+        drift = None if drifts is None else SensorDrift(drifts, self.calibration, walk)
         self.plant = Plant(arm, scenario, step)
-        self.sensors = Sensors(arm, self.calibration, noise)
+        self.sensors = Sensors(arm, self.calibration, noise, drift)
         rigid = chain(arm)
         tools = tuple(table(scenario))
         used = tools[0]
@@ -72,7 +76,6 @@ class Simulation:
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, scenario.mounting, arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
-        wrench = arm.sensors.force_torque
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
         joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)

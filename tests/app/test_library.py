@@ -71,6 +71,9 @@ def test_a_missing_file_says_so(tmp_path: Path) -> None:
             "  status: guessed",
             "arm.yaml: motors.status = guessed: expected one of official, measured, assumed",
         ),
+        ("warm_up: 600.0", "warm_up: 0.0", "arm.yaml: sensors.force_torque.drift.warm_up = 0.0: expected a number > 0"),
+        ("walk_time: 1800.0", "walk_time: -1", "arm.yaml: sensors.force_torque.drift.walk_time = -1: expected a number > 0"),
+        ("walk_force: 0.3", "walk_force: -0.3", "arm.yaml: sensors.force_torque.drift.walk_force = -0.3: expected a number >= 0"),
         ("output_share: 0.08", "output_share: 1.08", "arm.yaml: frictions.output_share = 1.08: expected 0 to 1"),
     ],
 )

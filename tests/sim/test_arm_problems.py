@@ -72,6 +72,9 @@ def test_every_list_has_one_value_a_joint(field: str) -> None:
         ("transmissions.hysteresis_yield.0", 0.0, "transmissions.hysteresis_yield[0]", "> 0"),
         ("motors.current.2", 10.0, "motors.current[2]", "150 N·m"),
         ("sensors.current.range", 10.0, "sensors.current.range", "19.2 A"),
+        ("sensors.force_torque.drift.force", 99.5, "sensors.force_torque.drift.force", "below the sensor's range, 100"),
+        ("sensors.force_torque.drift.walk_torque", 7.0, "sensors.force_torque.drift.torque", "3 times walk_torque to stay below the sensor's range, 20"),
+        ("sensors.force_torque.drift.assumed", ["x"], "sensors.force_torque.drift.assumed[0]", "warm_up"),
         ("shapes.0.link", 6, "shapes[0].link", "-1 to 5"),
         ("motors.assumed", ["geer"], "motors.assumed[0]", "gear"),
         ("sensors.gyro.assumed", ["x"], "sensors.gyro.assumed[0]", "quantum"),
@@ -81,3 +84,8 @@ def test_what_is_wrong_is_named(field: str, value: object, named: str, allowed: 
     found = problems(broken(field, value))
     assert named in [name for name, _, _ in found]
     assert any(allowed in text for name, _, text in found if name == named)
+
+
+def test_an_arm_without_drift_has_no_problems() -> None:
+    assert problems(broken("sensors.force_torque.drift", None)) == []
+    assert problems(broken("sensors.force_torque", None)) == []

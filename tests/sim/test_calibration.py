@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -31,7 +32,7 @@ def spread(values: list[np.ndarray], bound: float, centre: float = 0.0) -> None:
 
 @pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
 def test_each_error_fills_its_bound(arm: Arm) -> None:
-    """Bounds of the honest mismatch: motor constant 3 %, stiffness 20 %, rotor 10 %, mass 2 %, centres 3 mm, offsets, drift."""
+    """Bounds of the honest mismatch: motor constant 3 %, stiffness 20 %, rotor 10 %, mass 2 %, centres 3 mm, both zeros."""
     drawn = draws(arm)
     spread([d.motor_constant for d in drawn], 0.03, 1.0)
     spread([d.stiffness for d in drawn], 0.20, 1.0)
@@ -40,7 +41,11 @@ def test_each_error_fills_its_bound(arm: Arm) -> None:
     spread([d.link_centre for d in drawn], 0.003)
     spread([d.wrench_offset[:3] for d in drawn], 4.0)
     spread([d.wrench_offset[3:] for d in drawn], 0.3)
-    spread([60.0 * d.wrench_drift[:3] for d in drawn], 0.5)
+    assert arm.sensors.force_torque is not None
+    drift = arm.sensors.force_torque.drift
+    assert drift is not None
+    spread([d.wrench_warm[:3] for d in drawn], drift.force)
+    spread([d.wrench_warm[3:] for d in drawn], drift.torque)
     spread([np.diag(d.wrench_gain) for d in drawn], 0.01, 1.0)
 
 
@@ -75,7 +80,7 @@ def test_nominal_is_no_error_at_all() -> None:
     errors = calibration.nominal(UR5E)
     for name in ("motor_constant", "stiffness", "rotor_inertia", "link_mass"):
         assert (getattr(errors, name) == 1.0).all()
-    for name in ("link_centre", "ripple", "wrench_offset", "wrench_drift"):
+    for name in ("link_centre", "ripple", "wrench_offset", "wrench_warm"):
         assert not getattr(errors, name).any()
     assert (errors.wrench_gain == np.eye(6)).all()
     for believed, true in zip(calibration.believed(chain(UR5E), errors), chain(UR5E).links, strict=True):
@@ -95,6 +100,17 @@ def test_a_seed_always_draws_the_same_and_another_seed_another() -> None:
     first, again, other = (dataclasses.astuple(calibration.draw(UR5E, np.random.default_rng(seed))) for seed in (7, 7, 8))
     assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
     assert all((a != b).any() for a, b in zip(first, other, strict=True))
+
+
+def test_an_arm_file_without_drift_draws_the_same_of_all_else() -> None:
+    assert UR5E.sensors.force_torque is not None
+    stays = msgspec.structs.replace(UR5E.sensors.force_torque, drift=None)
+    arm = msgspec.structs.replace(UR5E, sensors=msgspec.structs.replace(UR5E.sensors, force_torque=stays))
+    errors, same = (calibration.draw(each, np.random.default_rng(5)) for each in (UR5E, arm))
+    assert not same.wrench_warm.any()
+    for field in dataclasses.fields(errors):
+        if field.name != "wrench_warm":
+            assert np.array_equal(getattr(errors, field.name), getattr(same, field.name)), field.name
 
 
 def test_the_mismatch_is_on_by_default_and_can_be_switched_off() -> None:

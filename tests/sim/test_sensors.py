@@ -12,6 +12,7 @@ from sim import calibration
 from sim.changes import SensorFault
 from sim.plant import Plant
 from sim.scenario import Scenario
+from sim.sensor_drift import SensorDrift
 from sim.sensors import Sample, Sensors
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench, push
@@ -61,8 +62,15 @@ class Still:
             array[:] = value
 
 
-def sensors(seed: int = 1, errors: calibration.Calibration | None = None) -> Sensors:
-    return Sensors(UR5E, errors or calibration.nominal(UR5E), np.random.default_rng(seed))
+def sensors(seed: int = 1, errors: calibration.Calibration | None = None, drift: SensorDrift | None = None) -> Sensors:
+    return Sensors(UR5E, errors or calibration.nominal(UR5E), np.random.default_rng(seed), drift)
+
+
+def drifting(errors: calibration.Calibration, seed: int = 1) -> SensorDrift:
+    """The drift of the arm's file."""
+    assert FORCE_TORQUE is not None
+    assert FORCE_TORQUE.drift is not None
+    return SensorDrift(FORCE_TORQUE.drift, errors, np.random.default_rng(seed))
 
 
 def read(device: Sensors, plant: Still) -> Sample:
@@ -185,19 +193,92 @@ def test_an_outage_is_not_a_number_and_says_so_as_long_as_it_lasts(name: str, ch
     assert missing.tolist() == (whole if channel is None else [first + channel])
 
 
-def test_the_flange_sensor_is_off_by_its_offset_and_drifts() -> None:
+def test_the_flange_sensor_is_off_by_its_offset_and_follows_its_drift() -> None:
     errors = calibration.draw(UR5E, np.random.default_rng(8))
-    plant, device = Still(), sensors(errors=errors)
+    plant, device, alone = Still(), sensors(errors=errors, drift=drifting(errors)), drifting(errors)
     values = samples(device, plant, 30001)[1:, 18:24]
     begin, end = values[:500].mean(axis=0), values[-500:].mean(axis=0)
     sigma = 5.0 * NOISE[18:24] / np.sqrt(500)
-    assert (np.abs(begin - errors.wrench_offset) < sigma + 0.01).all()
+    moved = np.cumsum([alone.step() for _ in range(60)], axis=0)  # by the end of each second
+    assert (np.abs(begin - errors.wrench_offset) < sigma + 0.05).all()
     assert (np.abs(begin[:3]) < 4.0 + sigma[:3]).all()
     assert (np.abs(begin[3:]) < 0.3 + sigma[3:]).all()
     minute = end - begin  # 59 s lie between the middles of both
-    assert np.allclose(minute, 59.0 * errors.wrench_drift, atol=2.0 * sigma.max())
-    assert (np.abs(minute[:3]) < 0.5 + 2.0 * sigma[:3]).all()
+    assert np.allclose(minute, moved[58:].mean(axis=0) - 0.5 * moved[0], atol=2.0 * sigma.max())
     assert np.abs(minute[:3]).max() > 0.05, "it does drift"
+
+
+def test_between_two_seconds_the_zero_moves_evenly() -> None:
+    errors = calibration.draw(UR5E, np.random.default_rng(8))
+    plant, device, alone = Still(), sensors(errors=errors, drift=drifting(errors)), drifting(errors)
+    device.read(plant, plant.current)  # as it comes late: the first sample is taken before any time has passed
+    zeros = []
+    for _ in range(1500):
+        read(device, plant)
+        zeros.append(device.wrench_offset)
+    start = errors.wrench_offset
+    for second in range(3):
+        rate = alone.step()
+        assert np.allclose(np.diff([start, *zeros], axis=0)[500 * second : 500 * second + 500], 0.002 * rate, atol=1e-14)
+        assert np.allclose(zeros[500 * second + 499], alone.error, atol=1e-12)
+
+
+def test_without_drift_the_zero_of_the_flange_sensor_stays() -> None:
+    errors = calibration.draw(UR5E, np.random.default_rng(8))
+    plant, device = Still(), sensors(errors=errors)
+    samples(device, plant, 1100)
+    device.rest(plant.tick, 3600, 0.002)
+    assert (device.wrench_offset == errors.wrench_offset).all()
+
+
+def test_a_fault_adds_to_the_drift_and_a_later_fault_replaces_the_earlier_one_alone() -> None:
+    errors = calibration.draw(UR5E, np.random.default_rng(8))
+    plant, device, sound = Still(), sensors(errors=errors, drift=drifting(errors)), sensors(errors=errors, drift=drifting(errors))
+
+    def added(seconds: int) -> np.ndarray:
+        for each in (device, sound):
+            each.rest(plant.tick, seconds, 0.002)
+        plant.tick += 500 * seconds
+        return device.wrench_offset - sound.wrench_offset
+
+    plant.tick = 137
+    assert (added(60) == 0.0).all()
+    device.fault(SensorFault(sensor="force_torque", channel=2, offset=2.0, drift=0.01))
+    assert np.allclose(added(100), [0.0, 0.0, 3.0, 0.0, 0.0, 0.0], atol=1e-9)
+    device.fault(SensorFault(sensor="force_torque", channel=2, drift=-0.02))
+    assert np.allclose(added(100), [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], atol=1e-9)
+    device.fault(SensorFault(sensor="force_torque"))
+    assert np.allclose(added(100), [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("before", [0, 1, 137, 500, 999])
+def test_a_rest_moves_every_zero_as_ticks_do_bit_for_bit(before: int) -> None:
+    errors = calibration.draw(UR5E, np.random.default_rng(8))
+    plant, other = Still(), Still()
+    lasting, resting = (sensors(errors=errors, drift=drifting(errors)) for _ in range(2))
+    for each, where in ((lasting, plant), (resting, other)):
+        each.read(where, where.current)
+        samples(each, where, before)
+        each.fault(SensorFault(sensor="force_torque", drift=0.003))
+        each.fault(SensorFault(sensor="gyro", channel=1, drift=0.001))
+    samples(lasting, plant, 3500)
+    resting.rest(other.tick, 7, 0.002)
+    other.tick += 3500
+    assert lasting._bias.tobytes() == resting._bias.tobytes()
+    for each, where in ((lasting, plant), (resting, other)):
+        samples(each, where, 700)
+    assert lasting._bias.tobytes() == resting._bias.tobytes(), "and so it goes on"
+
+
+def test_samples_on_their_way_survive_a_rest() -> None:
+    plant, device = Still(), sensors()
+    plant.set(2.0)
+    samples(device, plant, 3)
+    device.rest(plant.tick, 60, 0.002)
+    plant.tick += 30000
+    plant.set(0.0)
+    assert np.abs(read(device, plant).values - 2.0).max() < 1.0
+    assert np.abs(read(device, plant).values).max() < 1.0
 
 
 def test_gain_and_cross_talk_of_the_flange_sensor() -> None:

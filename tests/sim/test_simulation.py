@@ -167,7 +167,7 @@ def blinded_arm(arm: Arm) -> Arm:
 
 def blinded_calibration(errors: Calibration) -> Calibration:
     """Without the sensors' errors: they reach the controller in measurements alone."""
-    names = ("link_mass", "link_centre", "ripple", "ripple_phase", "wrench_gain", "wrench_offset", "wrench_drift")
+    names = ("link_mass", "link_centre", "ripple", "ripple_phase", "wrench_gain", "wrench_offset", "wrench_warm")
     return dataclasses.replace(errors, **{name: np.full_like(getattr(errors, name), np.nan) for name in names})
 
 
