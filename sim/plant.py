@@ -182,6 +182,17 @@ class Plant:
         self.temperature = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
         self._heat[:] = 0.0
 
+    def rest(self, seconds: int) -> None:
+        """Let time pass without physics: the clocks go on, and the joints cool as those do in which nothing rubs.
+
+        An object that moves by itself is next where it would be by then.
+        """
+        thermals = self.arm.thermals
+        cooled = np.exp(-seconds / (np.array(thermals.resistance) * np.array(thermals.capacity)))
+        self.temperature = self.ambient + (self.temperature - self.ambient) * cooled
+        self.data.time += seconds
+        self.tick += round(seconds / self.step.tick)
+
     def drop(self) -> None:
         """Let the payload fall: it leaves with the flange's velocity."""
         self.payload.drop(lambda point: self.hands.velocity(self.flange_body, point))

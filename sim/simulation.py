@@ -147,6 +147,26 @@ class Simulation:
         self._estimate, self._decision = estimate, decision
         return decision
 
+    def rest(self, seconds: float) -> None:
+        """Let time pass without physics: nobody touches the arm, and nothing of it moves.
+
+        The clocks, the zero of the flange sensor and the temperatures of the joints go on by their own models. All else stays as
+        it is: what the controller holds and knows, the periods that run, the samples on their way.
+
+        Args:
+            seconds: whole seconds.
+
+        Raises:
+            ValueError: not whole, or negative.
+        """
+        if not float(seconds).is_integer() or seconds < 0:
+            raise ValueError(f"a rest of {seconds:g} s: expected whole seconds, 0 or more")
+        plant = self.plant
+        before = plant.tick
+        self.sensors.rest(before, int(seconds), plant.step.tick)
+        plant.rest(int(seconds))
+        self.estimator.tick += plant.tick - before
+
     def fit(self, fitting: Fitting) -> None:
         """Make this the tool and the payload that the controller believes in: between two ticks, all at once.
 
