@@ -153,6 +153,8 @@ class Simulation:
         The clocks, the zero of the flange sensor and the temperatures of the joints go on by their own models. All else stays as
         it is: what the controller holds and knows, the periods that run, the samples on their way.
 
+        It is for an arm that is held: to one in free-drive all that a zero moved meanwhile is a step of its sensor.
+
         Args:
             seconds: whole seconds.
 

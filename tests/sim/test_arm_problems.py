@@ -73,7 +73,12 @@ def test_every_list_has_one_value_a_joint(field: str) -> None:
         ("motors.current.2", 10.0, "motors.current[2]", "150 N·m"),
         ("sensors.current.range", 10.0, "sensors.current.range", "19.2 A"),
         ("sensors.force_torque.drift.force", 99.5, "sensors.force_torque.drift.force", "below the sensor's range, 100"),
-        ("sensors.force_torque.drift.walk_torque", 7.0, "sensors.force_torque.drift.torque", "3 times walk_torque to stay below the sensor's range, 20"),
+        (
+            "sensors.force_torque.drift.walk_torque",
+            7.0,
+            "sensors.force_torque.drift.torque",
+            "3 times walk_torque to stay below the sensor's range, 20",
+        ),
         ("sensors.force_torque.drift.assumed", ["x"], "sensors.force_torque.drift.assumed[0]", "warm_up"),
         ("shapes.0.link", 6, "shapes[0].link", "-1 to 5"),
         ("motors.assumed", ["geer"], "motors.assumed[0]", "gear"),

@@ -6,6 +6,7 @@ import pytest
 from pendant.inputs import Command
 from pendant.modes import Mode
 from pendant.settings import Settings
+from sim import calibration
 from sim.changes import Temperature
 from sim.scenario import Moving, Scenario
 from sim.simulation import Simulation
@@ -34,7 +35,7 @@ def test_the_drift_has_a_source_of_its_own() -> None:
     """What else is drawn of a seed stays as it was when there were two sources."""
     errors, noise = np.random.default_rng(5).spawn(2)
     simulation = Simulation(UR5E, DRAWN, Settings())
-    expected = Simulation.__init__.__globals__["calibration"].draw(UR5E, errors)
+    expected = calibration.draw(UR5E, errors)
     assert (simulation.calibration.wrench_offset == expected.wrench_offset).all()
     assert (simulation.calibration.wrench_warm == expected.wrench_warm).all()
     assert (simulation.sensors._noise[3, :6] == (noise.standard_normal((500, 36)) * simulation.sensors._sigma)[3, :6]).all()
@@ -56,7 +57,7 @@ def test_clocks_go_on_together() -> None:
     bench.tick()
     snapshot = bench.simulation.snapshot()
     assert snapshot.tick == snapshot.estimate.tick == 1051
-    (event,) = (bench.events.clear(), bench.do(Command.EMERGENCY_STOP))[1].events
+    (event,) = bench.do(Command.EMERGENCY_STOP).events
     assert event.tick == 1052
 
 
