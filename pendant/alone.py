@@ -5,11 +5,11 @@ import math
 from pendant.estimate import Estimate
 from pendant.events import Values
 from pendant.hand import CARRIED, Hand
-from pendant.link_push import LinkPush
 from pendant.modes import TICK
 from pendant.parameters import Reference
 from pendant.pose import norm
 from pendant.settings import Unexplained, ticks
+from pendant.work import Work
 
 AWAY = 0.015
 """An arm at rest that nobody touches goes no farther on its own [m], however slowly: friction all but holds a wrong payload."""
@@ -18,37 +18,33 @@ UNFELT = 0.01
 """Without the flange sensor no farther once it counts as moving [m]: a light hand is not felt then, but an arm that breaks away
 from its friction is as fast as a hand in 0.3 s."""
 
-CREEPS = 0.5
-"""Of the speed that counts as moving: of a slower arm nothing is said of who turns its joints."""
-
 
 class Way:
-    """From where an arm goes on its own, and what its joints feel meanwhile.
+    """From where an arm goes on its own, and the work that is done on it meanwhile.
 
     Attributes:
-        link: tells of a hand on a link since then; to be stepped while the arm moves.
+        work: since then; to be stepped while the arm moves.
     """
 
-    __slots__ = ("_began", "link")
+    __slots__ = ("_began", "work")
 
-    def __init__(self, since: Reference, rated: tuple[float, ...]) -> None:
+    def __init__(self, since: Reference) -> None:
         """
         Args:
             since: what held at entry; the way begins there.
-            rated: torque of each joint [N·m].
         """
         self._began = since.position
-        self.link = LinkPush(since.torques, rated)
+        self.work = Work(since.torques)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._began, self.link.memory)
+        return (self._began, self.work.memory)
 
     def begin(self, estimate: Estimate) -> None:
-        """It begins anew here."""
+        """It begins here."""
         self._began = tuple(estimate.p_BF.tolist())
-        self.link.begin()
+        self.work.begin(estimate)
 
     def length(self, estimate: Estimate) -> float:
         """From there to where the flange is [m]."""
@@ -56,27 +52,30 @@ class Way:
 
 
 class Alone:
-    """Counts for how long, and how far, the arm moves and nobody moves it."""
+    """Counts for how long, and how far, the arm moves and nobody moves it.
 
-    __slots__ = ("_allowed", "_at_rest", "_on", "_run", "_ticks", "_whole")
+    A stretch of motion without a hand at the flange begins afresh whenever all of it was paid for by a hand on a link
+    (`pendant.work`).
+    """
 
-    def __init__(self, on: Unexplained, since: Reference, rated: tuple[float, ...]) -> None:
+    __slots__ = ("_allowed", "_at_rest", "_on", "_stretch", "_ticks", "_whole")
+
+    def __init__(self, on: Unexplained, since: Reference) -> None:
         """
         Args:
             on: settings.
             since: what held at entry.
-            rated: torque of each joint [N·m].
         """
         self._on, self._allowed = on, ticks(on.time)
-        self._ticks = 0  # in a row in which the arm moved and nobody moved it
-        self._run = Way(since, rated)  # of these ticks
+        self._ticks = 0  # of the stretch
+        self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
-        self._whole = Way(since, rated)  # since it has been at rest
+        self._whole = Way(since)  # since it has been at rest
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._ticks, self._run.memory, self._at_rest, self._whole.memory)
+        return (self._ticks, self._stretch.memory, self._at_rest, self._whole.memory)
 
     def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
@@ -93,35 +92,37 @@ class Alone:
             self._ticks, self._at_rest = 0, False
             return None
         vx, vy, vz = estimate.v_F.tolist()[:3]
-        motion = norm((vx, vy, vz))
-        way = self._beyond(estimate, motion, use_wrench)
+        # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
+        by_link = use_wrench and norm(hand.change) < CARRIED
+        way = self._beyond(estimate, norm((vx, vy, vz)), use_wrench, by_link)
         if way is None:
-            return None
-        if use_wrench and norm(hand.change) < CARRIED and way.link.told(estimate):
-            self._ticks, self._at_rest = 0, False
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
-    def _beyond(self, estimate: Estimate, motion: float, use_wrench: bool) -> Way | None:
+    def _beyond(self, estimate: Estimate, speed: float, use_wrench: bool, by_link: bool) -> Way | None:
         """One tick in which nobody is felt at the flange, which has this speed [m/s]. Returns which way is too long."""
-        run, whole = self._run, self._whole
-        moves = motion >= self._on.speed
+        stretch, whole = self._stretch, self._whole
+        moves = speed >= self._on.speed
         if moves:
             if self._ticks == 0:
-                run.begin(estimate)
+                stretch.begin(estimate)
             self._ticks += 1
-            run.link.step(estimate)
+            stretch.work.step(estimate)
         else:
             self._ticks = 0
             if not self._at_rest:
                 self._at_rest = True
                 whole.begin(estimate)
-        if self._ticks > self._allowed:
-            return run
-        if not self._at_rest:
+        if self._at_rest:
+            whole.work.step(estimate)
+            too_far = whole.length(estimate) > AWAY if use_wrench else moves and stretch.length(estimate) > UNFELT
+            if too_far and not (by_link and whole.work.paid):
+                return whole if use_wrench else stretch
+            self._at_rest = not too_far
+        if not moves:
             return None
-        if motion >= CREEPS * self._on.speed:
-            whole.link.step(estimate)
-        if use_wrench:
-            return whole if whole.length(estimate) > AWAY else None
-        return run if moves and run.length(estimate) > UNFELT else None
+        if by_link and stretch.work.settled:
+            self._ticks = 0
+            return None
+        lasted = stretch.work.lasts(self._allowed) if by_link else self._ticks > self._allowed
+        return stretch if lasted else None

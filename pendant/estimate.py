@@ -67,6 +67,7 @@ class Estimate:
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
     load_mass: float = 0.0  # configured: payload and tool [kg]
+    energy: float = 0.0  # kinetic, of links and rotors [J]
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":
@@ -109,5 +110,6 @@ class Estimate:
             self.F_joints.copy(),
             self.a_felt.copy(),
             self.load_mass,
+            self.energy,
             self.singularity,
         )

@@ -106,7 +106,7 @@ class Operation:
         self._since: Reference = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
-        self._alone = Alone(self._on, self._since, rated)
+        self._alone = Alone(self._on, self._since)
         self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
@@ -140,7 +140,7 @@ class Operation:
             driven: a wall or another device moves the arm, or holds it.
         """
         if self._on.payload and baseline is not None:
-            lost = self._lost(estimate, baseline)
+            lost = self._lost(estimate, hand, baseline)
             if lost is not None:
                 return lost
         else:
@@ -168,7 +168,7 @@ class Operation:
         x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
         return norm((x - ox, y - oy, z - oz))
 
-    def _lost(self, estimate: Estimate, baseline: Wrench) -> Ending | None:
+    def _lost(self, estimate: Estimate, hand: Hand, baseline: Wrench) -> Ending | None:
         """A payload-like step."""
         mass = estimate.load_mass
         weight = mass * GRAVITY
@@ -194,6 +194,7 @@ class Operation:
             jump = share - (bx * nx + by * ny + bz * nz) / max(square, 1e-9)
             began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
             began = began and abs(share) >= STAYS * abs(jump) and (calm or abs(share) >= MUCH)
+            began = began and hand.stands_out((mx - bx, my - by, mz - bz))
             self._stepped = int(began and self._like(share, across, square))
         elif self._stepped == 1:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._level = share

@@ -7,6 +7,7 @@ first: the help that the step calls for pushes them from within.
 import math
 
 from pendant.estimate import Estimate
+from pendant.hand import Hand
 from pendant.parameters import beyond_gravity
 from pendant.pose import ORIGIN, Vector, dot, norm
 
@@ -67,8 +68,9 @@ class Steps:
         """All of its state, to compare."""
         return tuple([getattr(self, name) for name in self.__slots__])
 
-    def step(self, estimate: Estimate, change: Vector) -> Vector | None:
-        """One tick: `change` of the force since free-drive began, axes of B [N]. A step that is the sensor's, or None."""
+    def step(self, estimate: Estimate, hand: Hand) -> Vector | None:
+        """One tick, `hand` after its step. A step that is the sensor's, axes of B [N], or None."""
+        change = hand.change
         oldest, older, last = self._oldest, self._older, self._last
         self._oldest, self._older, self._last = older, last, change
         x, y, z = estimate.F_joints.tolist()
@@ -82,7 +84,7 @@ class Steps:
             return None
         zero = older if oldest is None else _mean(oldest, older)
         x, y, z = _less(change, zero)
-        if x * x + y * y + z * z >= JUMP * JUMP and dot(zero, zero) <= QUIET * QUIET:
+        if x * x + y * y + z * z >= JUMP * JUMP and dot(zero, zero) <= QUIET * QUIET and hand.stands_out((x, y, z)):
             self._age = 1
             self._zero = zero
             self._least = LEAST_MOVED if any(abs(speed) > MOVED for speed in estimate.qd.tolist()) else LEAST

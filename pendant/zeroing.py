@@ -1,9 +1,9 @@
 """The flange sensor's zero in free-drive: what it drifts and steps by is no hand's, and must not drive the arm (FD-19).
 
 A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
-taken off. A hand that begins to push cannot be told from it before the arm moves; then what was taken off lately is given back,
-for push after push it would add up to an offset that drives the arm when it is let go. A sensor that steps is not used any more
-(`pendant.sensor_steps`).
+taken off, unless the joints feel it as well: a hand that rests on an arm at rest would be taken for drift, and would seem to push
+the other way when it lets go. What was taken off in the last moments before the arm moves is given back, for a hand pushes a
+little before the joints tell. A sensor that steps is not used any more (`pendant.sensor_steps`).
 """
 
 import math
@@ -14,8 +14,8 @@ from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS
-from pendant.pose import Vector, Wrench, flat, norm, turned, turned_back
-from pendant.sensor_steps import MOVED, Steps
+from pendant.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned, turned_back
+from pendant.sensor_steps import ANSWER, MOVED, Steps
 from pendant.watch import WINDOW, WrenchMean
 
 SLOW = 3.0
@@ -31,6 +31,18 @@ FAR, FAR_TURN = 4.0, 1.0
 """A sensor that has drifted so far [N, N·m] is not used any more: it is not so good as it should be, or a hand presses slowly on
 an arm that does not move, and would seem to push the other way when it lets go."""
 
+FELT = 1.0
+"""From so large a change on [N] the joints are asked: of less they cannot tell."""
+
+QUIET = 0.7
+"""No drift begins with more than this [N]: an arm that comes to rest with more of a force is held by a hand."""
+
+SLOWLY = 0.015
+"""And so much for each second since it was last followed [N/s]: so fast a sensor drifts by itself (assets/robots/)."""
+
+SMOOTH = 1.0 / WINDOW
+"""Weight of a tick in what the joints feel: their mean over a window."""
+
 BEGINS = 5
 """Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
 
@@ -42,21 +54,37 @@ class Drift:
         lately: what was taken off in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_count", "_followed", "lately")
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "lately")
 
-    def __init__(self) -> None:
+    def __init__(self, tick: int = 0) -> None:
+        """`tick` of now."""
+        self._quiet = tick  # when it was last followed
         self._count = 0
         self._followed: Wrench | None = None
+        self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
+        self._felt: Vector = ORIGIN  # by the joints in it [N]
         self.lately: deque[Wrench] = deque(maxlen=BEGINS)
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._count, self._followed, tuple(self.lately))
+        return (self._quiet, self._count, self._followed, self._began, self._felt, tuple(self.lately))
 
     def restart(self) -> None:
-        """The arm may be moved, or the sensor is not used."""
-        self._count, self._followed = 0, None
+        """The arm may be moved, held by a hand, or the sensor is not used."""
+        self._followed = None
+
+    def pause(self) -> None:
+        """The same, and the next window begins with the next tick in which nobody moves the arm."""
+        self._count = 0
+        self.restart()
+
+    def held(self, force: float, tick: int) -> bool:
+        """Whether a hand holds the arm that comes to rest with this force [N]."""
+        if self._followed is None and force > QUIET + SLOWLY * TICK * (tick - self._quiet):
+            return True
+        self._quiet = tick
+        return False
 
     def give_back(self) -> list[Wrench]:
         """What was taken off lately was a hand's, axes of F [N, N·m]."""
@@ -73,10 +101,18 @@ class Drift:
         self._count = self._count % WINDOW + 1
         return self._count == 1
 
-    def step(self, mean: Wrench) -> Wrench | None:
-        """The mean of the last window, axes of B [N, N·m]: what is to be taken off; None for the first one."""
+    def step(self, mean: Wrench, felt: Vector) -> Wrench | None:
+        """The mean of the last window, and the force that the joints felt in it, axes of B [N, N·m]: what is to be taken off.
+
+        None for the first one, and for what the joints feel as well.
+        """
+        force: Vector = (mean[0], mean[1], mean[2])
         if self._followed is None:
-            self._followed = mean
+            self._followed, self._began, self._felt = mean, force, felt
+            return None
+        since, answer = _less(force, self._began), _less(felt, self._felt)
+        size = dot(since, since)
+        if size >= FELT * FELT and dot(since, answer) >= ANSWER * size:
             return None
         change = [now - then for now, then in zip(mean, self._followed, strict=True)]
         time = WINDOW * TICK
@@ -94,6 +130,10 @@ def _within(change: list[float], most: float) -> Vector:
     return share * x, share * y, share * z
 
 
+def _less(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
 class Zero:
     """What of F_user is nobody's: from the activation sequence on, or from entry, to leaving.
 
@@ -103,23 +143,26 @@ class Zero:
         drifted: what the sensor drifted by since, axes of F [N, N·m].
     """
 
-    __slots__ = ("_drift", "_steps", "baseline", "drifted", "used")
+    __slots__ = ("_drift", "_felt", "_steps", "baseline", "drifted", "used")
 
     def __init__(self) -> None:
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench = ZEROS
         self._drift, self._steps = Drift(), Steps()
+        self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory)
+        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt)
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, _in_flange(estimate, mean.mean()), ZEROS
-        self._drift, self._steps = Drift(), Steps()
+        self._drift, self._steps = Drift(estimate.tick), Steps()
+        x, y, z = estimate.F_joints.tolist()
+        self._felt = (x, y, z)
 
     def leave(self) -> None:
         """The sensor is not used any more."""
@@ -148,18 +191,26 @@ class Zero:
             mean: of F_user.
             waits: nobody is known to move the arm.
         """
-        stepped = self._steps.step(estimate, hand.change)
+        x, y, z = estimate.F_joints.tolist()
+        fx, fy, fz = self._felt
+        self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
+        stepped = self._steps.step(estimate, hand)
         if stepped is not None:
             self.leave()
             return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)})
         if not waits:
-            self._drift.restart()
+            self._drift.pause()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.
             if self._drift.lately and any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
                 for taken in self._drift.give_back():
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
-            gone = self._drift.step(mean.mean())
+            now = mean.mean()
+            x, y, z = _in_flange(estimate, now)[:3]
+            ox, oy, oz, _, _, _ = self.baseline
+            if self._drift.held(norm((x - ox, y - oy, z - oz)), estimate.tick):
+                return None
+            gone = self._drift.step(now, self._felt)
             if gone is not None:
                 gone = _in_flange(estimate, gone)
                 self._drift.keep(gone)

@@ -132,7 +132,12 @@ class Estimator:
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
+        known.energy = self._energy(rigid.energy)
         return known
+
+    def _energy(self, links: Array) -> float:
+        """Kinetic energy of the `links` (1,) and of the rotors [J]."""
+        return float(links[0] + 0.5 * self._rotor.dot(self._theta[1] * self._theta[1]))
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""

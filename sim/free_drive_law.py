@@ -10,6 +10,7 @@ from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import TICK, Phase
 from pendant.pose import ORIGIN
+from pendant.work import LEFT
 from sim.active_damping import ActiveDamping
 from sim.adaptive_friction import AdaptiveFriction
 from sim.arm import Arm
@@ -24,7 +25,7 @@ from sim.transmission_torque import DYNAMICS
 
 Array = NDArray[np.float64]
 
-COMPENSATED = 0.85  # share of the friction estimate that is taken off the hand
+COMPENSATED = 1.0 - LEFT  # share of the friction estimate that is taken off the hand
 INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
 DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster

@@ -1,5 +1,6 @@
 """What hands do to the true arm in a tick: wrenches and virtual springs at points of its parts, as MuJoCo takes them."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import mujoco
@@ -7,12 +8,18 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.modes import TICK
 from sim.touch import ZERO, Pull, Touch, Triple
 
 Array = NDArray[np.float64]
 
 STIFFNESS = 800.0  # of a virtual hand [N/m]
 DAMPING = 40.0  # of a virtual hand [N·s/m]
+RESPONSE = 0.03
+"""Time constant with which a virtual hand goes to where it is wanted [s]. A page tells it 20 times a second; without that each
+time would be a step of force, which no arm of flesh can do and a falling payload does."""
+
+_FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
 
 
 class Hands:
@@ -33,6 +40,7 @@ class Hands:
         self._poses = (data.xpos, data.xmat, data.xipos)
         self._applied = data.xfrc_applied
         self._pushed: set[int] = set()
+        self._goes: dict[tuple[str, Triple], Triple] = {}  # where each pull has come to by now, in W [m]
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
 
     def apply(self, touches: Sequence[Touch]) -> None:
@@ -46,6 +54,7 @@ class Hands:
             for body in pushed:
                 applied[body] = 0.0
             pushed.clear()
+        went, self._goes = self._goes, {}
         if not touches:
             self.touched = ()
             return
@@ -53,7 +62,7 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                spring = map(float, (*touch.point, *touch.target, touch.cap))
+                spring = map(float, (*touch.point, *self._reach(touch, body, went), touch.cap))
                 point, force = _pull(*self._poses, *self._motion, self._roots[body], body, applied, *spring)
                 torque = ZERO
             else:
@@ -62,6 +71,14 @@ class Hands:
             pushed.add(body)
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
+
+    def _reach(self, pull: Pull, body: int, went: Mapping[tuple[str, Triple], Triple]) -> Triple:
+        """Where a pull has come to in this tick, in W [m]; it begins where it takes hold."""
+        hold = pull.part, pull.point
+        x, y, z = went.get(hold) or _at(self._poses[0], self._poses[1], body, *_floats(pull.point))
+        a, b, c = pull.target
+        self._goes[hold] = goes = (x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z))
+        return goes
 
     def velocity(self, body: int, point: Array) -> Array:
         """True linear velocity (3,) in W of a point (3,) in W of a body [m/s]."""
@@ -85,12 +102,21 @@ def _velocity(cvel, tree_com, root, body, point):
 
 
 @numba.njit(cache=True)
+def _at(positions, orientations, body, x, y, z):
+    """Where a point (x, y, z) of a body is."""
+    p, R = positions[body], orientations[body]
+    return (
+        p[0] + R[0] * x + R[1] * y + R[2] * z,
+        p[1] + R[3] * x + R[4] * y + R[5] * z,
+        p[2] + R[6] * x + R[7] * y + R[8] * z,
+    )
+
+
+@numba.njit(cache=True)
 def _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, tx, ty, tz):
     """Add a wrench at a point (x, y, z) of a body; returns the point in W."""
-    p, R, c, w = positions[body], orientations[body], centres[body], applied[body]
-    px = p[0] + R[0] * x + R[1] * y + R[2] * z
-    py = p[1] + R[3] * x + R[4] * y + R[5] * z
-    pz = p[2] + R[6] * x + R[7] * y + R[8] * z
+    c, w = centres[body], applied[body]
+    px, py, pz = _at(positions, orientations, body, x, y, z)
     x, y, z = px - c[0], py - c[1], pz - c[2]
     w[0] += fx
     w[1] += fy

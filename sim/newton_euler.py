@@ -25,6 +25,7 @@ class NewtonEuler:
         jacobian: (6, n), linear first, axes of B, at the flange origin.
         v_F: flange velocity (6,), linear [m/s], then angular [rad/s].
         origins: of the joints (n, 3) in B [m].
+        energy: kinetic, of the links (1,) [J].
         tcp, elbow: position [m], then velocity [m/s] of the tool centre point and of the elbow (6,) each.
 
     Args:
@@ -47,6 +48,7 @@ class NewtonEuler:
         self.p, self.R, self.v_F = np.zeros(3), np.eye(3), np.zeros(6)
         self.jacobian = np.zeros((6, n))
         self.origins = np.zeros((n, 3))
+        self.energy = np.zeros(1)
         self.tcp, self.elbow = np.zeros((2, 6))
 
     def set_load(self) -> None:
@@ -65,7 +67,7 @@ class NewtonEuler:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tcp: tool centre point in F (3,) [m].
         """
-        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins, self.tcp, self.elbow)
+        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins, self.tcp, self.elbow, self.energy)
         return _run(q, motion, self._constants, self._gravity, self._elbow_at, tcp, *outcome)
 
 
@@ -111,7 +113,7 @@ def _place(row, behind_p, behind_R, p, R) -> None:
 
 
 @numba.njit(cache=True)
-def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, v_F, origins, tip, bend):
+def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, v_F, origins, tip, bend, energy):
     n = q.size
     p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
     behind_p, behind_R = np.zeros(3), np.eye(3)
@@ -131,7 +133,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, 
         linear = cross(z, arm)
         for k in range(3):
             jacobian[k, i], jacobian[3 + k, i] = linear[k], z[k]
-    v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque, bend)
+    v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque, bend, energy)
     for k in range(6):
         v_F[k] = 0.0
         for i in range(n):
@@ -144,8 +146,8 @@ def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, 
 
 
 @numba.njit(cache=True)
-def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
-    """Torques (n,) of a motion, the speed of the elbow in it, and where the elbow is and how it moves (6,).
+def _inverse(p, R, motion, constants, gravity, elbow, torque, bend, energy):
+    """Torques (n,) of a motion, its kinetic energy (1,), the speed of the elbow, and where the elbow is and how it moves (6,).
 
     The base accelerates upwards: that is gravity.
     """
@@ -155,6 +157,7 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
     a = (-gravity[0], -gravity[1], -gravity[2])
     last = (0.0, 0.0, 0.0)
     v_elbow = 0.0
+    energy[0] = 0.0
     for i in range(n):
         here, qd, qdd = (p[i, 0], p[i, 1], p[i, 2]), motion[1, i], motion[2, i]
         step = (here[0] - last[0], here[1] - last[1], here[2] - last[2])
@@ -181,7 +184,11 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend):
         tangential, normal = cross(alpha, com), cross(w, cross(w, com))
         inertia = row[INERTIA:WIDTH].reshape(3, 3)
         rate, local = turned_back(R[i], alpha), turned_back(R[i], w)
-        whirl = cross(local, turned(inertia, local))
+        spun = turned(inertia, local)
+        whirl = cross(local, spun)
+        going = cross(w, com)
+        energy[0] += 0.5 * (spun[0] * local[0] + spun[1] * local[1] + spun[2] * local[2])
+        energy[0] += 0.5 * row[MASS] * _norm((v[0] + going[0], v[1] + going[1], v[2] + going[2])) ** 2
         change = turned(inertia, rate)
         moment_com = turned(R[i], (change[0] + whirl[0], change[1] + whirl[1], change[2] + whirl[2]))
         for k in range(3):

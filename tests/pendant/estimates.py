@@ -35,6 +35,8 @@ def estimate(
     theta: list[float] | None = None,
     theta_d: list[float] | None = None,
     tau_ext_deviation: float = 0.0,
+    friction: float | list[float] = 0.0,
+    energy: float = 0.0,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
@@ -73,4 +75,6 @@ def estimate(
         elbow=np.array(elbow or [0.0] * 6),
         F_joints=np.array(vector(felt, 3)),
         load_mass=load_mass,
+        friction=np.array(vector(friction, n)),
+        energy=energy,
     )

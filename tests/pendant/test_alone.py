@@ -4,17 +4,19 @@ from collections.abc import Iterable
 
 import pytest
 
-from pendant.alone import AWAY, CREEPS, UNFELT, Alone
+from pendant.alone import AWAY, UNFELT, Alone
 from pendant.estimate import Estimate
 from pendant.events import Values
 from pendant.hand import CARRIED, Hand
 from pendant.modes import TICK
 from pendant.parameters import reference
 from pendant.settings import Settings
+from pendant.work import ASKED, LEFT
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
-RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
+FRICTION = 8.0  # of the elbow while it turns [N·m]
+PAYS = ASKED * LEFT * FRICTION  # torque there that pays for its friction [N·m]
 HERE = [0.0, 0.1, 0.2]
 WAYS = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8)]
 MOVING = Settings().unexplained.speed
@@ -25,7 +27,8 @@ def at(way: float, speed: float, to: tuple[float, float, float] = WAYS[0], turns
     """The flange so far from where it entered [m]; the elbow turns at 0.2 rad/s where `turns` is 1, and feels this [N·m]."""
     third = [0.0, 0.0, 0.2 * turns, 0.0, 0.0, 0.0]
     place = [a + way * b for a, b in zip(HERE, to, strict=True)]
-    return estimate(position=place, speed=speed, qd=third, tau_ext=[0.0, 0.0, felt, 0.0, 0.0, 0.0])
+    rubs = [0.0, 0.0, FRICTION * turns, 0.0, 0.0, 0.0]
+    return estimate(position=place, speed=speed, qd=third, tau_ext=[0.0, 0.0, felt, 0.0, 0.0, 0.0], friction=rubs)
 
 
 class Bench:
@@ -33,7 +36,7 @@ class Bench:
 
     def __init__(self, sensor: bool = True) -> None:
         start = at(0.0, 0.0)
-        self.alone, self.hand = Alone(Settings().unexplained, reference(start, None), RATED), Hand(start, ZEROS)
+        self.alone, self.hand = Alone(Settings().unexplained, reference(start, None)), Hand(start, ZEROS)
         self.sensor, self.ticks = sensor, 0
 
     def see(self, value: Estimate, driven: bool = False) -> Values | None:
@@ -122,31 +125,23 @@ def test_a_way_begins_where_the_arm_came_to_rest_after_a_hand() -> None:
     assert bench.until(creep(20, begins=2 * AWAY)) is not None
 
 
-@pytest.mark.parametrize(("felt", "pushed"), [(1.79, False), (1.81, True)])
-def test_a_hand_on_a_link_may_creep(felt: float, pushed: bool) -> None:
-    """1.8 N·m on a joint of 150 N·m is a hand that turns it."""
+@pytest.mark.parametrize(("share", "pushed"), [(0.99, False), (1.01, True)])
+def test_a_hand_on_a_link_that_pays_for_the_friction_may_creep(share: float, pushed: bool) -> None:
     bench = Bench()
-    told = bench.until(creep(6 * LEAST_CREPT, turns=1.0, felt=felt))
+    told = bench.until(creep(6 * LEAST_CREPT, turns=1.0, felt=share * PAYS))
     assert (told is None) is pushed
 
 
-def test_what_the_joints_feel_counts_from_where_the_arm_rested() -> None:
-    """All of it, also what they felt while the arm was faster for a moment; not what was before a hand."""
+def test_the_work_counts_from_where_the_arm_rested() -> None:
+    """All of it, also what was done while the arm was faster for a moment; not what was before a hand."""
     bench = Bench()
-    assert bench.until(creep(50, turns=1.0, felt=3.0)) is None
-    assert bench.until(at(0.006, 0.1, turns=1.0, felt=3.0) for _ in range(100)) is None
-    assert bench.until(creep(60, begins=0.0095, turns=1.0)) is None, "150 of 206 ticks at 3 N·m"
+    assert bench.until(creep(50, turns=1.0, felt=2.0 * PAYS)) is None
+    assert bench.until(at(0.006, 0.1, turns=1.0, felt=2.0 * PAYS) for _ in range(100)) is None
+    assert bench.until(creep(100, begins=0.0095, turns=1.0)) is None, "150 of 250 ticks are paid twice"
     bench = Bench()
     assert bench.until(creep(100, turns=1.0, felt=9.0)) is None
     bench.held(at(0.0, 0.019))
-    assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=1.0)) is not None
-
-
-@pytest.mark.parametrize(("share", "counts"), [(0.99, False), (1.0, True), (1.01, True)])
-def test_of_a_slow_arm_nobody_is_said_to_push_it(share: float, counts: bool) -> None:
-    bench = Bench()
-    assert bench.until(creep(100, turns=1.0, felt=2.5)) is None
-    assert (bench.until(creep(LEAST_CREPT, share * CREEPS * MOVING, 0.01, 1.0, 0.0)) is not None) is counts
+    assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=0.9 * PAYS)) is not None
 
 
 def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
@@ -156,14 +151,31 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     assert any(values is not None for values in told)
 
 
-def test_after_a_hand_on_a_link_it_has_its_time_and_a_way_of_its_own() -> None:
-    """Pushed on by a link for longer than its time it may run on for as long; once at rest its way is measured from there."""
+def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
+    """Then it may run on alone for its time; once at rest its way is measured from there."""
     bench = Bench()
+    bench.held(at(0.0, 0.1))
+    assert bench.until(at(0.001 * tick, 0.1, turns=1.0, felt=1.01 * PAYS) for tick in range(5000)) is None
+    bench.see(at(5.0, 0.1, turns=1.0, felt=1.01 * PAYS))
+    assert bench.until([at(5.1, 0.1, turns=1.0)] * 150) is None
+    told = bench.see(at(5.1, 0.1, turns=1.0))
+    assert told == {"distance": pytest.approx(0.0), "time": pytest.approx(0.302), "limit": MOVING}
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
     assert bench.until(at(0.001, 0.1, turns=1.0, felt=5.0) for _ in range(151)) is None
-    assert bench.until([at(0.1, 0.1)] * 150) is None
     assert bench.see(at(0.2, 0.0)) is None
     assert bench.until(creep(LEAST_CREPT - 5, begins=0.2)) is None
     assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
+
+
+@pytest.mark.parametrize(("sensor", "carried"), [(False, 0.0), (True, CARRIED)])
+def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(sensor: bool, carried: float) -> None:
+    bench = Bench(sensor)
+    bench.held(at(0.0, 0.1))
+    bench.hand.change = (carried, 0.0, 0.0)
+    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, sensor, False) for _ in range(151)]
+    assert told[:150] == [None] * 150
+    assert told[150] is not None
 
 
 def test_its_memory_tells_all_of_it() -> None:

@@ -16,6 +16,7 @@ from pendant.hand import (
     OFFSET,
     ON_A_LINK,
     SETTLING,
+    STANDS_OUT,
     SWING,
     Hand,
 )
@@ -205,3 +206,18 @@ def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
     hand = Hand(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
     assert after(hand, 1.0, estimate(force=[9.0, 0.0, -OFFSET - 20.0])) == (0.0, 0.0, 0.0)
     assert after(hand, 1.0, estimate(force=[11.0, 0.0, -OFFSET - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_step_stands_out_when_it_is_larger_than_the_force_fluctuates(axis: int) -> None:
+    """A load that swings by 2 N, some ticks long; nothing is known of a sensor that was quiet."""
+    hand = Hand(estimate(), ZEROS)
+    assert hand.stands_out((0.1, 0.0, 0.0))
+    swings = [0.0] * 3
+    for tick in range(2000):
+        swings[axis] = 5.0 + 2.0 * math.sin(0.3 * tick)
+        hand.step(estimate(force=list(swings)), True)
+    step = [0.0] * 3
+    for share, stands_out in ((0.9, False), (1.1, True), (-1.1, True)):
+        step[axis] = share * STANDS_OUT * 2.0 / math.sqrt(2.0)
+        assert hand.stands_out((step[0], step[1], step[2])) is stands_out

@@ -21,6 +21,7 @@ from pendant.operation import LASTS as STEP_LASTS
 from pendant.pose import Vector, Wrench
 from pendant.settings import Settings, apply
 from pendant.supervisor import Supervisor
+from pendant.work import ASKED, LEFT
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -29,6 +30,8 @@ RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
 ZEROS = (0.0,) * 6
 G = 9.81
 TWO = [0.0, 0.0, 2.0 * G]  # what 2 kg need at rest
+FRICTION = 8.0  # of the elbow [N·m]
+PAYS = ASKED * LEFT * FRICTION  # torque that pays for it [N·m]
 
 
 class Free:
@@ -142,43 +145,37 @@ def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
     assert free.until([estimate(speed=0.1)] * 4) is not None
 
 
-def elbow(felt: float, turns: float = 0.2, down: float = 0.0, deviation: float = 0.0) -> Estimate:
+def elbow(felt: float, turns: float = 0.2, down: float = 0.0) -> Estimate:
     """Moving: what the elbow's joint feels [N·m], how fast it turns [rad/s], what pulls the flange down [N]."""
     third, torques = [0.0, 0.0, turns, 0.0, 0.0, 0.0], [0.0, 0.0, felt, 0.0, 0.0, 0.0]
-    return estimate(speed=0.05, qd=third, tau_ext=torques, force=[0.0, 0.0, -down], tau_ext_deviation=deviation)
+    rubs = [0.0, 0.0, math.copysign(FRICTION, turns), 0.0, 0.0, 0.0]
+    return estimate(speed=0.05, qd=third, tau_ext=torques, force=[0.0, 0.0, -down], friction=rubs)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_a_hand_on_a_link_turns_its_joint_with_what_the_joint_feels(way: float) -> None:
-    """FD-19: 2 N·m on a joint of 150 N·m, for as long as it lasts; without it the arm is on its own again."""
+def test_a_hand_on_a_link_that_pays_for_the_friction_leads_the_arm(way: float) -> None:
+    """FD-19: for as long as it lasts; without it the arm is on its own again, and what was paid in advance does not help."""
     free = Free()
-    assert free.until([elbow(way * 2.0, way * 0.2)] * 1000) is None
-    assert free.until([elbow(0.0, way * 0.2)] * 302) is not None
+    assert free.until([elbow(way * 1.01 * PAYS, way * 0.2)] * 1000) is None
+    assert free.until([elbow(way * 20.0, way * 0.2)] * 100) is None
+    assert free.until([elbow(0.0, way * 0.2)] * 150) is None
+    assert free.see(elbow(0.0, way * 0.2)) is not None
 
 
-def test_the_mean_is_over_every_tick_since_a_hand_was_last_told() -> None:
-    """FD-19: 1.8 N·m in the mean of 151 ticks; then all of them again."""
-    free = Free()
-    assert free.until([elbow(280.0), *[elbow(0.0)] * 150]) is None
-    assert free.until([elbow(0.0)] * 150) is None
-    assert free.see(elbow(0.0)) is not None
-
-
-def test_a_hand_on_a_link_that_swings_is_told_by_the_mean() -> None:
-    assert Free().until([elbow(22.0), elbow(-18.0)] * 500) is None
-    assert Free().until([elbow(21.0), elbow(-18.0)] * 500) is not None
+def test_a_hand_on_a_link_that_swings_is_told_by_its_work() -> None:
+    assert Free().until([elbow(20.0 + 1.01 * PAYS), elbow(1.01 * PAYS - 20.0)] * 500) is None
+    assert Free().until([elbow(20.0 + 0.5 * PAYS), elbow(0.5 * PAYS - 20.0)] * 500) is not None
 
 
 @pytest.mark.parametrize(
     ("value", "use_wrench"),
     [
-        (elbow(1.7), True),  # an error of the friction estimate is no hand
+        (elbow(0.0), True),  # nobody
         (elbow(-5.0), True),  # nor what brakes
-        (elbow(5.0, turns=0.01), True),  # nor what turns nothing
-        (elbow(2.9, deviation=6.0), True),  # nor what the gear's stiffness may hide
+        (elbow(5.0, turns=0.0), True),  # nor what turns nothing
         (elbow(5.0), False),  # without the sensor it may hang at the flange
     ],
-    ids=["small", "against", "still", "unsure", "blind"],
+    ids=["small", "against", "still", "blind"],
 )
 def test_what_joints_feel_besides_is_no_hand(value: Estimate, use_wrench: bool) -> None:
     assert Free().until([value] * 151, use_wrench=use_wrench) is not None

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from pendant.hand import Hand
 from pendant.pose import Vector
 from pendant.sensor_steps import ANSWER, JUMP, LATER, LEAST, LEAST_MOVED, MOVED, NOISE, NOISE_OF_LOAD, QUIET, SOON, STRAY, Steps
 from tests.pendant.estimates import estimate
@@ -13,10 +14,21 @@ FIRST = 3
 """Ticks before a step: two are what it begins from, and in one it may come."""
 
 
+def touch(force: Vector, spread: float = 0.0) -> Hand:
+    """What the flange feels in one tick, and how much it fluctuates [N]: a hand after its step."""
+    hand = Hand(estimate(), (0.0,) * 6)
+    hand.change = force
+    hand._spread = spread * spread
+    return hand
+
+
 def seen(steps: Steps, forces: list[Vector], felt: list[float] | None = None, mass: float = 0.0) -> list[Vector]:
     """What is taken off, for these forces; from the tick after the step on the joints feel `felt`."""
     joints = [[0.0] * 3] * (FIRST + 1) + [felt or [0.0] * 3] * (len(forces) - FIRST - 1)
-    found = [steps.step(estimate(felt=by_joints, load_mass=mass), force) for force, by_joints in zip(forces, joints, strict=True)]
+    found = [
+        steps.step(estimate(felt=by_joints, load_mass=mass), touch(force))
+        for force, by_joints in zip(forces, joints, strict=True)
+    ]
     return [step for step in found if step is not None]
 
 
@@ -47,7 +59,7 @@ def test_of_what_the_joints_feel_the_mean_counts(ticks: int, told: bool) -> None
     steps, found = Steps(), []
     for tick, force in enumerate(stepping(5.0, LATER + 1, 0.0)):
         felt = 0.8 * 5.0 if FIRST + LATER + 1 - ticks <= tick else 0.0
-        found.append(steps.step(estimate(felt=[0.0, 0.0, felt]), force))
+        found.append(steps.step(estimate(felt=[0.0, 0.0, felt]), touch(force)))
     assert (found[-1] is not None) is told
 
 
@@ -60,7 +72,7 @@ def test_of_what_the_joints_felt_before_a_smoothed_value_counts(stray: float, to
     for tick, size in enumerate([0.0] * 41 + [5.0] * (LATER + 1)):
         felt, force = [0.0] * 3, [0.0] * 3
         felt[axis], force[axis] = before[tick] if tick < 41 else 4.0, size
-        found.append(steps.step(estimate(felt=felt), (force[0], force[1], force[2])))
+        found.append(steps.step(estimate(felt=felt), touch((force[0], force[1], force[2]))))
     assert (found[-1] is not None) is told
 
 
@@ -72,7 +84,7 @@ def test_while_a_hand_moves_the_arm_only_large_ones_are_told(size: float, joint:
     steps, found = Steps(), []
     for tick, force in enumerate(stepping(size, LATER + 1)):
         moving = [speed * (k == joint) * (tick <= FIRST) for k in range(6)]
-        found.append(steps.step(estimate(felt=0.0, qd=moving), force))
+        found.append(steps.step(estimate(felt=0.0, qd=moving), touch(force)))
     assert (found[-1] is not None) is (abs(size) >= (LEAST_MOVED if abs(speed) > MOVED else LEAST))
 
 
@@ -126,7 +138,7 @@ def test_a_step_that_shakes_the_flange_or_that_nobody_can_tell_from_one_that_doe
     steps = Steps()
     forces = stepping(20.0)
     found = [
-        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > FIRST)], **(how if k > FIRST else {})), force)  # type: ignore[arg-type]
+        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > FIRST)], **(how if k > FIRST else {})), touch(force))  # type: ignore[arg-type]
         for k, force in enumerate(forces)
     ]
     assert found == [None] * len(forces)
@@ -137,7 +149,7 @@ def test_help_that_comes_soon_shakes_the_flange_later_than_a_hand_does(quiet: in
     """A step of 20 N moves a light wrist within four ticks, as the help that it calls for does."""
     steps = Steps()
     found = [
-        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > FIRST)], acceleration=2.0 * (k > FIRST + quiet)), force)
+        steps.step(estimate(felt=[0.0, 0.0, -10.0 * (k > FIRST)], acceleration=2.0 * (k > FIRST + quiet)), touch(force))
         for k, force in enumerate(stepping(20.0))
     ]
     assert any(step is not None for step in found) is told
@@ -191,5 +203,13 @@ def test_an_arm_that_is_shaken_just_then_was_knocked(acceleration: float, when: 
     said = []
     for tick, force in enumerate(forces):
         shaken = acceleration if tick == FIRST + when else 0.0
-        said.append(steps.step(estimate(felt=joints if tick > FIRST else 0.0, acceleration=shaken), force))
+        said.append(steps.step(estimate(felt=joints if tick > FIRST else 0.0, acceleration=shaken), touch(force)))
     assert any(step is not None for step in said) is found
+
+
+@pytest.mark.parametrize(("spread", "told"), [(1.66, True), (1.67, False)])
+def test_a_step_within_what_the_force_fluctuates_is_none(spread: float, told: bool) -> None:
+    """Three times 1.67 N, as a load of 5 kg swings, hide 5 N."""
+    steps = Steps()
+    found = [steps.step(estimate(), touch(force, spread)) for force in stepping(5.0, LATER + 1)]
+    assert (found[-1] is not None) is told

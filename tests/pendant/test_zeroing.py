@@ -7,14 +7,18 @@ from pendant.events import Kind
 from pendant.hand import Hand
 from pendant.inputs import NOTHING
 from pendant.modes import Phase
-from pendant.sensor_steps import LATER, MOVED
+from pendant.pose import ORIGIN
+from pendant.sensor_steps import ANSWER, LATER, MOVED
 from pendant.watch import WrenchMean
 from pendant.zeroing import (
     BEGINS,
     FAR,
     FAR_TURN,
+    FELT,
+    QUIET,
     SLOW,
     SLOW_TURN,
+    SLOWLY,
     Drift,
     Zero,
 )
@@ -37,10 +41,10 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF 
 def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
     drift = Drift()
     start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
-    assert drift.step(start) is None
-    assert drift.step(tuple(np.add(start, change).tolist())) == pytest.approx(gone)
+    assert drift.step(start, ORIGIN) is None
+    assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN) == pytest.approx(gone)
     drift.restart()
-    assert drift.step(start) is None
+    assert drift.step(start, ORIGIN) is None
 
 
 def test_a_mean_is_wanted_once_a_window() -> None:
@@ -118,7 +122,7 @@ def test_a_drift_is_followed_through_the_sensors_noise() -> None:
     noise = np.array([0.15] * 3 + [0.015] * 3)
     drift, gone = Drift(), np.zeros(6)
     for window in range(300):
-        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()))
+        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN)
         gone += taken or (0.0,) * 6
     assert gone == pytest.approx(299 * rate, abs=1.0)
 
@@ -127,8 +131,8 @@ def test_a_drift_is_followed_through_the_sensors_noise() -> None:
 def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
     """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
     drift = Drift()
-    drift.step((0.0,) * 6)
-    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size)) for _ in range(4)]
+    drift.step((0.0,) * 6, ORIGIN)
+    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size), ORIGIN) for _ in range(4)]
     force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
     assert [step[1] for step in taken if step] == pytest.approx(force)
     assert [-5.0 * step[5] for step in taken if step] == pytest.approx(force)
@@ -212,3 +216,55 @@ def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
     assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     zero.leave()
     assert zero.memory == Zero().memory
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
+@pytest.mark.parametrize(("size", "asked"), [(0.99 * FELT, False), (1.01 * FELT, True), (3.0, True)])
+def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
+    drift = Drift()
+    force, felt = [0.0] * 6, [2.0, 3.0, 4.0]
+    drift.step(tuple(force), (2.0, 3.0, 4.0))
+    force[axis] += size
+    felt[axis] += answer * size
+    taken = drift.step(tuple(force), (felt[0], felt[1], felt[2]))
+    assert (taken is not None) is (follows or not asked)
+
+
+@pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
+def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
+    """Its slow changes are none of the sensor's; only the first window after a rest is asked, the others are followed."""
+    drift = Drift()
+    assert drift.held(force, 0) is held
+    drift.step((0.0,) * 6, ORIGIN)
+    assert not drift.held(force, 50)
+
+
+@pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
+def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
+    drift = Drift(1000)
+    assert drift.held(QUIET + SLOWLY * 100.0, 1000 + round(500 * seconds)) is held
+
+
+def test_a_hand_that_rests_on_the_arm_leaves_no_offset_behind() -> None:
+    """It holds the arm with 3 N where it came to rest, for 2 s, and becomes lighter; then it is gone."""
+    bench = Bench(free_drive__period=30.0).in_period()
+    for tick in range(200):
+        bench.step(NOTHING, estimate(force=[6.0, 0.0, 0.0], qd=0.3 if tick < 150 else 0.0))
+    for tick in range(1000):
+        bench.step(NOTHING, estimate(force=[3.0 - 0.002 * tick, 0.0, 0.0]))
+    for _ in range(400):
+        bench.step(NOTHING, estimate())
+    assert bench.last.phase is Phase.RESTART
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
+
+
+def test_a_hand_that_presses_on_an_arm_at_rest_is_felt_by_the_joints() -> None:
+    bench = Bench(free_drive__period=30.0).in_period()
+    for tick in range(1000):
+        force = min(0.004 * tick, 3.0)
+        bench.step(NOTHING, estimate(force=[force, 0.0, 0.0], felt=[force, 0.0, 0.0]))
+    assert bench.last.baseline[0] <= FELT
+    for _ in range(1000):
+        bench.step(NOTHING, estimate())
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.15), "of the first newton, which nobody can tell"

@@ -50,6 +50,13 @@ def follow(angle, ticks: int = 400):
     return result
 
 
+def test_the_kinetic_energy_is_that_of_links_and_rotors() -> None:
+    speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
+    result = follow(lambda t: BENT + speed * t)
+    inertia = estimator()._dynamics.mass(result.q) + np.diag(UR5E.motors.rotor_inertia)
+    assert result.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
+
+
 def test_a_steady_speed_is_followed_without_lag() -> None:
     speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
     result = follow(lambda t: BENT + speed * t)
@@ -403,7 +410,7 @@ def test_a_hand_is_never_learned(part: str, forwards: list[float]) -> None:
     for k in range(500):
         target += np.array(forwards) * 0.1 * 0.002 * min(k / 100.0, 1.0)
         bench.run(0.002, Pull(part, CENTRE, tuple(target), 300.0))
-    assert (bench.plant.data.xpos[body] - start) @ forwards > 0.06, "it goes along"
+    assert (bench.plant.data.xpos[body] - start) @ forwards > 0.055, "it goes along"
     assert bench.mode is Mode.FREE_DRIVE, "who guides the arm by its elbow is somebody (FD-19)"
     assert (estimator.friction.terms == known[0]).all()
     assert (estimator.transmission.correction == known[1]).all()

@@ -45,6 +45,16 @@ def test_torque_pose_and_jacobian_are_pinocchios(arm: Arm, load: Load) -> None:
 
 
 @pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
+def test_the_kinetic_energy_is_pinocchios(arm: Arm) -> None:
+    dynamics = rigid(arm, TWO_KG)
+    for seed in range(5):
+        q, motion = any_motion(arm, seed)
+        dynamics.recursion.run(q, motion, TCP)
+        expected = pin.computeKineticEnergy(dynamics.model, dynamics.model.createData(), q, motion[1])
+        assert dynamics.recursion.energy[0] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
 def test_speeds_are_differences_of_places(arm: Arm) -> None:
     q, motion = any_motion(arm, 7)
     recursion = rigid(arm, TWO_KG).recursion

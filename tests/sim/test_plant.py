@@ -1,13 +1,16 @@
 """The plant against analytic mechanics: weight, free motion, energy, friction, step size."""
 
+import math
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 import pytest
 
+from pendant.modes import TICK
 from sim.arm import Arm
 from sim.friction import Friction, input_side
+from sim.hands import RESPONSE
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario
@@ -244,14 +247,35 @@ def test_a_push_acts_at_its_point() -> None:
     assert not plant.data.xfrc_applied.any(), "a push ends with its tick"
 
 
-def test_the_hand_pulls_like_a_spring_and_never_beyond_its_cap() -> None:
+def pulled(way: float, ticks: int) -> np.ndarray:
+    """Force (3,) of a hand [N] that pulls the flange of a braked arm along y for so many ticks."""
     plant = Plant(UR5E, Scenario())
-    torque = gravity_torque(plant)
     flange = plant.data.xpos[plant.model.body("flange").id].copy()
-    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 0.02, 0.0])), 50.0),))
-    assert np.allclose(plant.hands.touched[0][2], [0.0, 800.0 * 0.02, 0.0], atol=0.1)
-    plant.advance(torque, (Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 9.0, 0.0])), 50.0),))
-    assert np.linalg.norm(plant.hands.touched[0][2]) == pytest.approx(50.0)
+    touch = Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, way, 0.0])), 50.0)
+    for _ in range(ticks):
+        plant.advance(gravity_torque(plant), (touch,), braked=True)
+    return np.array(plant.hands.touched[0][2])
+
+
+def test_the_hand_pulls_like_a_spring_and_never_beyond_its_cap() -> None:
+    assert np.allclose(pulled(0.02, 200), [0.0, 800.0 * 0.02, 0.0], atol=1.0)
+    assert np.linalg.norm(pulled(9.0, 200)) == pytest.approx(50.0)
+
+
+@pytest.mark.parametrize("ticks", [1, 5, 15, 30])
+def test_a_hands_force_comes_as_fast_as_a_hand_is(ticks: int) -> None:
+    """No step of force: it begins where it takes hold, and goes on with its time constant."""
+    share = 1.0 - math.exp(-ticks * TICK / RESPONSE)
+    assert np.linalg.norm(pulled(0.02, ticks)) == pytest.approx(16.0 * share, abs=0.8)
+
+
+def test_a_hand_that_takes_hold_again_begins_at_no_force() -> None:
+    plant = Plant(UR5E, Scenario())
+    flange = plant.data.xpos[plant.model.body("flange").id].copy()
+    touch = Pull("flange", (0.0, 0.0, 0.0), tuple(flange + np.array([0.0, 0.05, 0.0])), 50.0)
+    for touches in [(touch,)] * 100 + [()] * 1 + [(touch,)]:
+        plant.advance(gravity_torque(plant), touches, braked=True)
+    assert np.linalg.norm(plant.hands.touched[0][2]) < 8.0, "40 N before; the arm swings back against its damping"
 
 
 def test_an_unknown_part_is_an_error() -> None:
