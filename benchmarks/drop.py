@@ -51,11 +51,11 @@ class Touched(NamedTuple):
     kinds: tuple[str, ...]
 
 
-def enter(device: Simulation) -> bool:
-    """Hold the button until free-drive is on, then let go."""
+def enter(device: Simulation, touches: tuple[Touch, ...] = ()) -> bool:
+    """Hold the button until free-drive is on, then let go, with hands on the arm."""
     for _ in range(1000):
-        if device.tick(HOLD).mode is Mode.FREE_DRIVE:
-            return device.tick(RELEASE).mode is Mode.FREE_DRIVE
+        if device.tick(Wishes(HOLD.inputs, touches, ())).mode is Mode.FREE_DRIVE:
+            return device.tick(Wishes(RELEASE.inputs, touches, ())).mode is Mode.FREE_DRIVE
     return False
 
 

@@ -110,11 +110,11 @@ def simulation(case: Case, settings: Settings = SETTINGS) -> Simulation:
     return device
 
 
-def told(device: Simulation, case: Case) -> float:
-    """The mass error that the sensor could best tell: the true one and what its offset weighs along gravity [kg]."""
+def told(device: Simulation, error: float) -> float:
+    """The mass error that the sensor could best tell [kg]: the true `error`, and what its zero is off by, along gravity."""
     R_BF = device.snapshot().estimate.R_BF
-    offset = R_BF @ device.sensors.wrench_offset[:3]
-    return case.true - case.configured + float(offset @ device.dynamics.gravity_B) / -(9.81**2)
+    offset = R_BF @ (device.sensors.wrench_offset[:3] - np.array(device.zero[:3]))
+    return error + float(offset @ device.dynamics.gravity_B) / -(9.81**2)
 
 
 def measure_case(case: Case) -> Result:
@@ -139,7 +139,7 @@ def measure_case(case: Case) -> Result:
         if not entered:
             before = whole
         if any(event.kind is Kind.SEQUENCE_STARTED for event in decision.events):
-            best = told(device, case)
+            best = told(device, case.true - case.configured)
         if over and not entered and tick > 500:
             break
         if entered and tick - since == 500:
