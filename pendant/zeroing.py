@@ -14,9 +14,9 @@ from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS
-from pendant.pose import Vector, Wrench, flat, norm, turned, turned_back
+from pendant.pose import Vector, Wrench, flat, norm, turned
 from pendant.sensor_steps import MOVED, Steps
-from pendant.watch import WINDOW, WrenchMean
+from pendant.watch import WINDOW, WrenchMean, in_flange
 
 SLOW = 3.0
 """So fast may a force drift [N/s]."""
@@ -118,7 +118,7 @@ class Zero:
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
-        self.used, self.baseline, self.drifted = wrench_ok, _in_flange(estimate, mean.mean()), ZEROS
+        self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
         self._drift, self._steps = Drift(), Steps()
 
     def leave(self) -> None:
@@ -161,7 +161,7 @@ class Zero:
         elif self._drift.due():
             gone = self._drift.step(mean.mean())
             if gone is not None:
-                gone = _in_flange(estimate, gone)
+                gone = in_flange(estimate, gone)
                 self._drift.keep(gone)
                 self._take_off(gone, hand)
                 x, y, z, a, b, c = self.drifted
@@ -176,10 +176,3 @@ class Zero:
         hand.shift((gone[0], gone[1], gone[2]))
         self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])
         self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])
-
-
-def _in_flange(estimate: Estimate, wrench: Wrench) -> Wrench:
-    """A wrench in axes of B, in those of the flange now."""
-    x, y, z, a, b, c = wrench
-    R_BF = flat(estimate.R_BF)
-    return (*turned_back(R_BF, (x, y, z)), *turned_back(R_BF, (a, b, c)))
