@@ -53,8 +53,8 @@ TOOLING = frozenset(
         Kind.ZERO_DUE,
     }
 )
-"""Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/test_tooling.py and test_tare_run.py
-say when they come."""
+"""Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/test_tooling.py and
+test_tare_run.py say when they come."""
 
 
 def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:
