@@ -40,6 +40,7 @@ Control = Literal[
     "wizard_measure",
     "wizard_apply",
     "wizard_clear",
+    "zero_sensor",
 ]
 # Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
 Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]

@@ -79,7 +79,7 @@ class OfEvents(During, frozen=True, kw_only=True):
     """Base of what looks for events of a kind, those alone that carry these words: `values: {parameter: flange speed}`."""
 
     kind: Kind
-    values: dict[str, str] = msgspec.field(default_factory=dict)
+    values: dict[str, str | bool] = msgspec.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that events of the kind carry such values."""

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from pendant.program import AnyStep, JointMove, LinearMove, Program, SwitchTool, Wait, WaitForContact
+from pendant.program import AnyStep, JointMove, LinearMove, Program, SwitchTool, Wait, WaitForContact, ZeroSensor
 from pendant.reaction import Until
 from sim.scenario import Vector
 
@@ -18,7 +18,13 @@ JOINT_SPEED, LINE_SPEED, TOUCH_SPEED = 0.4, 0.25, 0.05
 """At full speed: of a joint move, as a share of the joints' limits; of a line, and of a line until contact [m/s]."""
 
 MOVES = {"joint": "Move to", "line": "Line to", "touch": "Touch on the way to"}
-WAITS = {"wait": "Wait 1 s", "contact": "Wait for a contact", "tool on": "Tool on", "tool off": "Tool off"}
+WAITS = {
+    "wait": "Wait 1 s",
+    "contact": "Wait for a contact",
+    "tool on": "Tool on",
+    "tool off": "Tool off",
+    "zero": "Zero the force sensor",
+}
 
 
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -33,7 +39,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
 class Step(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A step of the program: a move to a waypoint, or what needs none."""
 
-    do: Literal["joint", "line", "touch", "wait", "contact", "tool on", "tool off"]
+    do: Literal["joint", "line", "touch", "wait", "contact", "tool on", "tool off", "zero"]
     to: Name | None = None  # the waypoint
 
     def __post_init__(self) -> None:
@@ -115,6 +121,8 @@ def _move(lesson: Lesson, step: Step, speed: float) -> AnyStep:
     if step.to is None:
         if step.do == "wait":
             return Wait(duration=1.0)
+        if step.do == "zero":
+            return ZeroSensor()
         return WaitForContact() if step.do == "contact" else SwitchTool(on=step.do == "tool on")
     target = lesson.find(step.to)
     if step.do == "joint":

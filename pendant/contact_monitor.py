@@ -83,6 +83,14 @@ class ContactMonitor:
         """Where the arm is."""
         return self._poses.at(0)
 
+    def restart(self) -> None:
+        """The flange sensor is zeroed, which is no contact: what it said before counts no more."""
+        kept = bool(self._kept)  # then none of the detectors has got what the others have
+        self._kept.clear()
+        for detector, source in zip(self.detectors, SOURCES, strict=True):
+            if kept or not source.in_base:
+                detector.sense(None)
+
     def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
         """One tick: buffers always, rules while `on` (CD-1, CD-4)."""
         self._poses.push(estimate)

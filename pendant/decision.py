@@ -11,8 +11,9 @@ from pendant.haptics import Shake
 from pendant.limits import Monitored
 from pendant.modes import Law, Mode, Phase, Safety
 from pendant.nearness import Nearness
+from pendant.parameters import ZEROS
 from pendant.payload_wizard import IDLE, Progress
-from pendant.pose import Vector
+from pendant.pose import Vector, Wrench
 from pendant.program import Move, ProgramState
 from pendant.reduced import SpeedLimits
 from pendant.soft_limits import Damping
@@ -69,4 +70,6 @@ class Decision(msgspec.Struct, frozen=True):
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload
+    zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
+    zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
     limits: str = ""  # checksum of all limits

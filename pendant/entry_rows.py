@@ -75,7 +75,12 @@ ENTRY: dict[Kind, Row] = {
     Kind.REFUSED_PAYLOAD: refused(
         "Free-drive refused: wrong payload or a push",
         "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
-        ("mass", "force", "way", "parameter"),
+        ("mass", "force", "way", "zero", "parameter"),
+    )._replace(
+        variant=(
+            "zero",
+            "{force:.0f} N: {mass:+.1f} kg, the sensor's zero, or a push {way}. Let go; zero it with nothing touching.",
+        )
     ),
     Kind.REFUSED_WALL: refused(
         "Free-drive refused: {part} beyond {wall}",
@@ -121,8 +126,11 @@ ENTRY: dict[Kind, Row] = {
         Severity.WARNING,
         "The force has stayed: check the payload",
         "{force:.0f} N, as of {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
-        ("force", "mass"),
-        Clears.NEXT,
+        ("force", "mass", "zero"),
+        variant=(
+            "zero",
+            "{force:.0f} N, as of {mass:+.1f} kg or of the sensor's zero. Hands off? Zero it, or correct the payload.",
+        ),
     ),
     Kind.NOT_YET: Row(
         Effect.INFO,

@@ -52,6 +52,7 @@ class Row(NamedTuple):
     clears: Clears = Clears.NEXT
     override: str = "nobody"  # who may override it
     cool_down: bool = False  # starts the cool-down (FD-12c)
+    variant: tuple[str, str] | None = None  # a value of the event, and the guidance instead of the other where it is true
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
 
 

@@ -38,6 +38,7 @@ class Command(Word):
     WIZARD_MEASURE = "wizard_measure"  # measure the payload in this posture
     WIZARD_APPLY = "wizard_apply"  # configure what was found
     WIZARD_CLEAR = "wizard_clear"  # forget the postures
+    ZERO_SENSOR = "zero_sensor"  # what the flange force/torque sensor says of the untouched arm is subtracted from now on
     DETECTION = "detection"  # switch contact detection on or off (CD-1)
 
 

@@ -9,7 +9,7 @@ from pendant.estimate import Estimate
 from pendant.events import Event, Kind, Values
 from pendant.load import Load
 from pendant.payload_fit import LEAST, Finding, Posture, least_angle, nearest, solve
-from pendant.pose import Vector
+from pendant.pose import Vector, Wrench
 
 MOST = 24
 """Postures kept at most."""
@@ -57,6 +57,15 @@ class PayloadWizard:
         self._postures = ()
         self.left = 0
         self.progress = IDLE
+
+    def shift(self, gone: Wrench) -> None:
+        """The sensor was zeroed: it says more by so much from now on, axes of F [N, N·m]; no measurement runs."""
+        x, y, z, a, b, c = gone
+        self._postures = tuple([Posture(p.a, _sum(p.force, (x, y, z)), _sum(p.torque, (a, b, c))) for p in self._postures])
+        found = self.progress.finding
+        if found is not None:
+            force, torque = _sum(found.force_offset, (x, y, z)), _sum(found.torque_offset, (a, b, c))
+            self.progress = self.progress._replace(finding=found._replace(force_offset=force, torque_offset=torque))
 
     def begin(self, estimate: Estimate, length: int, why_not: str) -> list[Event]:
         """Begin to measure where the arm stands now.
@@ -155,6 +164,10 @@ def _specific_force(estimate: Estimate) -> Vector:
     """In F, from the joint angles, which are finer than the accelerometer at rest."""
     x, y, z = (-(estimate.g_B @ estimate.R_BF)).tolist()
     return (x, y, z)
+
+
+def _sum(a: Vector, b: Vector) -> Vector:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def _refused(estimate: Estimate, reason: str) -> Event:

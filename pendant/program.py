@@ -93,7 +93,11 @@ class HandGuide(Move, tag="hand_guide", frozen=True, forbid_unknown_fields=True,
     """The arm is guided by hand, as in free-drive and with its activation; the program goes on when that ends (CD-15)."""
 
 
-AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool | ApplyForce | HandGuide
+class ZeroSensor(Move, tag="zero", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Zero the flange force/torque sensor, as soon as the arm has stood for a second with nothing touching it."""
+
+
+AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool | ApplyForce | HandGuide | ZeroSensor
 
 
 class Program(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

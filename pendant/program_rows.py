@@ -79,6 +79,18 @@ PROGRAM: dict[Kind, Row] = {
         "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
         ("mass", "mass_deviation", "x", "y", "z", "centre_deviation", "fit", "postures"),
     ),
+    # The flange sensor's zero
+    Kind.SENSOR_ZEROED: info(
+        "Force sensor zeroed", "{force:.1f} N and {torque:.2f} N·m subtracted.", ("force", "torque", "x", "y", "z")
+    ),
+    Kind.ZERO_REFUSED: denied("Force sensor not zeroed", "{reason}.", ("reason",)),
+    Kind.ZERO_DUE: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Zero the force sensor",
+        "{force:.1f} N, {torque:.2f} N·m that nothing explains. Zero it with nothing touching; check the payload.",
+        ("force", "torque"),
+    ),
     # Settings
     Kind.SETTING_CHANGED: info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
     Kind.SETTING_REFUSED: denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),

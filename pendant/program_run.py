@@ -96,6 +96,11 @@ class ProgramRun:
         events.append(Event(Kind.PROGRAM_FAILED, tick, values))
         self._end()
 
+    def zeroed(self, tick: int, events: list[Event]) -> None:
+        """The sensor is zeroed, for which the present step was there."""
+        if self._robot.sequencer.zeroed():
+            self._finish(tick, events)
+
     def _felt(self) -> Vector:
         """Mean force of F_user [N]."""
         x, y, z = self._mean.mean()[:3]

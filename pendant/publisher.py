@@ -12,16 +12,17 @@ from pendant.program import ProgramState
 from pendant.reduced import SpeedLimits
 from pendant.robot import Robot
 from pendant.settings import Settings, limits_checksum
+from pendant.taring import Taring
 from pendant.tooling import Tooling
 
 
 class Publisher:
     """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
 
-    __slots__ = ("_checksum", "_decision", "_key", "_locks", "_passing", "_robot", "_settings", "_tooling")
+    __slots__ = ("_checksum", "_decision", "_key", "_locks", "_passing", "_robot", "_settings", "_taring", "_tooling")
 
-    def __init__(self, robot: Robot, tooling: Tooling, settings: Settings) -> None:
-        self._robot, self._tooling = robot, tooling
+    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, settings: Settings) -> None:
+        self._robot, self._tooling, self._taring = robot, tooling, taring
         self._key: tuple[object, ...] = ()  # what lasts of it
         self._decision: Decision | None = None  # the last one
         self._passing = False  # it tells of what is of its tick alone
@@ -51,7 +52,7 @@ class Publisher:
             speeds: limits of REDUCED.
             shake: haptic feedback.
         """
-        robot, tooling, use = self._robot, self._tooling, self._settings
+        robot, tooling, taring, use = self._robot, self._tooling, self._taring, self._settings
         free, sequencer, mode = robot.free, robot.sequencer, robot.mode
         arm, phase, helping = free.arm, free.phase, free.helping
         locks = self._locks if mode is _FREE_DRIVE else None
@@ -62,7 +63,7 @@ class Publisher:
         key = (
             mode, robot.safety, phase, law, helping, free.baseline, robot.grip, speeds, balance, damping, free.zones, locks,
             singularity, shake, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on, tooling.fitting,
-            tooling.wizard.progress,
+            tooling.wizard.progress, taring.zero, taring.due,
         )  # fmt: skip
         periods = free.periods() if use.free_drive.remainders and not free.idle else ()
         walls = () if phase is _OFF else free.walls()
@@ -105,6 +106,8 @@ class Publisher:
             locks=locks,
             singularity=singularity,
             shake=shake,
+            zero=taring.zero,
+            zero_due=taring.due,
             limits=self._checksum,
         )
         return self._decision

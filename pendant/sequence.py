@@ -142,7 +142,7 @@ class Sequence:
         elif gauge.name in PAYLOAD_LIKE:
             force = split(around.mean.mean(), self._up).payload_force
             values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
-            events.append(Event(Kind.REFUSED_PAYLOAD, tick, {**values, "parameter": excess.parameter}))
+            events.append(Event(Kind.REFUSED_PAYLOAD, tick, {**values, "zero": around.maybe_zero, "parameter": excess.parameter}))
         else:
             events.append(Event(Kind.REFUSED_LIMIT, tick, dict(excess._asdict())))
         return events
@@ -187,4 +187,4 @@ class Verdict:
         self.waiting = False
         if abs(force - self._force) > self.SAME:
             return []
-        return [Event(Kind.RESIDUAL_STAYED, tick, {"force": abs(force), "mass": mass_error(force)})]
+        return [Event(Kind.RESIDUAL_STAYED, tick, {"force": abs(force), "mass": mass_error(force), "zero": around.maybe_zero})]

@@ -18,9 +18,13 @@ from pendant.program import (
     SwitchTool,
     Wait,
     WaitForContact,
+    ZeroSensor,
 )
 from pendant.reaction import REACTION_SPEED, Until, goal
 from pendant.settings import ticks
+
+PATIENCE = ticks(3.0)
+"""A step that zeroes the sensor waits so long for the arm to come to rest, and for whoever touches it to let go."""
 
 
 class Sequencer:
@@ -47,7 +51,7 @@ class Sequencer:
         self.index = 0
         self.move: Move | None = None  # the step being done, None unless RUNNING
         self._begun = 0  # how many moves were begun so far: the last id
-        self._left = 0  # ticks left of a wait
+        self._left = 0  # ticks left of a wait, or of the patience of a step that zeroes the sensor
         self._from: ArmPose | None = None  # where the present move began
         self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
         self.guided = False  # the arm was guided by hand, until it has come to rest
@@ -110,6 +114,21 @@ class Sequencer:
         """Guiding by hand has ended."""
         self.guided, self.move = True, None
 
+    def zeroed(self) -> bool:
+        """The present step, `ZeroSensor`, is done. Returns as `step`."""
+        self._left = 0
+        return self._next()
+
+    def impatient(self) -> bool:
+        """One tick in which the present step, `ZeroSensor`, cannot zero the sensor. Returns whether it waits no longer."""
+        self._left -= 1
+        return self._left <= 0
+
+    def shift(self, gone: Vector) -> None:
+        """The sensor was zeroed: F_user is less by so much from the next tick on, axes of B [N]."""
+        x, y, z = (a - b for a, b in zip(self._untouched, gone, strict=True))
+        self._untouched = (x, y, z)
+
     @property
     def braked(self) -> bool:
         """The present step goes on when the arm has come to rest."""
@@ -151,7 +170,7 @@ class Sequencer:
             self._from = where()
             if isinstance(self.move, JointMove | LinearMove):
                 self._untouched = felt()
-        if isinstance(self.move, WaitForContact | HandGuide):
+        if isinstance(self.move, WaitForContact | HandGuide | ZeroSensor):
             return False
         if isinstance(self.move, SwitchTool):
             self.tool_on = self.move.on
@@ -190,5 +209,7 @@ class Sequencer:
         self.move = replace(step, id=self._begun)
         if isinstance(self.move, ApplyForce):
             self.move = replace(self.move, untouched=self._untouched)
-        if isinstance(step, Wait) and self._left == 0:
+        if isinstance(step, ZeroSensor):
+            self._left = PATIENCE
+        elif isinstance(step, Wait) and self._left == 0:
             self._left = ticks(step.duration)

@@ -21,17 +21,19 @@ from pendant.keepalive import KeepAlive
 from pendant.lock import change
 from pendant.modes import TICK, Law, Mode, Phase, way_out
 from pendant.periods import RUNNING
-from pendant.pose import Pose, from_rpy
+from pendant.pose import Pose, Wrench, from_rpy
 from pendant.program import Program
 from pendant.program_run import ProgramRun
 from pendant.publisher import Publisher
 from pendant.robot import Robot
 from pendant.safety_inputs import SafetyInputs
 from pendant.sensing import JointSensors
+from pendant.sensor_spec import SensorSpec
 from pendant.sequencer import Sequencer
 from pendant.settings import Settings, ticks
 from pendant.sources import PROGRAM
 from pendant.surroundings import Surroundings
+from pendant.tare_run import TareRun
 from pendant.tooling import Fitting, Tooling
 from pendant.tools import Equipment, Tool
 from pendant.walls import AnyBorder
@@ -60,6 +62,7 @@ class Supervisor:
         frames: Mapping[str, Pose] | None = None,
         ranges: tuple[float, ...] | None = None,
         equipment: Equipment | None = None,
+        sensor: SensorSpec | None = None,
     ) -> None:
         """
         Args:
@@ -71,6 +74,7 @@ class Supervisor:
             frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
+            sensor: what is known of the flange force/torque sensor; None: that of a UR5e.
         """
         self.settings = settings
         self._joints = joints or tuple(f"joint {number}" for number in range(1, n_joints + 1))
@@ -92,7 +96,9 @@ class Supervisor:
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
-        self._publisher = Publisher(self._robot, self._tooling, settings)
+        felt = (self._haptics, self._calls, self._monitor, self._mean)
+        self._tare = TareRun(sensor or SensorSpec(), self._robot, self._run, self._tooling, *felt)
+        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, settings)
         self._turn_tool()
         self._refresh()
 
@@ -105,6 +111,11 @@ class Supervisor:
     def fitting(self) -> Fitting:
         """Tool and payload, as configured."""
         return self._tooling.fitting
+
+    @property
+    def zero(self) -> Wrench:
+        """What is subtracted from the flange sensor's values, axes of F [N, N·m]; the same object until it changes."""
+        return self._tare.taring.zero
 
     @property
     def tools(self) -> tuple[Tool, ...]:
@@ -123,8 +134,8 @@ class Supervisor:
         Equal states decide equally.
         """
         button = (self._button.held, self._button.silent)
-        devices = (self._enabling.memory, self._safety.memory, self._sensors.lost, self._mean.memory)
-        own = (button, self._calls.memory, self._holding, self._tooling.memory, self._haptics.memory)
+        devices = (self._haptics.memory, self._enabling.memory, self._safety.memory, self._sensors.lost, self._mean.memory)
+        own = (button, self._calls.memory, self._holding, self._tooling.memory, self._tare.taring.memory)
         return (self.settings, *own, *devices, self._run.memory, self._robot.memory)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
@@ -142,6 +153,7 @@ class Supervisor:
         self._run.step(estimate, inputs, self._monitor, self._tooling.changing, self.settings, events)
         self._free_drive(estimate, wrench_ok, events)
         self._equip(estimate, inputs, events)
+        self._tare.step(estimate, commands, wrench_ok, self.settings, events)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
@@ -215,11 +227,10 @@ class Supervisor:
                     robot.mode = to
 
     def _free_drive(self, estimate: Estimate, wrench_ok: bool, events: list[Event]) -> None:
-        robot, calls, free = self._robot, self._calls, self._free
-        fitting = self._tooling.fitting
+        robot, calls, free, fitting = self._robot, self._calls, self._free, self._tooling.fitting
         changing = fitting.mass if self._tooling.changing else None
-        felt = (calls.hand_off, calls.touched, calls.force)
-        besides = (changing, self._sequencer.guiding, self._haptics.busy, fitting.load.mass)
+        felt = (calls.hand_off, calls.touched, calls.force, changing)
+        besides = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
         around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *besides)
         trying = free.phase is not _OFF
         for event in free.step(around, self.settings):
@@ -255,16 +266,15 @@ class Supervisor:
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
-        speeds = self._safety.speed_limits(self.settings)
-        return self._publisher.step(law, events, self._contacts, speeds, haptics.shake)
+        return self._publisher.step(law, events, self._contacts, self._safety.speed_limits(self.settings), haptics.shake)
 
     def _shake(self, law: Law, events: list[Event]) -> None:
         """What is to be felt in this tick (HF-1)."""
         free, mode = self._free, self._robot.mode
         near = any(wall.near > 0.0 for wall in free.walls()) if mode is Mode.FREE_DRIVE else False
         left = next((period.ticks for period in free.periods() if period.name in ENDING), -1)
-        feedback = ticks(self.settings.handshake.feedback)
-        self._haptics.step(Moment(mode, law, free.phase, events, near, left, feedback), self.settings.haptics)
+        moment = Moment(mode, law, free.phase, events, near, left, ticks(self.settings.handshake.feedback))
+        self._haptics.step(moment, self.settings.haptics)
 
 
 _BUTTON, _OFF, _HOLD, _RUN = Button.FREE_DRIVE, Phase.OFF, Law.HOLD, Mode.RUN  # looked up in every tick

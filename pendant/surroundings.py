@@ -5,6 +5,7 @@ import msgspec
 from pendant.enabling import Grip, enables
 from pendant.estimate import Estimate
 from pendant.modes import Mode
+from pendant.taring import Taring
 from pendant.watch import Stillness, WrenchMean
 
 
@@ -24,6 +25,12 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     guided: bool = False  # a step of a program asks for free-drive (CD-15)
     shaken: bool = False  # haptic feedback moves the arm: not what a hand does (FD-19)
     payload: float = 0.0  # configured, without the tool [kg]
+    taring: Taring | None = None  # of the flange sensor; None: nothing is known of its zero
+
+    @property
+    def maybe_zero(self) -> bool:
+        """The sensor's zero alone may be what is felt at the flange (FD-11)."""
+        return self.taring is not None and self.taring.explains(self.estimate, self.mean.mean())
 
     @property
     def enabled(self) -> bool:

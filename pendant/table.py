@@ -13,4 +13,7 @@ TABLE: dict[Kind, Row] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROGRAM}
 def render(event: Event) -> tuple[str, str]:
     """Headline and guidance of an event, with its numbers."""
     row = TABLE[event.kind]
-    return row.headline.format_map(event.values), row.guidance.format_map(event.values)
+    guidance = row.guidance
+    if row.variant is not None and event.values[row.variant[0]]:
+        guidance = row.variant[1]
+    return row.headline.format_map(event.values), guidance.format_map(event.values)

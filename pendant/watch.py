@@ -7,6 +7,7 @@ import numpy as np
 from pendant.estimate import Estimate
 from pendant.events import Values
 from pendant.parameters import ZEROS
+from pendant.pose import Wrench, flat, turned_back
 from pendant.settings import Static, ticks
 
 WINDOW = ticks(0.1)
@@ -98,7 +99,18 @@ class WrenchMean:
         ring = self._ring if self.count == WINDOW else self._ring[: self.count]
         return tuple(_SHARES[self.count - 1].dot(ring).tolist())
 
+    def shift(self, gone: Wrench) -> None:
+        """F_user is less by so much from the next tick on, axes of B [N, N·m]: the sensor was zeroed on an arm that stands."""
+        self._ring -= gone
+
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
         return (self.count, self._next, self._ring[: self.count].tobytes())
+
+
+def in_flange(estimate: Estimate, wrench: Wrench) -> Wrench:
+    """A wrench in axes of B, in those of the flange now."""
+    x, y, z, a, b, c = wrench
+    R_BF = flat(estimate.R_BF)
+    return (*turned_back(R_BF, (x, y, z)), *turned_back(R_BF, (a, b, c)))

@@ -14,9 +14,9 @@ from pendant.events import Event, Kind
 from pendant.hand import Hand
 from pendant.modes import TICK
 from pendant.parameters import ZEROS
-from pendant.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned, turned_back
+from pendant.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned
 from pendant.sensor_steps import ANSWER, MOVED, Steps
-from pendant.watch import WINDOW, WrenchMean
+from pendant.watch import WINDOW, WrenchMean, in_flange
 
 SLOW = 3.0
 """So fast may a force drift [N/s]."""
@@ -37,7 +37,7 @@ FELT = 1.0
 QUIET = 0.7
 """No drift begins with more than this [N]: an arm that comes to rest with more of a force is held by a hand."""
 
-SLOWLY = 0.015
+SLOWLY = 0.0133
 """And so much for each second since it was last followed [N/s]: so fast a sensor drifts by itself (assets/robots/)."""
 
 SMOOTH = 1.0 / WINDOW
@@ -159,7 +159,7 @@ class Zero:
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
-        self.used, self.baseline, self.drifted = wrench_ok, _in_flange(estimate, mean.mean()), ZEROS
+        self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
         self._drift, self._steps = Drift(estimate.tick), Steps()
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
@@ -206,13 +206,13 @@ class Zero:
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
             now = mean.mean()
-            x, y, z = _in_flange(estimate, now)[:3]
+            x, y, z = in_flange(estimate, now)[:3]
             ox, oy, oz, _, _, _ = self.baseline
             if self._drift.held(norm((x - ox, y - oy, z - oz)), estimate.tick):
                 return None
             gone = self._drift.step(now, self._felt)
             if gone is not None:
-                gone = _in_flange(estimate, gone)
+                gone = in_flange(estimate, gone)
                 self._drift.keep(gone)
                 self._take_off(gone, hand)
                 x, y, z, a, b, c = self.drifted
@@ -227,10 +227,3 @@ class Zero:
         hand.shift((gone[0], gone[1], gone[2]))
         self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])
         self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])
-
-
-def _in_flange(estimate: Estimate, wrench: Wrench) -> Wrench:
-    """A wrench in axes of B, in those of the flange now."""
-    x, y, z, a, b, c = wrench
-    R_BF = flat(estimate.R_BF)
-    return (*turned_back(R_BF, (x, y, z)), *turned_back(R_BF, (a, b, c)))

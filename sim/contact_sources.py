@@ -38,7 +38,7 @@ class ContactSources:
     """
 
     def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
-        self._dynamics, self._reach = dynamics, reach
+        self._dynamics, self._range, self._reach = dynamics, reach, reach
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         self._turns = np.zeros((3, 3))  # a tick ago: angular speed; its change; what the turning added to the acceleration
         self._turns[0] = np.nan  # not known yet
@@ -53,6 +53,10 @@ class ContactSources:
         """Take `load` (in F) as everything beyond the flange."""
         self._load, self._com = load, np.array(load.com)
         self._out[:2, 9], self._out[:2, 12] = load.mass, np.linalg.norm(load.com)
+
+    def set_zero(self, zero: Array) -> None:
+        """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
+        self._reach = self._range - float(np.abs(zero[:3]).max())
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.

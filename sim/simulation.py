@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from pendant.decision import Decision
 from pendant.estimate import Estimate
 from pendant.modes import Law
+from pendant.parameters import ZEROS
 from pendant.pose import Pose
+from pendant.sensor_spec import SensorSpec
 from pendant.settings import Settings
 from pendant.supervisor import Supervisor
 from pendant.tooling import Fitting
@@ -27,7 +29,7 @@ from sim.glance import Glance
 from sim.model import Step
 from sim.plant import Plant
 from sim.scenario import Load, Scenario, table
-from sim.sensor_drift import SensorDrift
+from sim.sensor_drift import SensorDrift, lasting, most
 from sim.sensors import Sensors
 from sim.snapshot import Snapshot
 
@@ -45,6 +47,17 @@ def known_frames(scenario: Scenario) -> dict[str, Pose]:
         a, b, c, d, e, f, g, h, i = (R_BW @ R).ravel().tolist()
         poses[name] = Pose((x, y, z), (a, b, c, d, e, f, g, h, i))
     return poses
+
+
+def _sensor_spec(arm: Arm) -> SensorSpec:
+    """What the supervisor knows of the arm's flange sensor."""
+    force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
+    if force_torque is None:
+        return SensorSpec()
+    drift, offset = lasting(force_torque.drift), most(force_torque.drift)
+    noise = (force_torque.force.noise, force_torque.torque.noise)
+    shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
+    return SensorSpec(*drift, *offset, *noise, shaken)
 
 
 class Simulation:
@@ -82,7 +95,8 @@ class Simulation:
         fixed = Load(mass=plate.mass, com=plate.com.tolist())
         equipment = Equipment(tools, used, scenario.payload_configured, arm.payload, fixed)
         walls, frames = tuple(scenario.walls), known_frames(scenario)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment)
+        self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment, _sensor_spec(arm))
+        self.zero, self._zero = self.supervisor.zero, np.zeros(6)
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
@@ -129,7 +143,12 @@ class Simulation:
         supervisor, estimator, controller, plant = self.supervisor, self.estimator, self.controller, self.plant
         if supervisor.fitting is not self.fitting:
             self.fit(supervisor.fitting)
+        if supervisor.zero is not self.zero:
+            self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
+            self.contact_sources.set_zero(self._zero)
         sample = self.sensors.read(plant, self._current)
+        if self.zero is not ZEROS:
+            sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
         done, refusal = references.move_done, references.refusal
         before = None if self._decision is None else self._decision.law

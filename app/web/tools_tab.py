@@ -1,5 +1,6 @@
-"""The tools tab: the tool in use, the table and its editor, the payload beyond the tool, and the wizard that measures it."""
+"""The tools tab: tool in use, table and its editor, payload beyond the tool, the wizard that measures it, the sensor's zero."""
 
+import math
 from collections.abc import Callable, Sequence
 
 import viser
@@ -9,11 +10,13 @@ from app.web.html import Html, enable
 from app.web.running import Running
 from app.web.svg import Colour
 from app.web.tool_editor import ToolEditor
+from pendant.decision import Decision
 from pendant.inputs import Command
 from pendant.load import Load
 from pendant.modes import Mode, Phase
 from pendant.payload_fit import LEAST
 from pendant.payload_wizard import Progress
+from pendant.program import ProgramState
 from pendant.tooling import Fitting
 from pendant.tools import Tool
 from sim.arm import Arm
@@ -47,6 +50,8 @@ class ToolsTab:
                 gui.add_number(f"Centre {axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0) for axis in "xyz"
             )
             self.enter = gui.add_button("Set payload", color="gray")
+        self.zero = gui.add_button("Zero the force sensor", color="gray", icon=viser.Icon.TARGET)
+        self.zeroed = Html(gui)
         self._connect()
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -70,6 +75,8 @@ class ToolsTab:
             enable(self.measure, decision.phase is Phase.OFF and not measuring),
             enable(self.apply, wizard.finding is not None and not locked),
             enable(self.clear, wizard.postures > 0 and not measuring),
+            enable(self.zero, decision.phase is Phase.OFF and not measuring and decision.program is not ProgramState.RUNNING),
+            self.zeroed.show(_subtracted(decision)),
         ]
         return any(changed)
 
@@ -115,6 +122,7 @@ class ToolsTab:
         on(self.measure, lambda: desk.command(Command.WIZARD_MEASURE))
         on(self.apply, lambda: desk.command(Command.WIZARD_APPLY))
         on(self.clear, lambda: desk.command(Command.WIZARD_CLEAR))
+        on(self.zero, lambda: desk.command(Command.ZERO_SENSOR))
 
     def entered(self) -> Load:
         """The payload that the numbers say."""
@@ -156,6 +164,15 @@ def _told(wizard: Progress, measuring: bool) -> str:
         return svg.note("Not found yet", f"{wizard.reason}.", Colour.AMBER)
     text = "Turn the wrist, let go, measure; then the next posture." if wizard.postures else "Let go of the arm and measure."
     return svg.note(f"{wizard.postures} of at least {LEAST} postures", text, Colour.GREY)
+
+
+def _subtracted(decision: Decision) -> str:
+    """What is subtracted from the force sensor, and whether zeroing is due, in a line."""
+    force, torque = math.hypot(*decision.zero[:3]), math.hypot(*decision.zero[3:])
+    now = f"{force:.1f} N and {torque:.2f} N·m are subtracted."
+    if decision.zero_due:
+        return svg.note("Zeroing is due", f"{now} Nothing may touch the arm.", Colour.AMBER)
+    return svg.fine_print(f"{now} Zeroing is not due.")
 
 
 def _point(point: Sequence[float]) -> str:

@@ -4,7 +4,7 @@ import pytest
 
 from app.checked import BadInput, convert
 from app.teaching import Lesson, Step, Waypoint, program
-from pendant.program import JointMove, LinearMove, SwitchTool, Wait, WaitForContact
+from pendant.program import JointMove, LinearMove, SwitchTool, Wait, WaitForContact, ZeroSensor
 
 
 def waypoint(name: str, first: float = 0.0) -> Waypoint:
@@ -23,7 +23,7 @@ def test_without_steps_the_program_visits_the_waypoints() -> None:
 
 def test_every_kind_of_step_becomes_a_move() -> None:
     steps = [Step(do="line", to="P1"), Step(do="touch", to="P2"), Step(do="wait"), Step(do="contact"), Step(do="tool on")]
-    line, touch, wait, contact, tool = program(LESSON, steps, 1.0).steps
+    line, touch, wait, contact, tool, zero = program(LESSON, [*steps, Step(do="zero")], 1.0).steps
     assert isinstance(line, LinearMove)
     assert isinstance(touch, LinearMove)
     assert (line.position, line.quaternion, line.speed, line.until) == ((0.1, 0.2, 0.3), (0.0, 1.0, 0.0, 0.0), 0.25, None)
@@ -33,6 +33,7 @@ def test_every_kind_of_step_becomes_a_move() -> None:
     assert wait == Wait(duration=1.0)
     assert contact == WaitForContact()
     assert tool == SwitchTool(on=True)
+    assert zero == ZeroSensor()
 
 
 def test_waypoints_are_renamed_moved_and_deleted_with_their_steps() -> None:

@@ -48,9 +48,13 @@ TOOLING = frozenset(
         Kind.POSTURE_MEASURED,
         Kind.POSTURE_REFUSED,
         Kind.PAYLOAD_FOUND,
+        Kind.SENSOR_ZEROED,
+        Kind.ZERO_REFUSED,
+        Kind.ZERO_DUE,
     }
 )
-"""Of the tools and the payload wizard, which change no mode; tests/pendant/test_tooling.py says when they come."""
+"""Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/test_tooling.py and
+test_tare_run.py say when they come."""
 
 
 def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:

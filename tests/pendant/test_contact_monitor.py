@@ -206,3 +206,29 @@ def test_what_several_sources_find_in_the_same_tick_is_all_told() -> None:
         now.signals = Signals(now.signals.rows, (True, True, False, False))
         found.append([contact.source for contact in monitor.step(now, use, Mode.RUN, on=True)])
     assert [told for told in found if told] == [[SOURCES[0].source, SOURCES[1].source]]
+
+
+def found(source: int, stream: list[Signal | None], zeroed: int = 0, quiet: range = range(0)) -> list[Contact]:
+    """Contacts where the sensor is zeroed in a tick, while nobody looks for one in those that are `quiet`."""
+    monitor, contacts = ContactMonitor(), list[Contact]()
+    for now in estimates(source, stream):
+        contacts += monitor.step(now, USE, Mode.RUN, now.tick not in quiet)
+        if now.tick == zeroed:
+            monitor.restart()
+    return contacts
+
+
+@pytest.mark.parametrize("quiet", [range(0), range(START - 20, START + 2)], ids=["listening", "not listening"])
+def test_a_sensor_that_is_zeroed_is_no_contact(quiet: range) -> None:
+    """A force that steps by 30 N; also where somebody looks for contacts only just afterwards."""
+    stream: list[Signal | None] = [s if k < START else s._replace(fx=s.fx + 30.0) for k, s in enumerate(signals(400))]
+    assert found(0, stream, quiet=quiet) != []
+    assert found(0, stream, zeroed=START, quiet=quiet) == []
+
+
+def test_what_the_joints_feel_of_a_link_goes_on() -> None:
+    """It has no part in that sensor: a contact that has begun is found when it would have been."""
+    push = ramp(400, START, 1.0, top=30.0)
+    stream: list[Signal | None] = [s._replace(fx=20.0 * s.fx, mass=0.0) for s in signals(400, mass=0.0, arm=50.0, push=push)]
+    assert len(found(2, stream)) == 1
+    assert found(2, stream, zeroed=START + 5) == found(2, stream)

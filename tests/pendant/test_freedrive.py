@@ -258,7 +258,8 @@ def test_what_is_told_of_a_refused_payload_is_told_in_the_last_tick_of_the_cool_
     assert bench.step(HOLD, loaded).events[-1].kind is Kind.REFUSED_PAYLOAD
     bench.events.clear()
     bench.run(60, NOTHING, loaded)
-    stayed = Event(Kind.RESIDUAL_STAYED, 60 + after, {"force": pytest.approx(9.81), "mass": pytest.approx(-1.0)})
+    values = {"force": pytest.approx(9.81), "mass": pytest.approx(-1.0), "zero": False}
+    stayed = Event(Kind.RESIDUAL_STAYED, 60 + after, values)
     assert bench.events == ([stayed] if after else [])
 
 

@@ -243,3 +243,25 @@ def test_the_supervisor_lets_it_measure_once_the_arm_is_static(ticks: int, reaso
     bench.run(ticks, value=standing(WRIST[0]))
     events = bench.step(Inputs(commands=(Command.WIZARD_MEASURE,)), standing(WRIST[0])).events
     assert [event.values["reason"] for event in events] == reasons
+
+
+def test_a_sensor_that_is_zeroed_between_two_postures_changes_nothing_but_its_offset() -> None:
+    """What F_user loses, the sensor gains."""
+    gone = (1.0, -2.0, 0.5, 0.1, -0.2, 0.05)
+    wizard = PayloadWizard()
+    for R in WRIST[:2]:
+        measure(wizard, standing(R))
+    wizard.shift(gone)
+    assert wizard.progress.finding is None
+    for R in WRIST[2:]:
+        value = standing(R)
+        value.w_sensor = np.add(value.w_sensor, gone)
+        measure(wizard, value)
+    finding = wizard.progress.finding
+    assert finding is not None
+    assert finding.mass == pytest.approx(2.0)
+    assert (*finding.force_offset, *finding.torque_offset) == pytest.approx(gone, abs=1e-9)
+    wizard.shift(gone)
+    finding = wizard.progress.finding
+    assert finding is not None
+    assert (*finding.force_offset, *finding.torque_offset) == pytest.approx(np.multiply(2.0, gone), abs=1e-9)

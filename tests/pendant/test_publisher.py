@@ -16,6 +16,7 @@ from pendant.publisher import Publisher
 from pendant.reduced import SpeedLimits
 from pendant.robot import Robot
 from pendant.settings import Settings, apply, limits_checksum
+from pendant.taring import Taring
 from pendant.tooling import Tooling
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False})
@@ -42,13 +43,16 @@ class Parts:
             free=self.free, sequencer=self.sequencer, mode=Mode.FREE_DRIVE, safety=Safety.REDUCED, grip="in the middle"
         )
         self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
-        self.publisher = Publisher(cast("Robot", self.robot), cast("Tooling", self.tooling), settings)
+        self.taring = SimpleNamespace(zero=(0.1,) * 6, due=False)
+        self.publisher = Publisher(
+            cast("Robot", self.robot), cast("Tooling", self.tooling), cast("Taring", self.taring), settings
+        )
         self.settings = settings
         self.set(**changes)
 
     def set(self, **changes: object) -> None:
         for name, value in changes.items():
-            owner = next(one for one in (self.free, self.sequencer, self.robot, self.tooling) if hasattr(one, name))
+            owner = next(one for one in (self.free, self.sequencer, self.robot, self.tooling, self.taring) if hasattr(one, name))
             setattr(owner, name, value)
 
     def step(self, *events: Event, contacts: tuple[Contact, ...] = ()) -> Decision:
@@ -62,7 +66,7 @@ class Parts:
             "step": 3, "monitored": (), "contacts": (), "tool_on": True, "walls": ("wall",), "grip": "in the middle",
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
-            "wizard": "progress", "limits": limits_checksum(self.settings),
+            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "limits": limits_checksum(self.settings),
         } | changes  # fmt: skip
 
 
@@ -121,6 +125,7 @@ LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
     "arm": SimpleNamespace(damping="other", singularity="other"), "zones": (), "move": None, "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
+    "zero": (0.2,) * 6, "due": True,
 }  # fmt: skip
 
 

@@ -103,6 +103,7 @@ def test_payload_comes_first_of_several_reasons(force: float, way: str) -> None:
         "mass": pytest.approx(-force / 9.81, abs=1e-12),
         "force": abs(force),
         "way": way,
+        "zero": False,
         "parameter": "payload-like torque",
     }
     assert events[-1] == Event(Kind.REFUSED_PAYLOAD, 50, values)

@@ -179,7 +179,8 @@ STEPS = st.builds(
     Step,
     held=st.booleans(),
     released=st.sampled_from([False, False, False, True]),
-    commands=st.lists(st.sampled_from(Command), max_size=2).map(tuple),
+    # Streams know no zero of the sensor: their forces would have to change with it.
+    commands=st.lists(st.sampled_from([each for each in Command if each is not Command.ZERO_SENSOR]), max_size=2).map(tuple),
     joints=st.sampled_from([True] * 9 + [False]),
     wrench=st.sampled_from([True] * 5 + [False]),
     qd=st.sampled_from([0.0, 0.0, 0.0, 0.0, 0.009, 0.01, 0.05, 0.051, -0.2]),

@@ -77,6 +77,7 @@ EXAMPLE: Values = {
     "tool": "two-finger gripper",
     "total": 2.925,
     "what": "payload of the wizard",
+    "zero": False,
 }
 
 EFFECTS = {
@@ -183,22 +184,29 @@ LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az",
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 
+def texts(row: Row) -> tuple[str, ...]:
+    return (row.headline, row.guidance, *(row.variant[1:] if row.variant else ()))
+
+
 def fields(row: Row) -> set[str]:
-    return {name for text in (row.headline, row.guidance) for _, name, _, _ in string.Formatter().parse(text) if name}
+    return {name for text in texts(row) for _, name, _, _ in string.Formatter().parse(text) if name}
 
 
 @pytest.mark.parametrize("kind", Kind)
 def test_texts_use_the_declared_values_and_no_others(kind: Kind) -> None:
     row = TABLE[kind]
     assert fields(row) <= set(row.keys)
-    assert set(row.keys) - fields(row) <= {"from", "gain", "unit", "parameter", "cause"} | LOGGED
+    chosen = set(row.variant[:1]) if row.variant else set[str]()
+    assert chosen <= set(row.keys) - fields(row)
+    assert set(row.keys) - fields(row) - chosen <= {"from", "gain", "unit", "parameter", "cause"} | LOGGED
     assert len(set(row.keys)) == len(row.keys)
 
 
+@pytest.mark.parametrize("zero", [True, False])
 @pytest.mark.parametrize("kind", Kind)
-def test_texts_are_short_and_whole(kind: Kind) -> None:
+def test_texts_are_short_and_whole(kind: Kind, zero: bool) -> None:
     row = TABLE[kind]
-    headline, guidance = render(Event(kind, 0, {key: EXAMPLE[key] for key in row.keys}))
+    headline, guidance = render(Event(kind, 0, {key: {**EXAMPLE, "zero": zero}[key] for key in row.keys}))
     assert 3 < len(headline) <= 60, headline
     assert len(guidance) <= 100, guidance
     assert "{" not in headline + guidance

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pendant.watch import WINDOW, Stillness, WrenchMean, joints_ok, wrench_ok
+from pendant.watch import WINDOW, Stillness, WrenchMean, in_flange, joints_ok, wrench_ok
 from tests.pendant.estimates import estimate
 
 USED = ["q", "qd", "theta", "theta_d", "tau_J", "tau_ext", "v_F"]
@@ -109,3 +109,26 @@ def test_the_mean_begins_afresh_after_an_outage() -> None:
     mean.step(estimate(force=2.0))
     mean.step(estimate(force=4.0))
     assert mean.mean() == (3.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("ticks", [1, WINDOW - 1, WINDOW, WINDOW + 7])
+def test_a_mean_is_shifted_with_all_that_is_in_it(ticks: int) -> None:
+    """As if the sensor had been zeroed before."""
+    gone, before, after = (1.0, -2.0, 3.0, 0.1, -0.2, 0.3), WrenchMean(), WrenchMean()
+    for tick in range(ticks):
+        value = estimate(force=[0.1 * tick, 2.0, 3.0], torque=[0.4, 0.0, -0.01 * tick])
+        before.step(value)
+        value.F_user = value.F_user - gone
+        after.step(value)
+    before.shift(gone)
+    assert before.count == after.count
+    assert before.mean() == pytest.approx(after.mean(), abs=1e-12)
+    for mean in (before, after):
+        mean.step(estimate(force=[5.0, 0.0, 0.0]))
+    assert before.mean() == pytest.approx(after.mean(), abs=1e-12)
+
+
+def test_a_wrench_in_axes_of_the_flange() -> None:
+    value = estimate()
+    value.R_BF = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # its z axis is x of B
+    assert in_flange(value, (1.0, 2.0, 3.0, 0.1, 0.2, 0.3)) == pytest.approx((2.0, 3.0, 1.0, 0.2, 0.3, 0.1))

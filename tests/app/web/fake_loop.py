@@ -87,6 +87,8 @@ class FakeLoop:
         self.configured = 0.0
         self.fitting: Fitting | None = None
         self.wizard = IDLE
+        self.zero: tuple[float, ...] = (0.0,) * 6
+        self.zero_due = False
         self.table: tuple[Tool, ...] = ()
         self.locks: AxisLocks | None = None
         self.singularity: Nearness | None = None
@@ -141,6 +143,8 @@ class FakeLoop:
             monitored=self.monitored,
             fitting=self.fitting,
             wizard=self.wizard,
+            zero=self.zero,
+            zero_due=self.zero_due,
             locks=self.locks,
             singularity=self.singularity,
             walls=self.walls,

@@ -10,6 +10,7 @@ from pendant.inputs import Command
 from pendant.modes import Mode, Phase
 from pendant.payload_fit import Finding
 from pendant.payload_wizard import Progress
+from pendant.program import ProgramState
 from pendant.tooling import Fitting
 from sim.scenario import Load, Scenario
 from tests.app.web.fake_loop import FakeLoop
@@ -101,3 +102,34 @@ def test_a_change_shows_how_far_it_is(served: Served, join: Join, loop: FakeLoop
     equip(loop)
     loop.fitting = Fitting(2, GRIPPER, Load(mass=3.0), 0.25, 0.75)
     until(lambda: "changing, 25 %" in served.docks.tools.now.shown and "0.75 kg" in served.docks.tools.now.shown, "on its way")
+
+
+def test_the_force_sensor_is_zeroed_with_a_button(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, tab = join(), served.docks.tools
+    until(lambda: "0.0 N and 0.00 N·m are subtracted. Zeroing is not due." in tab.zeroed.shown, "not yet")
+    client.set(tab.zero._impl.uuid, value=True)
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.commands == (Command.ZERO_SENSOR,), "the wish")
+    loop.zero = (0.0, -3.0, 4.0, 0.03, 0.0, 0.04)
+    until(lambda: "5.0 N and 0.05 N·m are subtracted. Zeroing is not due." in tab.zeroed.shown, "subtracted")
+    loop.zero_due = True
+    until(lambda: "Zeroing is due" in tab.zeroed.shown and "Nothing may touch the arm." in tab.zeroed.shown, "due")
+
+
+@pytest.mark.parametrize(
+    ("phase", "wizard", "program"),
+    [
+        (Phase.PERIOD, Progress(), ProgramState.NONE),
+        (Phase.SEQUENCE, Progress(), ProgramState.STOPPED),
+        (Phase.OFF, Progress(1, 0.5), ProgramState.PAUSED),
+        (Phase.OFF, Progress(), ProgramState.RUNNING),
+    ],
+)
+def test_it_cannot_be_zeroed_while_the_arm_is_free_or_moved_or_measured_on(
+    served: Served, join: Join, loop: FakeLoop, phase: Phase, wizard: Progress, program: ProgramState
+) -> None:
+    join()
+    tab = served.docks.tools
+    loop.program = ProgramState.PAUSED
+    until(lambda: not tab.zero.disabled, "ready")
+    loop.phase, loop.wizard, loop.program = phase, wizard, program
+    until(lambda: tab.zero.disabled, "locked")

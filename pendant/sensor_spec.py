@@ -1,0 +1,16 @@
+"""What the maker says of the flange force/torque sensor: how far and how fast its bias goes, its noise, its gain."""
+
+from typing import NamedTuple
+
+
+class SensorSpec(NamedTuple):
+    """Each number holds for every axis of the sensor. The defaults are those of the UR5e's file."""
+
+    drift_force: float = 0.0133  # fastest drift of the bias, for minutes [N/s]
+    drift_torque: float = 0.001  # [N·m/s]
+    offset_force: float = 4.9  # largest bias: so far can a zero be off [N]
+    offset_torque: float = 0.36  # [N·m]
+    noise_force: float = 0.15  # standard deviation in a tick [N]
+    noise_torque: float = 0.006  # [N·m]
+    noise_acceleration: float = 0.1  # of the accelerometer that weighs the load [m/s²]
+    gain: float = 0.014  # error in share of what is measured: 1 % of the axis, and 0.2 % of each of the two others

@@ -1,0 +1,120 @@
+"""Zeroing the flange sensor in the running robot: by command and by a program's step, unnoticed by all that feels forces."""
+
+from pendant.calls import Calls
+from pendant.contact_monitor import ContactMonitor
+from pendant.estimate import Estimate
+from pendant.events import Event, Kind
+from pendant.haptics import Haptics
+from pendant.inputs import Command
+from pendant.modes import Mode, Phase
+from pendant.pose import flat, turned
+from pendant.program import ProgramState, Wait, ZeroSensor
+from pendant.program_run import ProgramRun
+from pendant.robot import Robot
+from pendant.sensor_spec import SensorSpec
+from pendant.settings import Settings
+from pendant.taring import Taring
+from pendant.tooling import Tooling
+from pendant.watch import WrenchMean
+
+STANDING = (Wait, ZeroSensor)
+"""Steps of a program in which the arm stands and nobody is to touch it."""
+
+
+class TareRun:
+    """Steers `Taring` by what the robot does."""
+
+    __slots__ = ("_calls", "_haptics", "_mean", "_monitor", "_robot", "_run", "_tooling", "taring")
+
+    def __init__(
+        self,
+        sensor: SensorSpec,
+        robot: Robot,
+        run: ProgramRun,
+        tooling: Tooling,
+        haptics: Haptics,
+        calls: Calls,
+        monitor: ContactMonitor,
+        mean: WrenchMean,
+    ) -> None:
+        """
+        Args:
+            sensor: what is known of it.
+            robot: whose sensor it is.
+            run: of its program.
+            tooling: of tool and payload.
+            haptics: that may shake the arm.
+            calls: that feel the user's hand.
+            monitor: of contacts.
+            mean: of F_user.
+        """
+        self.taring = Taring(sensor)
+        self._robot, self._run, self._tooling, self._haptics = robot, run, tooling, haptics
+        self._calls, self._monitor, self._mean = calls, monitor, mean
+
+    def step(
+        self, estimate: Estimate, commands: tuple[Command, ...], wrench_ok: bool, settings: Settings, events: list[Event]
+    ) -> None:
+        """One tick, after everything else that was decided in it.
+
+        Args:
+            estimate: of this tick.
+            commands: of this tick.
+            wrench_ok: the user's wrench is valid and finite.
+            settings: as they are now.
+            events: of this tick; more are added.
+        """
+        robot, taring = self._robot, self.taring
+        move = robot.sequencer.move
+        if self._tooling.changing or not wrench_ok:
+            taring.restart()
+        else:
+            freed = robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE or self._haptics.busy
+            stands = robot.static and not freed and (move is None or isinstance(move, STANDING))
+            events += taring.step(estimate, self._mean, stands, settings.limits.activation)
+        if commands and Command.ZERO_SENSOR in commands:
+            running = robot.sequencer.state is ProgramState.RUNNING
+            why_not = "a program runs: pause or stop it first" if running else self._why_not(estimate, wrench_ok)
+            if why_not:
+                events.append(Event(Kind.ZERO_REFUSED, estimate.tick, {"reason": why_not}))
+            else:
+                self._tare(estimate, events)
+        elif isinstance(move, ZeroSensor):
+            why_not = self._why_not(estimate, wrench_ok)
+            if not why_not:
+                self._tare(estimate, events)
+                self._run.zeroed(estimate.tick, events)
+            elif robot.sequencer.impatient():
+                self._run.fail(f"force sensor not zeroed, {why_not}", estimate.tick, events)
+
+    def _why_not(self, estimate: Estimate, wrench_ok: bool) -> str:
+        """Why the sensor cannot be zeroed in this tick, or ""."""
+        robot, tooling = self._robot, self._tooling
+        if robot.free.phase is not Phase.OFF:
+            return "free-drive is on" if robot.mode is _FREE_DRIVE else "free-drive is being tried"
+        if tooling.changing:
+            return "the payload is being changed"
+        if tooling.wizard.left:
+            return "a posture is being measured"
+        if not wrench_ok:
+            return "the flange force sensor is not valid"
+        if self._haptics.busy:
+            return "haptic feedback shakes the arm"
+        return self.taring.why_not(estimate, self._mean) if robot.static else "the arm moves"
+
+    def _tare(self, estimate: Estimate, events: list[Event]) -> None:
+        """Zero the sensor. The change of all forces in the next tick is nobody's."""
+        gone, event = self.taring.tare(estimate)
+        events.append(event)
+        x, y, z, a, b, c = gone
+        R_BF = flat(estimate.R_BF)
+        force = turned(R_BF, (x, y, z))
+        self._mean.shift((*force, *turned(R_BF, (a, b, c))))
+        self._robot.sequencer.shift(force)
+        self._robot.free.forget()
+        self._calls.relearn()
+        self._monitor.restart()
+        self._tooling.wizard.shift(gone)
+
+
+_FREE_DRIVE, _SEQUENCE = Mode.FREE_DRIVE, Phase.SEQUENCE  # looked up in every tick
