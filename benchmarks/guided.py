@@ -34,7 +34,7 @@ HAND = 50.0  # [N] at most
 RATE = 20.0  # of the hand's targets, as a page sends them [1/s]
 TOOL = 0.1  # beyond the flange [m]
 LEAST_LEVER = 0.3  # [m] with which joints move a part that goes that way
-STANDS, HARDER = 0.3, 15.0  # a hand that moves nothing for so long [s] pulls harder by so much a second [N/s]
+STANDS, HARDER = 0.3, 40.0  # a hand that moves nothing for so long [s] pulls harder by so much a second [N/s]
 OFF = 0.01  # [m] from where it is wanted, beyond which it does
 GETS_HOLD = 0.3  # [s] after entry
 
@@ -87,6 +87,8 @@ class Path:
             place = np.array([2.0 * self._size * math.sin(turn), 0.0])
         elif self._style == "teach":
             place = self._taught(t)
+        elif not self._across[1].any():  # to and fro, at one pace: at a turn of a slow circle nobody would seem to move the arm
+            place = self._size * np.array([2.0 * math.asin(math.sin(turn)) / math.pi, 0.0])
         else:
             place = self._size * np.array([math.sin(turn), 1.0 - math.cos(turn)])
         return self._start + place @ self._across
@@ -139,7 +141,8 @@ def measure_lead(lead: Lead) -> Result:
     last = place_of(device, lead.part)
     path = Path(last, across(device, lead.part), lead.style, rng)
     gentle = float(rng.uniform(1.0, 5.0)) if lead.style == "gentle" else HAND
-    cap, more, stood, reach = gentle, 0.0, 0.0, np.zeros(3)
+    cap, more, stood, harder = gentle, 0.0, 0.0, False
+    reach = ahead = np.zeros(3)
     caught, way, end = 0, 0.0, ""
     registered = False
     total = round(60.0 * lead.minutes / TICK)
@@ -159,12 +162,11 @@ def measure_lead(lead: Lead) -> Result:
             way += gone
             stood = stood + 0.1 if gone < 0.001 else 0.0
             wanted = target - now
-            if stood < STANDS or path.pauses or np.linalg.norm(wanted) < OFF:
-                more = more if stood > 0.0 and not path.pauses else 0.0
-            else:
-                more = min(more + 0.1 * HARDER, HAND)
-            cap = min(gentle + more, HAND)
-            reach = more / STIFFNESS * wanted / max(float(np.linalg.norm(wanted)), 1e-9)
+            harder = stood >= STANDS and not path.pauses and bool(np.linalg.norm(wanted) >= OFF)
+            ahead = wanted / max(float(np.linalg.norm(wanted)), 1e-9)
+        more = min(max(more + (HARDER if harder else -HARDER) * TICK, 0.0), HAND)
+        cap = min(gentle + more, HAND)
+        reach = more / STIFFNESS * ahead
         for event in decision.events:
             caught += event.kind is Kind.WALL_REACHED
             if TABLE[event.kind].effect in LEAVING:

@@ -67,6 +67,7 @@ class Decision(msgspec.Struct, frozen=True):
     balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)
     locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
+    doubtful: bool = False  # it may be that nobody leads the free arm: friction is not taken off it (FD-19)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload

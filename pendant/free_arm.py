@@ -26,6 +26,7 @@ class FreeArm:
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
         suspect: a payload may have dropped (FD-19).
+        doubtful: it may be that nobody leads the moving arm (FD-19).
     """
 
     __slots__ = (
@@ -37,6 +38,7 @@ class FreeArm:
         "_zones",
         "caught",
         "damping",
+        "doubtful",
         "singularity",
         "suspect",
         "user",
@@ -67,7 +69,7 @@ class FreeArm:
         self._hand = Hand(estimate, around.mean.mean())
         self._operation = Operation(estimate, settings, joints, rated, around.payload)
         self._singularity = SingularityWatch()
-        self.caught = self.suspect = False
+        self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
         self.damping: Damping | None = None
         self.singularity = self._singularity.status
@@ -97,12 +99,12 @@ class FreeArm:
             zero.leave()
             events.append(Event(Kind.WRENCH_LOST, tick))
         hand.step(estimate, zero.used)
-        self.user = hand.user
+        self.user = hand.by_joints if hand.user == ORIGIN and operation.led else hand.user
         if zero.used and settings.unexplained.sensor:
             told = zero.step(estimate, hand, around.mean, waits)
             if told is not None:
                 events.append(told)
-        reading = self._containment.step(estimate, hand.user, hand.payload)
+        reading = self._containment.step(estimate, self.user, hand.payload)
         before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:
             kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
@@ -116,8 +118,9 @@ class FreeArm:
             events.append(Event(Kind.SINGULARITY, tick, values))
         self.singularity = self._singularity.status
         baseline = zero.baseline if zero.used else None
-        ending = operation.step(estimate, hand, baseline, around.shaken or self.caught or self._zones.pushing)
-        self.damping, self.suspect = operation.damping, operation.suspect
+        driven = around.shaken or self.caught or self._zones.pushing
+        ending = operation.step(estimate, hand, baseline, driven, zero.slack(estimate))
+        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         if ending is not None:
             events.append(Event(ending.kind, tick, ending.values))
         return events

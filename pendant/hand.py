@@ -64,10 +64,10 @@ class Hand:
         "_slow_joints",
         "_spread",
         "_up",
-        "_usual",
         "change",
         "payload",
         "user",
+        "usual",
     )
 
     def __init__(self, estimate: Estimate, baseline: tuple[float, ...]) -> None:
@@ -85,12 +85,12 @@ class Hand:
         self._baseline = turned_back(flat(estimate.R_BF), offset)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
         self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
-        self._usual: Vector = ORIGIN  # change at the flange lately, mean [N]
-        self._spread = 0.0  # and the mean square of its distance from that [N²]
+        self._spread = 0.0  # mean square of what the change lately was off its mean [N²]
         self._by_sensor: Vector = ORIGIN
         self._by_joints: Vector = ORIGIN
         self.user: Vector = ORIGIN  # the user's force, axes of B [N]
         self.change: Vector = ORIGIN  # of what the sensor feels, as measured, axes of B [N]
+        self.usual: Vector = ORIGIN  # of that the mean lately [N]
         self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
 
     @property
@@ -103,6 +103,11 @@ class Hand:
         x, y, z = force
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
+
+    @property
+    def by_joints(self) -> Vector:
+        """What the joints feel of it, however little, axes of B [N]."""
+        return self._by_joints
 
     def stands_out(self, step: Vector) -> bool:
         """Whether a step of the force at the flange [N] is larger than it fluctuates."""
@@ -132,10 +137,10 @@ class Hand:
             y -= payload * uy + yx * ox + yy * oy + yz * oz
             z -= payload * uz + zx * ox + zy * oy + zz * oz
             self.change = (x, y, z)
-            bx, by, bz = self._usual
+            bx, by, bz = self.usual
             bx, by, bz = x - bx, y - by, z - bz
             self._spread += _LATELY * (bx * bx + by * by + bz * bz - self._spread)
-            self._usual = (x - (1.0 - _LATELY) * bx, y - (1.0 - _LATELY) * by, z - (1.0 - _LATELY) * bz)
+            self.usual = (x - (1.0 - _LATELY) * bx, y - (1.0 - _LATELY) * by, z - (1.0 - _LATELY) * bz)
             self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow
             sx, sy, sz = self._by_sensor

@@ -117,6 +117,16 @@ class Operation:
         self.damping: Damping | None = None
 
     @property
+    def led(self) -> bool:
+        """A hand on a link leads the arm, be it less than one that is felt."""
+        return self._alone.led
+
+    @property
+    def doubtful(self) -> bool:
+        """It may be that nobody leads the moving arm: nothing helps it on (FD-19)."""
+        return self._alone.doubtful
+
+    @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
         own = (
@@ -130,7 +140,7 @@ class Operation:
         )
         return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool) -> Ending | None:
+    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool, slack: float = 0.0) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
@@ -138,6 +148,7 @@ class Operation:
             hand: after its step.
             baseline: what of F_user is nobody's, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
+            slack: what of a force at the flange may be the sensor's drift [N].
         """
         if self._on.payload and baseline is not None:
             lost = self._lost(estimate, hand, baseline)
@@ -157,7 +168,7 @@ class Operation:
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
-        values = self._alone.step(estimate, hand, baseline is not None, driven) if self._on.motion else None
+        values = self._alone.step(estimate, hand, baseline is not None, driven, slack) if self._on.motion else None
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
     @staticmethod

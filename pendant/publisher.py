@@ -58,12 +58,12 @@ class Publisher:
         locks = self._locks if mode is _FREE_DRIVE else None
         trying = phase is _SEQUENCE
         balance = free.balance if trying else None
-        damping, singularity = (None, None) if arm is None else (arm.damping, arm.singularity)
+        damping, singularity, doubtful = (None, None, False) if arm is None else (arm.damping, arm.singularity, arm.doubtful)
         # What lasts, and what is of this tick alone: mostly only the latter is different from what was told last.
         key = (
             mode, robot.safety, phase, law, helping, free.baseline, robot.grip, speeds, balance, damping, free.zones, locks,
             singularity, shake, sequencer.move, sequencer.state, sequencer.index, sequencer.tool_on, tooling.fitting,
-            tooling.wizard.progress, taring.zero, taring.due,
+            tooling.wizard.progress, taring.zero, taring.due, doubtful,
         )  # fmt: skip
         periods = free.periods() if use.free_drive.remainders and not free.idle else ()
         walls = () if phase is _OFF else free.walls()
@@ -108,6 +108,7 @@ class Publisher:
             shake=shake,
             zero=taring.zero,
             zero_due=taring.due,
+            doubtful=doubtful,
             limits=self._checksum,
         )
         return self._decision

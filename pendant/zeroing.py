@@ -28,8 +28,8 @@ NOISY, NOISY_TURN = 0.5, 0.1
 """What of a change was too fast waits for the next windows up to so much [N, N·m], for it may be noise; more is a hand's."""
 
 FAR, FAR_TURN = 4.0, 1.0
-"""A sensor that has drifted so far [N, N·m] is not used any more: it is not so good as it should be, or a hand presses slowly on
-an arm that does not move, and would seem to push the other way when it lets go."""
+"""A sensor that has drifted so far beyond what it does by itself [N, N·m] is not used any more: it is not so good as it should
+be, or a hand presses slowly on an arm that does not move, and would seem to push the other way when it lets go."""
 
 FELT = 1.0
 """From so large a change on [N] the joints are asked: of less they cannot tell."""
@@ -37,8 +37,8 @@ FELT = 1.0
 QUIET = 0.7
 """No drift begins with more than this [N]: an arm that comes to rest with more of a force is held by a hand."""
 
-SLOWLY = 0.0133
-"""And so much for each second since it was last followed [N/s]: so fast a sensor drifts by itself (assets/robots/)."""
+SLOWLY, SLOWLY_TURN = 0.0133, 0.001
+"""And so much for each second since it was last followed [N/s, N·m/s]: so fast a sensor drifts by itself (assets/robots/)."""
 
 SMOOTH = 1.0 / WINDOW
 """Weight of a tick in what the joints feel: their mean over a window."""
@@ -66,6 +66,11 @@ class Drift:
         self.lately: deque[Wrench] = deque(maxlen=BEGINS)
 
     @property
+    def begun(self) -> bool:
+        """It follows an arm at rest."""
+        return self._followed is not None
+
+    @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
         return (self._quiet, self._count, self._followed, self._began, self._felt, tuple(self.lately))
@@ -79,12 +84,21 @@ class Drift:
         self._count = 0
         self.restart()
 
-    def held(self, force: float, tick: int) -> bool:
-        """Whether a hand holds the arm that comes to rest with this force [N]."""
-        if self._followed is None and force > QUIET + SLOWLY * TICK * (tick - self._quiet):
-            return True
+    def slack(self, tick: int) -> float:
+        """What a sensor may have drifted by itself since it was last followed [N]."""
+        return SLOWLY * TICK * (tick - self._quiet)
+
+    def begin(self, apart: Wrench, tick: int) -> Wrench | None:
+        """The arm has come to rest, and feels so much beyond the baseline, axes of F [N, N·m].
+
+        Returns:
+            What of it the sensor drifted by while the arm was moved; None while a hand holds the arm.
+        """
+        force, slack = norm((apart[0], apart[1], apart[2])), self.slack(tick)
+        if force > QUIET + slack:
+            return None
         self._quiet = tick
-        return False
+        return (*_within(list(apart[:3]), slack), *_within(list(apart[3:]), slack * SLOWLY_TURN / SLOWLY))
 
     def give_back(self) -> list[Wrench]:
         """What was taken off lately was a hand's, axes of F [N, N·m]."""
@@ -126,7 +140,7 @@ class Drift:
 def _within(change: list[float], most: float) -> Vector:
     """A change of three numbers, at most so large."""
     x, y, z = change
-    share = most / max(math.sqrt(x * x + y * y + z * z), most)
+    share = most / max(math.sqrt(x * x + y * y + z * z), most, 1e-12)
     return share * x, share * y, share * z
 
 
@@ -143,24 +157,25 @@ class Zero:
         drifted: what the sensor drifted by since, axes of F [N, N·m].
     """
 
-    __slots__ = ("_drift", "_felt", "_steps", "baseline", "drifted", "used")
+    __slots__ = ("_drift", "_felt", "_since", "_steps", "baseline", "drifted", "used")
 
     def __init__(self) -> None:
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench = ZEROS
         self._drift, self._steps = Drift(), Steps()
+        self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt)
+        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt, self._since)
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
-        self._drift, self._steps = Drift(estimate.tick), Steps()
+        self._drift, self._steps, self._since = Drift(estimate.tick), Steps(), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
@@ -179,6 +194,10 @@ class Zero:
         R_BF = flat(estimate.R_BF)
         drifted = (*turned(R_BF, (x, y, z)), *turned(R_BF, (a, b, c)))
         return tuple([value - part for value, part in zip(wrench, drifted, strict=True)])
+
+    def slack(self, estimate: Estimate) -> float:
+        """What of a force at the flange may be drift that could not be followed [N]."""
+        return self._drift.slack(estimate.tick)
 
     def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
         """One tick of free-drive with a valid sensor: what it drifts by is taken off.
@@ -206,10 +225,12 @@ class Zero:
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
             now = mean.mean()
-            x, y, z = in_flange(estimate, now)[:3]
-            ox, oy, oz, _, _, _ = self.baseline
-            if self._drift.held(norm((x - ox, y - oy, z - oz)), estimate.tick):
-                return None
+            if not self._drift.begun:
+                apart = [value - part for value, part in zip(in_flange(estimate, now), self.baseline, strict=True)]
+                meanwhile = self._drift.begin(tuple(apart), estimate.tick)
+                if meanwhile is None:
+                    return None
+                self._take_off(meanwhile, hand)
             gone = self._drift.step(now, self._felt)
             if gone is not None:
                 gone = in_flange(estimate, gone)
@@ -217,7 +238,8 @@ class Zero:
                 self._take_off(gone, hand)
                 x, y, z, a, b, c = self.drifted
                 far, turn = norm((x, y, z)), norm((a, b, c))
-                if far >= FAR or turn >= FAR_TURN:
+                seconds = TICK * (estimate.tick - self._since)
+                if far >= FAR + SLOWLY * seconds or turn >= FAR_TURN + SLOWLY_TURN * seconds:
                     self.leave()
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None

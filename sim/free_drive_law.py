@@ -142,7 +142,9 @@ class FreeDriveLaw:
         if with_friction:
             torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
             rubs = (estimate.friction, estimate.theta_d, friction.terms, friction.warmth)
-            _take_off(hand, *torques, estimate.q, self._memory, self._rates, *rubs, help * self.share, torque)
+            # Where nobody may lead the arm it gets no help, and brakes: who leads it pushes then, and is felt.
+            share = 0.0 if decision.doubtful else help * self.share
+            _take_off(hand, *torques, estimate.q, self._memory, self._rates, *rubs, share, torque)
         if locks is not None:
             self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
             constraint.hold(torque)
@@ -210,6 +212,8 @@ def _take_off(hand, ways, tau_ext, uncertain, q, memory, rates, sliding, speed, 
         # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless something pushes it on.
         along = felt if speed[i] > 0.0 else -felt
         pushed = min(max(along / least, 0.0), 1.0) if least > 0.0 else 0.0
+        if most == 0.0:
+            share = 0.0
         torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
 
 

@@ -93,8 +93,8 @@ def fastest(drift: Drift | None) -> tuple[float, float]:
 def lasting(drift: Drift | None) -> tuple[float, float]:
     """Rate that an axis' zero error keeps up for minutes, at most: of the forces [N/s], of the torques [N·m/s].
 
-    It is that of a sensor with the file's time constant that warms up from one bound to the other: for the UR5e the 4 N in 5 minutes
-    that a user saw (Universal_Robots_ROS_Driver issue 633).
+    It is that of a sensor with the file's time constant that warms up from one bound to the other: for the UR5e the 4 N in
+    5 minutes that a user saw (Universal_Robots_ROS_Driver issue 633).
 
     Args:
         drift: the numbers of the arm's file; None for a sensor that does not drift.

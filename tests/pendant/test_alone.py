@@ -146,7 +146,7 @@ def test_the_work_counts_from_where_the_arm_rested() -> None:
 
 def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     bench = Bench()
-    bench.hand.change = (0.0, 0.0, -CARRIED)
+    bench.hand.usual = (0.0, 0.0, -CARRIED)
     told = (bench.alone.step(value, bench.hand, True, False) for value in creep(400, turns=1.0, felt=5.0))
     assert any(values is not None for values in told)
 
@@ -172,7 +172,7 @@ def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
 def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(sensor: bool, carried: float) -> None:
     bench = Bench(sensor)
     bench.held(at(0.0, 0.1))
-    bench.hand.change = (carried, 0.0, 0.0)
+    bench.hand.usual = (carried, 0.0, 0.0)
     told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, sensor, False) for _ in range(151)]
     assert told[:150] == [None] * 150
     assert told[150] is not None

@@ -1,9 +1,12 @@
 """The work on the free arm: a hand pays for the friction that the law leaves, a free arm pays with its speed (FD-19)."""
 
+import math
+
 import pytest
 
 from pendant.estimate import Estimate
 from pendant.modes import TICK
+from pendant.pose import Vector
 from pendant.work import ASKED, LEFT, Work
 from tests.pendant.estimates import estimate
 
@@ -49,21 +52,46 @@ def test_half_of_the_friction_that_is_left_is_asked_for() -> None:
 def test_a_torque_against_the_turn_pays_for_nothing_and_is_not_owed_twice() -> None:
     work = done((100, moving(-5.0)))
     assert not work.paid
-    assert work.unpaid == pytest.approx(100 * TICK * SPEED * (PAYS + 5.0))
+    assert work.unpaid == pytest.approx(100 * TICK * SPEED * PAYS)
 
 
-def test_an_arm_that_slows_down_pays_with_its_speed_and_one_that_gets_faster_owes_more() -> None:
-    cost = 100 * TICK * SPEED * PAYS  # of a hundred ticks
-    slowing = Work(BEFORE)
-    slowing.begin(moving(energy=1.0))
-    faster = Work(BEFORE)
-    faster.begin(moving(energy=1.0))
-    for tick in range(1, 101):
-        slowing.step(moving(energy=1.0 - cost * tick / 100))
-        faster.step(moving(energy=1.0 + cost * tick / 100))
-    assert slowing.unpaid == pytest.approx(0.0, abs=1e-12)
-    assert faster.unpaid == pytest.approx(2.0 * cost)
-    assert not faster.paid
+@pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True), (-1.01, False)])
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
+def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, share: float, paid: bool) -> None:
+    """0.05 m/s along it; the joints' noise hides what they feel of it."""
+    value = moving(-1.0)
+    value.v_F[:3] = [0.05 * part for part in way]
+    needed = PAYS * SPEED / 0.05
+    work = Work(BEFORE)
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, (share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+    assert work.paid is paid
+    assert work.settled is paid
+
+
+@pytest.mark.parametrize(("share", "lasts"), [(-1.0, True), (0.0, True), (0.9, True), (1.1, False)])
+def test_an_arm_that_slows_down_pays_with_its_speed(share: float, lasts: bool) -> None:
+    """Of what 101 ticks cost, which is a tick more than what may be owed. One that gets faster owes no less."""
+    cost = 100 * TICK * SPEED * PAYS
+    work = Work(BEFORE)
+    work.begin(moving(energy=1.0))
+    for tick in range(1, 202):
+        work.step(moving(energy=1.0 - share * cost * tick / 201))
+    assert work.lasts(100) is lasts
+    assert not work.settled
+
+
+@pytest.mark.parametrize("wrong", ["friction", "energy"])
+def test_what_is_not_a_number_pays_for_nothing(wrong: str) -> None:
+    value = moving(20.0)
+    if wrong == "friction":
+        value.friction[1] = math.nan
+    else:
+        value.energy = math.nan
+    work = done((101, value))
+    assert wrong == "energy" or work.lasts(100)
+    assert wrong == "energy" or not (work.settled or work.paid)
 
 
 def test_work_in_advance_does_not_count() -> None:

@@ -19,6 +19,7 @@ from pendant.zeroing import (
     SLOW,
     SLOW_TURN,
     SLOWLY,
+    SLOWLY_TURN,
     Drift,
     Zero,
 )
@@ -233,17 +234,34 @@ def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answ
 
 @pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
 def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
-    """Its slow changes are none of the sensor's; only the first window after a rest is asked, the others are followed."""
-    drift = Drift()
-    assert drift.held(force, 0) is held
-    drift.step((0.0,) * 6, ORIGIN)
-    assert not drift.held(force, 50)
+    assert (Drift().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
 
 
 @pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
 def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
-    drift = Drift(1000)
-    assert drift.held(QUIET + SLOWLY * 100.0, 1000 + round(500 * seconds)) is held
+    drift, tick = Drift(1000), 1000 + round(500 * seconds)
+    assert drift.slack(tick) == pytest.approx(SLOWLY * seconds)
+    assert (drift.begin((QUIET + SLOWLY * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick) is None) is held
+    assert drift.slack(tick) == pytest.approx(SLOWLY * seconds if held else 0.0)
+
+
+def test_what_the_sensor_drifted_by_while_the_arm_was_moved_goes_into_the_zero() -> None:
+    """As much as it can have drifted by in that time: 100 s, 1.33 N and 0.1 N·m."""
+    assert Drift().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
+    taken = Drift().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
+    assert taken == pytest.approx((0.0, 100 * SLOWLY, 0.0, 0.0, 0.0, -100 * SLOWLY_TURN))
+    assert Drift().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
+
+
+def test_a_sensor_that_drifts_while_a_hand_leads_the_arm_is_followed_when_it_goes() -> None:
+    bench = Bench(free_drive__period=30.0, free_drive__restart_period=30.0).in_period()
+    for tick in range(15000):
+        moves = tick % 3000 < 2000
+        drift = 0.01 * 0.002 * tick
+        hand = 20.0 * moves
+        bench.step(NOTHING, estimate(force=[hand + drift, 0.0, 0.0], felt=[hand, 0.0, 0.0], qd=0.3 if moves else 0.0))
+    assert bench.last.phase is Phase.RESTART
+    assert bench.last.baseline[0] == pytest.approx(0.3, abs=0.06)
 
 
 def test_a_hand_that_rests_on_the_arm_leaves_no_offset_behind() -> None:
