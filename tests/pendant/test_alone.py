@@ -185,3 +185,53 @@ def test_its_memory_tells_all_of_it() -> None:
         assert one.alone.memory != other.alone.memory
         other.see(value)
         assert one.alone.memory == other.alone.memory
+
+
+def test_who_leads_a_link_is_known_and_half_of_the_time_without_is_doubtful() -> None:
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    assert (bench.alone.led, bench.alone.doubtful) == (False, False)
+    bench.see(at(0.0, 0.1, turns=1.0, felt=1.01 * PAYS))
+    assert (bench.alone.led, bench.alone.doubtful) == (True, False)
+    for tick in range(1, 152):
+        told = bench.see(at(0.0, 0.1, turns=1.0))
+        assert (bench.alone.led, bench.alone.doubtful, told is None) == (False, tick > 75, tick <= 150)
+    bench.see(at(0.0, 0.1, turns=1.0, felt=20.0))
+    assert bench.alone.doubtful, "until it is paid for"
+    bench.see(at(0.0, 0.0))
+    assert (bench.alone.led, bench.alone.doubtful) == (False, False)
+
+
+def test_a_hand_at_the_flange_ends_a_doubt() -> None:
+    bench = Bench()
+    assert bench.until(at(0.0, 0.1, turns=1.0) for _ in range(100)) is None
+    assert bench.alone.doubtful
+    bench.held(at(0.0, 0.1))
+    assert not bench.alone.doubtful
+
+
+def test_without_the_sensor_nothing_is_doubtful_it_is_stopped() -> None:
+    bench = Bench(sensor=False)
+    bench.held(at(0.0, 0.1))
+    assert bench.until(at(0.0, 0.1, turns=1.0) for _ in range(150)) is None
+    assert not bench.alone.doubtful
+
+
+@pytest.mark.parametrize(("force", "hand"), [(2.9, False), (3.1, True)])
+def test_a_force_that_may_be_drift_is_no_hand_unless_it_works(force: float, hand: bool) -> None:
+    """Two newtons may be the sensor's, and one is the least of a hand."""
+    bench = Bench()
+    value = at(0.0, 0.1, turns=1.0)
+    bench.hand.user = (0.0, force, 0.0)
+    told = [bench.alone.step(value, bench.hand, True, False, 2.0) for _ in range(151)]
+    assert (told[-1] is None) is hand
+
+
+@pytest.mark.parametrize(("slack", "told"), [(0.0, False), (2.0, True)])
+def test_a_light_hand_along_gravity_works_at_the_flange(slack: float, told: bool) -> None:
+    """What stays along gravity is no user's force; but it goes along with the arm, at 0.1 m/s."""
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    bench.hand.usual = (2.0, 0.0, 0.0)
+    value = at(0.0, 0.1, turns=1.0)
+    assert any(bench.alone.step(value, bench.hand, True, False, slack) is not None for _ in range(400)) is told

@@ -184,6 +184,22 @@ def test_what_moves_the_arm_in_place_of_a_hand_is_known_each_by_itself(by: str) 
     assert [event.kind for event in free.during(2 * AFTER, value, shaken=by == "haptics")] == [Kind.WALL_REACHED] * (by == "wall")
 
 
+@pytest.mark.parametrize(
+    ("felt", "share", "led", "doubtful"), [(4.0, 0.4, True, False), (0.0, 0.4, False, False), (0.0, 0.7, False, True)]
+)
+def test_a_hand_on_a_link_is_the_users_as_long_as_it_pays_for_the_motion(
+    felt: float, share: float, led: bool, doubtful: bool
+) -> None:
+    """4 N that the joints feel do not count by themselves; the arm that they lead is the user's all the same (VW-4, FD-19)."""
+    free = Free()
+    third = [0.0, 0.0, 0.2, 0.0, 0.0, 0.0]
+    rubs = [0.0, 0.0, 8.0, 0.0, 0.0, 0.0]
+    torques = [0.0, 0.0, 0.5 * felt, 0.0, 0.0, 0.0]
+    value = estimate(speed=0.05, qd=third, friction=rubs, tau_ext=torques, felt=felt)
+    free.during(round(share * AFTER), value)
+    assert (free.arm.user != ORIGIN, free.arm.doubtful) == (led, doubtful)
+
+
 @pytest.mark.parametrize("sensor", [True, False])
 def test_a_payload_that_drops_is_missed_by_the_sensor(sensor: bool) -> None:
     """FD-19."""

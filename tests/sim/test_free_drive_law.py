@@ -75,6 +75,19 @@ def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -
     assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
 
 
+def test_where_nobody_may_lead_the_arm_it_gets_no_help_with_its_friction_and_brakes() -> None:
+    """FD-19. The hand's own force is amplified on."""
+    wrench, speed = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0]), np.full(N, 0.2)
+    felt = JACOBIAN.T @ wrench  # by the joints, too: nothing is left that a link would feel
+    ways = np.tile(felt, (3, 1))
+    seen = estimate(q=Q, R_BF=R, F_user=wrench, friction=np.full(N, 7.0), theta_d=speed, tau_ext=felt, tau_ways=ways)
+    free = decision(Law.FREE, gain=1.0)
+    torques = [law().torque(seen, how, JACOBIAN, AdaptiveFriction(UR5E), True) for how in (free, replace(free, doubtful=True))]
+    expected = GRAVITY + JACOBIAN.T @ wrench - BRAKE * BREAKAWAY * np.tanh(speed / BRAKE_SPEED)
+    np.testing.assert_allclose(torques[1], expected)
+    assert np.abs(torques[0] - torques[1]).max() > 1.0
+
+
 def felt(torque: np.ndarray, away: float = 0.0, uncertain: float = 4.0, speed: float = 0.0) -> np.ndarray:
     """Torque beyond gravity where the joints alone have felt `torque` for a moment, so far from the posture of entry [rad]."""
     module, nothing = law(), np.zeros(N)
