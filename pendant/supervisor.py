@@ -89,9 +89,8 @@ class Supervisor:
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
-        zones = JointZones(rated, ranges or (math.inf,) * n_joints)
         self._containment = Containment(borders, frames or {})
-        self._free = FreeDrive(self._joints, rated, self._containment, zones)
+        self._free = FreeDrive(self._joints, rated, self._containment, JointZones(rated, ranges or (math.inf,) * n_joints))
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
