@@ -115,7 +115,7 @@ class Person:
         for _ in range(round(30.0 / TICK)):
             decision = self.device.tick(IDLE)
             self.events += decision.events
-            if decision.program not in (ProgramState.RUNNING, ProgramState.LOADED):
+            if decision.program is not ProgramState.RUNNING:
                 break
         self.do(0.5)
 

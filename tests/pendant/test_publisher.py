@@ -34,7 +34,8 @@ class Parts:
 
     def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
-            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity"), helping=True, balance="balance",
+            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful"),
+            helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
         )  # fmt: skip
@@ -66,7 +67,8 @@ class Parts:
             "step": 3, "monitored": (), "contacts": (), "tool_on": True, "walls": ("wall",), "grip": "in the middle",
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
-            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "limits": limits_checksum(self.settings),
+            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
+            "limits": limits_checksum(self.settings),
         } | changes  # fmt: skip
 
 
@@ -75,7 +77,7 @@ def told(decision: Decision) -> dict[str, object]:
 
 
 TRYING = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "arm": None}
-TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singularity": None, "locks": None}
+TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singularity": None, "doubtful": False, "locks": None}
 
 
 @pytest.mark.parametrize(
@@ -85,7 +87,7 @@ TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singular
         ({"helping": False}, {"gain": 0.0}),
         ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
         ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
-        ({"arm": None}, {"damping": None, "singularity": None}),
+        ({"arm": None}, {"damping": None, "singularity": None, "doubtful": False}),
         ({"idle": True}, {"periods": ()}),
         ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
         ({"phase": Phase.OFF}, {"phase": Phase.OFF, "walls": ()}),
@@ -123,7 +125,8 @@ def test_without_the_switch_no_periods_are_told() -> None:
 
 LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
-    "arm": SimpleNamespace(damping="other", singularity="other"), "zones": (), "move": None, "state": ProgramState.RUNNING,
+    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other"), "zones": (), "move": None,
+    "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
     "zero": (0.2,) * 6, "due": True,
 }  # fmt: skip

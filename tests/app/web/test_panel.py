@@ -93,7 +93,7 @@ def test_a_refusal_names_every_parameter_that_prevented_entry(loop: FakeLoop, st
     loop.note(Kind.SEQUENCE_STARTED, period=1.0)
     for parameter, value, limit, unit in (("flange speed", 0.031, 0.02, "m/s"), ("joint torque", 7.25, 5.0, "N·m")):
         loop.note(Kind.ENTRY_PREVENTED, parameter=parameter, part="wrist_1", value=value, limit=limit, unit=unit, time=0.1)
-    loop.note(Kind.REFUSED_PAYLOAD, mass=1.9, force=18.0, way="down", parameter="flange speed")
+    loop.note(Kind.REFUSED_PAYLOAD, mass=1.9, force=18.0, way="down", zero=False, parameter="flange speed")
     loop.note(Kind.OVERRUN, late=80.0, lost=0.08, often="once")
     still.docks.show(loop.latest())
     shown = still.panel.note.shown
