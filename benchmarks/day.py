@@ -136,7 +136,9 @@ def use(robot: Robot, hour: int, device: Simulation, home: np.ndarray) -> Use:
     rng = np.random.default_rng([robot.seed, robot.number, hour])
     person, start = Person(device), device.tick_count
     bias, temperature = tuple(device.sensors.wrench_offset.tolist()), tuple(device.plant.temperature.tolist())
-    person.do(3.0)
+    person.do(1.0)
+    person.events.clear()  # the rest moved the zero at once, as no sensor does: what detectors keep of it is older than this
+    person.do(2.0)
     zeroed = 0
     if device.tick(IDLE).zero_due:
         person.ask(Inputs(commands=(Command.ZERO_SENSOR,)))

@@ -176,7 +176,8 @@ def _compare(
         differ[0, i] += SLOWLY * (error - differ[0, i])
         differ[1, i] += (differ[0, i] ** 2 - differ[1, i]) / differ[3, i]
         differ[2, i] += ((error - differ[0, i]) ** 2 - differ[2, i]) / differ[3, i]
-        P[0, 0] += walk[i, 0]
+        # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
+        P[0, 0] = min(P[0, 0] + walk[i, 0], STIFFNESS**2 / 3.0)
         P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED

@@ -1,6 +1,7 @@
 """The soak's user uses the page as it may, and the soak judges what it has seen."""
 
 import json
+import random
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -12,10 +13,15 @@ import pytest
 from app.web.panel import CONFIRM, HOLD
 from app.web.server import serve
 from benchmarks.common import Options, Report
+from benchmarks.soak import first_use
 from benchmarks.soak import served as soaked
-from benchmarks.soak.__main__ import judge
+from benchmarks.soak.__main__ import judge, judge_first_uses
+from benchmarks.soak.client import FREE_DRIVE, Client
+from benchmarks.soak.first_use import FirstUses
 from benchmarks.soak.served import BUILD, Pace, State
-from benchmarks.soak.user import FREE_DRIVE, User
+from benchmarks.soak.user import User
+from pendant.events import Event, Kind
+from pendant.table import render
 from sim.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 
@@ -41,6 +47,66 @@ def test_a_user_uses_the_page_as_it_may_and_comes_back(monkeypatch: pytest.Monke
 
 def test_a_user_knows_the_free_drive_button_by_whatever_it_is_called() -> None:
     assert (HOLD, CONFIRM) == FREE_DRIVE
+
+
+def test_whoever_comes_back_knows_the_page() -> None:
+    """All that a first use presses, reads and drags is on the page under that name."""
+    app = serve(FakeLoop(), ARM, Scenario())
+    client = Client(app.url)
+    client.come()
+    client.look(1.0)
+    named = {thing.get("label"): thing for thing in client.things.values()}
+    section = client.called("Section")
+    client.set(section, "static")
+    client.look(0.5)
+    kept = {thing.get("label") for thing in client.things.values()}
+    said, mode = first_use.page_text(client), first_use.mode(client)
+    client.go()
+    app.close()
+    assert {"Take", "Release", "Clock", "Run", "Begin", "Reset", "Hand [N]", "True [kg]", "Configured"} <= set(named)
+    assert first_use.SCENARIO in named["Show"]["options"]
+    assert client.things[first_use.FLANGE]["drag"]
+    assert mode == first_use.READY
+    assert said.startswith("TEACH Ready")
+    assert "Drag the arm" in said
+    assert "push · threshold [N]" in named
+    assert "push · threshold [N]" not in kept, "a control that is taken from the page is not used any more"
+    ends = [render(Event(kind, 1, {"limit": 3.0}))[0] for kind in (Kind.LEFT_PERIOD, Kind.LEFT_RESTART)]
+    assert tuple(ends) == first_use.BY_ITSELF
+
+
+def test_first_uses_are_due_one_by_one_and_each_refusal_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    answers, hushed = iter(("", "2 kg too many", "")), []
+    uses = FirstUses(10.0)
+    start = time.monotonic()
+    monkeypatch.setattr(first_use, "tidy", lambda client, mass: hushed.append(uses.hush.is_set()))
+    monkeypatch.setattr(first_use, "enter", lambda client: next(answers))
+    monkeypatch.setattr(first_use, "guide_and_leave", lambda client: "stopped" if uses.entered == 2 else "")
+    quiet: Any = SimpleNamespace(look=lambda seconds: None)
+    for number in (1, 2, 3):
+        assert not uses.due(start + 10.0 * number - 1.0)
+        assert uses.due(start + 10.0 * number + 1.0)
+        uses.do(quiet, random.Random(number))
+    assert (hushed, uses.hush.is_set()) == ([True] * 3, False)
+    assert (uses.begun, uses.entered, uses.ended) == (3, 2, 1)
+    report = Report("soak", Options(False, 1000, tmp_path))
+    judge_first_uses(report, uses)
+    assert [row["what"] for row in report.rows if row["held"] is False] == ["first uses that entered free-drive"]
+    assert [note.partition(" kg: ")[2] for note in report.notes] == ["refused: 2 kg too many", "entered, but: stopped"]
+    assert not FirstUses().due(start + 1e9)
+
+
+def test_others_let_go_and_look_on_while_somebody_uses_the_arm(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("benchmarks.soak.user.PACE", 0.02)
+    monkeypatch.setattr("benchmarks.soak.user.ARRIVE", 0.3)
+    app = serve(FakeLoop(), ARM, Scenario())
+    uses = FirstUses()
+    uses.hush.set()
+    user = User(app.url, 1, first_uses=uses)
+    user.run(time.monotonic() + 1.0)
+    app.close()
+    assert user.stayed
+    assert set(user.done) == {"come"}
 
 
 def states(**changes: Callable[[int], Any]) -> list[dict[str, Any]]:

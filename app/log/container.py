@@ -46,7 +46,11 @@ Index = tuple[int, np.ndarray[Any, Any]]
 
 
 class Summary:
-    """What stands at a file's end: found out while writing, or again from a file without its end."""
+    """What stands at a file's end: found out while writing, or again from a file without its end.
+
+    Attributes:
+        chunks: indices of chunks that may still change.
+    """
 
     def __init__(self) -> None:
         self.schemas: dict[int, Schema] = {}
@@ -55,6 +59,18 @@ class Summary:
         self.attachments: list[AttachmentIndex] = []
         self.metadata: list[MetadataIndex] = []
         self.counts: dict[int, int] = {}
+        self._done = bytearray()  # indices of chunks that do not change any more, as they will stand in the file
+        self._done_count = 0
+        self._span: list[int] = []  # times of the first and the last message in them [ns]
+
+    def done(self, chunk: ChunkIndex) -> None:
+        """Take the index of a chunk that will not change: as bytes, for in a day there are 345,600 of them."""
+        builder = RecordBuilder()
+        chunk.write(builder)
+        self._done += builder.end()
+        self._done_count += 1
+        times = (*self._span, chunk.message_start_time, chunk.message_end_time)
+        self._span = [min(times), max(times)]
 
     def write(self, start: int) -> bytes:
         """The end of a file whose data ends at byte `start`: from DataEnd to the closing magic."""
@@ -63,21 +79,22 @@ class Summary:
         head = begin.end()
         for record in (*self.schemas.values(), *self.channels.values()):
             record.write(builder)
-        times = [(chunk.message_start_time, chunk.message_end_time) for chunk in self.chunks]
+        times = self._span + [time for chunk in self.chunks for time in (chunk.message_start_time, chunk.message_end_time)]
         Statistics(
             attachment_count=len(self.attachments),
             channel_count=len(self.channels),
             channel_message_counts=self.counts,
-            chunk_count=len(self.chunks),
+            chunk_count=self._done_count + len(self.chunks),
             message_count=sum(self.counts.values()),
-            message_start_time=min((first for first, _ in times), default=0),
-            message_end_time=max((last for _, last in times), default=0),
+            message_start_time=min(times, default=0),
+            message_end_time=max(times, default=0),
             metadata_count=len(self.metadata),
             schema_count=len(self.schemas),
         ).write(builder)
+        summary = builder.end() + self._done
         for record in (*self.chunks, *self.attachments, *self.metadata):
             record.write(builder)
-        summary = builder.end()
+        summary += builder.end()
         Footer(summary_start=start + len(head), summary_offset_start=0, summary_crc=0).write(begin)
         return head + summary + begin.end() + MAGIC
 
@@ -210,7 +227,7 @@ class Container:
             offsets[channel] = self._at
             self._put(INDEX.pack(Opcode.MESSAGE_INDEX, index.nbytes + 6, channel, index.nbytes) + index.tobytes())
             self._summary.counts[channel] += len(index)
-        self._summary.chunks.append(index_of(chunk, start, length, offsets, self._at - start - length))
+        self._summary.done(index_of(chunk, start, length, offsets, self._at - start - length))
 
     def _record(self, record: Any) -> None:
         builder = RecordBuilder()

@@ -1,6 +1,7 @@
 """Serves the app to three clients for ten minutes, or for an hour with --full: memory, pace, and whatever is logged as wrong.
 
-Two clients use the page at random, one looks on; all come and go.
+Two clients use the page at random, one looks on; all come and go. Every ten minutes, or every three in the quick size, the first
+of them does what somebody does who comes back to the arm, and the others look on: free-drive is entered, guided and left alone.
 """
 
 import json
@@ -14,16 +15,25 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.common import Report, main
+from benchmarks.soak.first_use import FirstUses
 from benchmarks.soak.user import User
 
 SIZES = (10.0, 60.0)  # [min]
+FIRST_USES = (3.0, 10.0)  # between two of them [min]
 WARM = 5.0  # until memory counts [min]
 STRETCH = 30.0  # over which memory is a mean [s]
 GROWTH, PACE = 20.0, (0.99, 1.01)  # [MB], simulated over real time
 
 
-def soak(report: Report, minutes: float, warm: float = WARM) -> None:
-    """Serve it for so long, and report."""
+def soak(report: Report, minutes: float, warm: float = WARM, every: float | None = None) -> None:
+    """Serve it for so long, and report.
+
+    Args:
+        report: takes the rows.
+        minutes: for which it is served.
+        warm: until memory counts [min].
+        every: between two first uses [min], as the report's size if None.
+    """
     with tempfile.TemporaryFile("w+") as errors:
         command = [sys.executable, "-u", "-m", "benchmarks.soak.served", f"{report.options.seed}"]
         pipe = subprocess.PIPE
@@ -35,7 +45,11 @@ def soak(report: Report, minutes: float, warm: float = WARM) -> None:
         lines = app.stdout
         reader = threading.Thread(target=lambda: states.extend(json.loads(line) for line in lines))
         reader.start()
-        users = [User(url, report.options.seed + number, idle=number == 2) for number in range(3)]
+        uses = FirstUses(60.0 * (FIRST_USES[report.options.full] if every is None else every))
+        users = [
+            User(url, report.options.seed + number, idle=number == 2, first_uses=uses, operator=number == 0)
+            for number in range(3)
+        ]
         threads = [threading.Thread(target=user.run, args=(time.monotonic() + 60.0 * minutes,)) for user in users]
         for thread in threads:
             thread.start()
@@ -48,6 +62,7 @@ def soak(report: Report, minutes: float, warm: float = WARM) -> None:
         errors.seek(0)
         log = errors.read()
     judge(report, states, log, 60.0 * warm)
+    judge_first_uses(report, uses)
     for user in users:
         report.notes.append(f"client: {dict(user.done)}")
 
@@ -72,6 +87,14 @@ def judge(report: Report, states: list[dict[str, Any]], log: str, warm: float) -
         Path(report.options.out).mkdir(parents=True, exist_ok=True)
         path.write_text(log, encoding="utf-8")
         report.notes.append(f"the log: {path}")
+
+
+def judge_first_uses(report: Report, uses: FirstUses) -> None:
+    """The rows of the first uses, and what the page said where one did not go as it should."""
+    report.row("first uses", uses.begun)
+    report.row("first uses that entered free-drive", uses.entered, at_least=uses.begun)
+    report.row("first uses that then ended by their period", uses.ended)
+    report.notes += uses.told
 
 
 def measure(report: Report) -> None:

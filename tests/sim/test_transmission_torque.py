@@ -173,6 +173,20 @@ def test_springs_as_stiff_as_they_may_be_are_learned_as_such_and_not_as_an_offse
     assert (np.abs(module.external) < 0.002 * rated).all()
 
 
+def test_a_day_of_motion_without_load_does_not_make_a_joint_deaf_to_contact() -> None:
+    """A spring that nothing bends says nothing of its stiffness: when it is bent at last, it is known as well as at first."""
+    gears, load = Gears(), 20.0
+    fresh = gears.tick(load, load, load).external_deviation.copy()
+    gears.module.forget()
+    gears.module._walk[:] *= 86400.0 / (2000 * TICK)  # 2,000 ticks wander as far as a day does
+    for _ in range(2000):
+        gears.tick(0.0, 0.0, 0.0, moving=True)
+    assert (np.linalg.eigvalsh(gears.module._covariance) > 0.0).all()
+    late = gears.tick(load, load, load)
+    assert (late.external_deviation < 1.1 * fresh).all()
+    assert gears.tick(load, 2.0 * load, load).contact, "it had been believed to be 0.6 ± 0.6 as stiff"
+
+
 def test_a_bound_that_the_stiffness_meets_does_not_turn_the_offset_the_wrong_way() -> None:
     """Springs believed at 0.7 of what they are, which none should be: what the bound leaves is to the offset as it stands."""
     gears, rated = Gears(), np.array(UR5E.limits.torque)
