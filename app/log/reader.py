@@ -79,6 +79,7 @@ class Scan:
     notes: dict[str, dict[str, str]] = field(default_factory=dict)
     messages: dict[str, list[bytes]] = field(default_factory=dict)  # by topic, in order
     packed: dict[str, list[bytes]] = field(default_factory=dict)
+    last: set[int] = field(default_factory=set)  # channels of the last chunk
 
 
 def read(path: Path) -> Log:
@@ -143,6 +144,10 @@ def scanned(data: bytes, where: str) -> Scan:
         except UNREADABLE as error:
             raise BadInput(where, f"byte {at}", ABSENT, f"is damaged ({str(error) or type(error).__name__})") from None
         at = scan.end = stop
+    chunks = scan.summary.chunks
+    if chunks and not scan.whole and scan.last - chunks[-1].message_index_offsets.keys():
+        # Cut between a chunk and its index: with the index goes the chunk, or its messages would be there and not counted.
+        return scanned(data[: chunks[-1].chunk_start_offset], where)
     return scan
 
 
@@ -196,8 +201,10 @@ def _unpack(scan: Scan, chunk: Chunk) -> None:
         raise ValueError("wrong check sum")
     at = 0
     channels = scan.summary.channels
+    scan.last = set()
     while at < len(body):
         code, length, number = struct.unpack_from("<BQH", body, at)
+        scan.last.add(number)
         topic = channels[number].topic
         content = body[at + 31 : at + 9 + length]
         if code != Opcode.MESSAGE or at + 9 + length > len(body):

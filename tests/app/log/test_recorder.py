@@ -239,6 +239,42 @@ def test_a_killed_process_leaves_all_but_the_last_second(tmp_path: Path) -> None
         assert read(path).whole
 
 
+def test_a_file_cut_anywhere_in_its_last_chunk_counts_what_it_holds(tmp_path: Path) -> None:
+    """Also between the chunk and its index, where the messages are there and not counted."""
+    path, copy = tmp_path / "log.mcap", tmp_path / "copy.mcap"
+    simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
+    with Recorder(path, simulation, "t") as recorder:
+        for _ in range(3 * BLOCK):
+            recorder.see(simulation, simulation.tick(IDLE))
+    data = path.read_bytes()
+    with path.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    last = summary.chunk_indexes[-1]
+    end = last.chunk_start_offset + last.chunk_length
+    whole = end + last.message_index_length
+    counted: list[int] = []
+    for at in (
+        last.chunk_start_offset,
+        end - 1,
+        end,
+        end + 1,
+        end + last.message_index_length - 1,
+        end + last.message_index_length,
+    ):
+        copy.write_bytes(data[:at])
+        ticks = len(read(copy).ticks)
+        assert repair(copy)
+        with copy.open("rb") as file:
+            told = make_reader(file).get_summary()
+        assert told is not None
+        assert told.statistics is not None
+        assert told.statistics.channel_message_counts[1] == ticks == len(read(copy).ticks)
+        counted.append(ticks)
+    assert counted[:-1] == [counted[0]] * 5
+    assert counted[-1] > counted[0]
+
+
 def test_killed_at_once_it_holds_the_first_tick(tmp_path: Path) -> None:
     simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
     path, copy = tmp_path / "log.mcap", tmp_path / "copy.mcap"
