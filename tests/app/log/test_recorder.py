@@ -254,14 +254,7 @@ def test_a_file_cut_anywhere_in_its_last_chunk_counts_what_it_holds(tmp_path: Pa
     end = last.chunk_start_offset + last.chunk_length
     whole = end + last.message_index_length
     counted: list[int] = []
-    for at in (
-        last.chunk_start_offset,
-        end - 1,
-        end,
-        end + 1,
-        end + last.message_index_length - 1,
-        end + last.message_index_length,
-    ):
+    for at in (last.chunk_start_offset, end - 1, end, end + 1, whole - 1, whole):
         copy.write_bytes(data[:at])
         ticks = len(read(copy).ticks)
         assert repair(copy)
