@@ -96,15 +96,19 @@ class Path:
     def _taught(self, t: float) -> Array:
         if t >= self._rests:
             self._from, self._leaves = self._to, t
-            while np.linalg.norm(self._to - self._from) < 0.08:
+            while self._leg() < 0.08:
                 self._to = self._rng.uniform(-0.1, 0.1, 2)
-            self._arrives = t + 0.5 + float(np.linalg.norm(self._to - self._from)) / 0.1
+            self._arrives = t + 0.5 + self._leg() / 0.1
             self._rests = self._arrives + float(self._rng.uniform(1.0, 3.0))
             self.keeps_hold = bool(self._rng.random() < 0.5)
         self.pauses = t >= self._arrives
         self.registers = t >= 0.5 * (self._arrives + self._rests)
         share = min((t - self._leaves) / (self._arrives - self._leaves), 1.0)
         return self._from + (self._to - self._from) * (3.0 - 2.0 * share) * share**2
+
+    def _leg(self) -> float:
+        """From one place to the next [m], in the directions in which the part can go."""
+        return float(np.linalg.norm((self._to - self._from) @ self._across))
 
 
 def grip(part: str) -> tuple[float, float, float]:

@@ -7,9 +7,10 @@ from pendant.events import Values
 from pendant.hand import CARRIED, Hand
 from pendant.modes import TICK
 from pendant.parameters import Reference
-from pendant.pose import Vector, norm
+from pendant.pose import ORIGIN, Vector, norm
 from pendant.settings import Unexplained, ticks
 from pendant.work import Work
+from pendant.zeroing import SURE, Slack
 
 AWAY = 0.015
 """An arm at rest that nobody touches goes no farther on its own [m], however slowly: friction all but holds a wrong payload."""
@@ -17,6 +18,9 @@ AWAY = 0.015
 UNFELT = 0.01
 """Without the flange sensor no farther once it counts as moving [m]: a light hand is not felt then, but an arm that breaks away
 from its friction is as fast as a hand in 0.3 s."""
+
+HALF = 0.5
+"""From this share of what is allowed on nothing helps the arm: a hand then pushes, and an arm that nobody leads comes to rest."""
 
 
 class Way:
@@ -55,14 +59,13 @@ class Alone:
     """Counts for how long, and how far, the arm moves and nobody moves it.
 
     Attributes:
-        led: by a hand on a link, which pays for the motion.
-        doubtful: half of that time has gone by: nothing helps the motion on, so that who leads it pushes, and else it ends.
+        led: somebody pays for the motion.
+        doubtful: half of what is allowed has gone by: nothing helps the motion on, so that who leads it pushes, and else it ends.
 
-    A stretch of motion without a hand at the flange begins afresh whenever all of it was paid for by a hand on a link
-    (`pendant.work`).
+    A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.work`).
     """
 
-    __slots__ = ("_allowed", "_at_rest", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
+    __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
 
     def __init__(self, on: Unexplained, since: Reference) -> None:
         """
@@ -72,6 +75,8 @@ class Alone:
         """
         self._on, self._allowed = on, ticks(on.time)
         self._ticks = 0  # of the stretch
+        self._felt = False  # a hand, in it
+        self._doubted = 0  # ticks of the doubt
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
         self._whole = Way(since)  # since it has been at rest
@@ -80,9 +85,12 @@ class Alone:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        return (self._ticks, self._stretch.memory, self._at_rest, self._whole.memory, self.doubtful, self.led)
+        own = (self._ticks, self._felt, self._doubted, self._at_rest, self.doubtful, self.led)
+        return (*own, self._stretch.memory, self._whole.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool, slack: float = 0.0) -> Values | None:
+    def step(
+        self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool, slack: Slack = SURE, torque: Vector = ORIGIN
+    ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 
         Args:
@@ -90,53 +98,88 @@ class Alone:
             hand: after its step.
             use_wrench: the flange sensor is used.
             driven: a wall or another device moves the arm, or holds it.
-            slack: what of a force at the flange may be the sensor's drift [N].
+            slack: what may be the sensor's drift.
+            torque: of the hand at the flange, axes of B [N·m].
         """
-        x, y, z = hand.user
-        least = self._on.force + slack
-        if driven or x * x + y * y + z * z >= least * least:
+        if driven:
             self._ticks, self._at_rest = 0, False
-            self.led = self.doubtful = False
+            self._end_doubt()
+            self.led = False
             return None
-        vx, vy, vz = estimate.v_F.tolist()[:3]
+        x, y, z = hand.user
+        least = self._on.force + slack.force
+        felt = x * x + y * y + z * z >= least * least
         # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
-        x, y, z = hand.usual
-        usual = norm((x, y, z))
-        by_link = use_wrench and usual < CARRIED + slack
-        share = max(1.0 - slack / usual, 0.0) if by_link and usual > 0.0 else 0.0
-        force = (share * x, share * y, share * z)
-        way = self._beyond(estimate, force, norm((vx, vy, vz)), use_wrench, by_link)
+        usual = norm(hand.usual)
+        by_link = use_wrench and usual < CARRIED + slack.force
+        wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        way = self._too_long(estimate, wrench, norm((vx, vy, vz)), felt, use_wrench, by_link)
         if way is None:
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
-    def _beyond(self, estimate: Estimate, force: Vector, speed: float, use_wrench: bool, by_link: bool) -> Way | None:
-        """One tick in which no more than this force [N] is felt at the flange, which has this speed [m/s].
+    def _too_long(
+        self, estimate: Estimate, wrench: tuple[Vector, Vector], speed: float, felt: bool, use_wrench: bool, by_link: bool
+    ) -> Way | None:
+        """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
 
         Returns which way is too long.
         """
         stretch, whole = self._stretch, self._whole
         moves = speed >= self._on.speed
+        if felt is not self._felt or not moves:
+            self._felt, self._ticks = felt, 0
         if moves:
             if self._ticks == 0:
                 stretch.begin(estimate)
             self._ticks += 1
-            stretch.work.step(estimate, force)
-        else:
-            self._ticks = 0
-            if not self._at_rest:
-                self._at_rest = True
-                whole.begin(estimate)
+            stretch.work.step(estimate, *wrench)
+        if felt:
+            self._at_rest = False
+            self.led = moves and by_link and stretch.work.settled
+            self._end_doubt()
+            return None
+        if not (moves or self._at_rest):
+            self._at_rest = True
+            whole.begin(estimate)
+        far = False
         if self._at_rest:
-            whole.work.step(estimate, force)
-            too_far = whole.length(estimate) > AWAY if use_wrench else moves and stretch.length(estimate) > UNFELT
-            if too_far and not (by_link and whole.work.paid):
-                return whole if use_wrench else stretch
-            self._at_rest = not too_far
-        self.led = moves and by_link and stretch.work.settled
+            whole.work.step(estimate, *wrench)
+            length = whole.length(estimate) if use_wrench else stretch.length(estimate) if moves else 0.0
+            paid = by_link and whole.work.paid
+            if length > (AWAY if use_wrench else UNFELT):
+                if not paid:
+                    return whole if use_wrench else stretch
+                self._at_rest = False
+            far = use_wrench and not paid and length > HALF * AWAY
+            self.led = paid and whole.work.settled
+        if moves:
+            self.led = by_link and stretch.work.settled
         if self.led or not moves:
             self._ticks, self.doubtful = 0, False
-            return None
-        self.doubtful = self.doubtful or (by_link and stretch.work.lasts(self._allowed // 2))
-        lasted = stretch.work.lasts(self._allowed) if by_link else self._ticks > self._allowed
-        return stretch if lasted else None
+        elif self._lasts(HALF, by_link):
+            self.doubtful = use_wrench
+        self.doubtful = self.doubtful or far
+        self._doubted = self._doubted + 1 if self.doubtful else 0
+        # Without help an arm that nobody leads may come to rest first.
+        waits = by_link and self._doubted < HALF * self._allowed
+        return stretch if moves and not (self.led or waits) and self._lasts(1.0, by_link) else None
+
+    def _lasts(self, share: float, by_link: bool) -> bool:
+        """Nobody has led the arm for this share of the time that it has."""
+        most = round(share * self._allowed)
+        return self._stretch.work.lasts(most) if by_link else self._ticks > most
+
+    def _end_doubt(self) -> None:
+        self.doubtful, self._doubted = False, 0
+
+
+NO_WRENCH = (ORIGIN, ORIGIN)
+
+
+def _beyond(value: Vector, size: float, slack: float) -> Vector:
+    """What of a value of this size is certain."""
+    share = max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
+    x, y, z = value
+    return share * x, share * y, share * z

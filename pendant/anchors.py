@@ -1,7 +1,8 @@
 """Where a wall round a part is anchored, and when anew: fixed, stepwise, average, user (VW-3 to VW-5).
 
 A fallen or too heavy payload must not take its wall along. So a part counts as moved by somebody only when a user force acts
-on it, or when it moved against the force of the payload-like residual, which no payload does by itself.
+on it, when somebody pays for its motion (`pendant.work`), or when it moved against the force of the payload-like residual, which
+no payload does by itself.
 """
 
 import math
@@ -31,6 +32,7 @@ class Stay(msgspec.Struct, frozen=True, gc=False):
     payload_force: Vector  # of the payload-like residual, axes of B [N]
     safety_ticks: int  # safety period
     redefine_ticks: int  # redefine period
+    led: bool = False  # somebody pays for the arm's motion
 
 
 class Anchor:
@@ -85,7 +87,7 @@ class Anchor:
         mx, my, mz = stay.moved
         # A hand drives a part or holds it; the inertia of a wrong payload that gathers speed looks like a force against it.
         driving = x * mx + y * my + z * mz >= 0.0
-        return self._decide(stay, driving and x * x + y * y + z * z >= self._least)
+        return self._decide(stay, stay.led or (driving and x * x + y * y + z * z >= self._least))
 
     def _stepwise(self, stay: Stay, pushed: bool) -> bool:
         """VW-3: at the end of each redefine period, unless exceeded within the safety period before."""
@@ -136,7 +138,7 @@ class Anchor:
             self._away = 0.0
         elif away < 0.0:
             self._away = max(self._away + away, 0.0)
-        elif pushed and dot(stay.user_force, stay.outward) < 0.0:
+        elif pushed and (stay.led or dot(stay.user_force, stay.outward) < 0.0):
             self._away += away
         if self._away >= self._wall.step:
             self.local, self._away = stay.local, 0.0

@@ -51,6 +51,7 @@ class Around(msgspec.Struct, frozen=True, gc=False):
     user_force: Vector  # without the payload-like residual [N]
     payload_force: Vector  # of the payload-like residual [N]
     measures: Mapping[Measure, float]
+    led: bool = False  # somebody pays for the arm's motion
 
 
 class Reading(msgspec.Struct, frozen=True, gc=False):
@@ -177,7 +178,8 @@ class Barrier:
             assert self._anchor is not None
             safety, redefine = self._constant or self._periods(around)
             user, payload = around.user_force, around.payload_force
-            anchored = self._anchor.step(Stay(local, outward, near > 0.0, exceeded, moved, user, payload, safety, redefine))
+            stay = Stay(local, outward, near > 0.0, exceeded, moved, user, payload, safety, redefine, around.led)
+            anchored = self._anchor.step(stay)
         return Reading(border, distance, outward, near, exceeded, consequence, force, anchored, place)
 
     def place(self) -> Place | None:

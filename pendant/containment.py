@@ -21,8 +21,8 @@ PARTS = ("flange", "tcp", "elbow")
 TETHER = "tether"
 """Name of the wall that is always there: a sphere round the flange that follows the user, and nobody else (VW-4)."""
 
-NOBODY = (ORIGIN, ORIGIN)
-"""The user's and the payload-like force where nothing is known of them."""
+NOBODY = (ORIGIN, ORIGIN, False)
+"""The user's and the payload-like force where nothing is known of them, and nobody is known to lead the arm."""
 
 
 def tether(walls: Walls) -> Wall:
@@ -84,13 +84,14 @@ class Containment:
         self._enclosure = None
         self._reading = ()
 
-    def step(self, estimate: Estimate, user: Vector, payload: Vector) -> Reading | None:
+    def step(self, estimate: Estimate, user: Vector, payload: Vector, led: bool) -> Reading | None:
         """One tick; its joint values are finite. Returns what has the gravest consequence, if anything has one.
 
         Args:
             estimate: of this tick.
             user: the user's force, axes of B [N].
             payload: force of the payload-like residual, axes of B [N].
+            led: somebody pays for the arm's motion (`pendant.work`).
         """
         if self._enclosure is None:
             return None
@@ -103,7 +104,7 @@ class Containment:
             turns = {"flange": R_BF, "tcp": product(R_BF, self.R_FT)}
             references = {**references, **{name: Pose(_point(name, estimate).p, turns[name]) for name in self._turned}}
         measures = _measures(estimate) if self._measured else {}
-        self._reading = self._enclosure.step(Around(parts, references, user, payload, measures))
+        self._reading = self._enclosure.step(Around(parts, references, user, payload, measures, led))
         return worst(self._reading)
 
     def states(self) -> tuple[WallState, ...]:

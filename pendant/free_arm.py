@@ -99,12 +99,12 @@ class FreeArm:
             zero.leave()
             events.append(Event(Kind.WRENCH_LOST, tick))
         hand.step(estimate, zero.used)
-        self.user = hand.by_joints if hand.user == ORIGIN and operation.led else hand.user
+        self.user = hand.user
         if zero.used and settings.unexplained.sensor:
             told = zero.step(estimate, hand, around.mean, waits)
             if told is not None:
                 events.append(told)
-        reading = self._containment.step(estimate, self.user, hand.payload)
+        reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
         before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:
             kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL

@@ -18,6 +18,7 @@ from pendant.pose import ORIGIN, Vector, Wrench, flat, norm, turned_back
 from pendant.residual import Split
 from pendant.settings import Settings
 from pendant.soft_limits import Damping, SoftLimits
+from pendant.zeroing import SURE, Slack
 
 STEP = 2
 """A payload comes or goes within so many ticks."""
@@ -118,7 +119,7 @@ class Operation:
 
     @property
     def led(self) -> bool:
-        """A hand on a link leads the arm, be it less than one that is felt."""
+        """Somebody leads the arm: the motion is paid for."""
         return self._alone.led
 
     @property
@@ -140,7 +141,7 @@ class Operation:
         )
         return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool, slack: float = 0.0) -> Ending | None:
+    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool, slack: Slack = SURE) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
@@ -148,7 +149,7 @@ class Operation:
             hand: after its step.
             baseline: what of F_user is nobody's, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
-            slack: what of a force at the flange may be the sensor's drift [N].
+            slack: what may be the sensor's drift.
         """
         if self._on.payload and baseline is not None:
             lost = self._lost(estimate, hand, baseline)
@@ -157,9 +158,10 @@ class Operation:
         else:
             self._stepped, self._followed, self.suspect = 0, NOTHING_FOLLOWS, False
             self._hidden.forget()
+        torque = ORIGIN if baseline is None else _torque(estimate, baseline)
         soft = self._soft
         if soft.pushed:
-            soft.step(estimate, norm(hand.user), 0.0 if baseline is None else self._torque(estimate, baseline))
+            soft.step(estimate, norm(hand.user), norm(torque))
         else:
             soft.step(estimate)
         self.damping = soft.damping
@@ -168,16 +170,10 @@ class Operation:
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
-        values = self._alone.step(estimate, hand, baseline is not None, driven, slack) if self._on.motion else None
+        if not self._on.motion:
+            return None
+        values = self._alone.step(estimate, hand, baseline is not None, driven, slack, torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
-
-    @staticmethod
-    def _torque(estimate: Estimate, baseline: Wrench) -> float:
-        """The hand's torque: what is beyond a baseline that turns with the flange [N·m]."""
-        x, y, z = estimate.F_user.tolist()[3:]
-        _, _, _, ox, oy, oz = baseline
-        x, y, z = turned_back(flat(estimate.R_BF), (x, y, z))
-        return norm((x - ox, y - oy, z - oz))
 
     def _lost(self, estimate: Estimate, hand: Hand, baseline: Wrench) -> Ending | None:
         """A payload-like step."""
@@ -241,6 +237,14 @@ class Operation:
     def _like(share: float, across: float, square: float) -> bool:
         """What is missing is a share of the load."""
         return abs(share) <= LOST_AT_MOST and across <= ACROSS * abs(share) * math.sqrt(square) + SLACK
+
+
+def _torque(estimate: Estimate, baseline: Wrench) -> Vector:
+    """The hand's torque, axes of B: what is beyond a baseline that turns with the flange [N·m]."""
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
+    _, _, _, ox, oy, oz = baseline
+    _, _, _, x, y, z = estimate.F_user.tolist()
+    return x - xx * ox - xy * oy - xz * oz, y - yx * ox - yy * oy - yz * oz, z - zx * ox - zy * oy - zz * oz
 
 
 def way_back(then: tuple[float, ...], now: tuple[float, ...], joints: tuple[str, ...]) -> str:

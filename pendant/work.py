@@ -6,8 +6,8 @@ The control law takes at most a share of its friction off a moving arm. The rest
 
 and an arm that nobody leads pays for that rest with its speed. Half of that rest is asked for: the gears' unknown stiffness hides
 some of the torque. Both powers weigh each joint by its own speed: a joint that stands says nothing. The torques come from the
-deflection of the gears, so that an error of the friction estimate alone pays nothing. A hand at the flange does the work F . v
-there, which its sensor tells better than the joints do.
+deflection of the gears, so that an error of the friction estimate alone pays nothing. A hand at the flange does the work
+F . v + tau . w there, which its sensor tells better than the joints do.
 """
 
 from pendant.estimate import Estimate
@@ -56,8 +56,8 @@ class Work:
         self._rubbed = 0.0  # what is asked for of the friction [J]
         self.unpaid = 0.0
 
-    def step(self, estimate: Estimate, force: Vector = ORIGIN) -> None:
-        """One tick of motion, with this `force` of a hand at the flange, axes of B [N]."""
+    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN) -> None:
+        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m]."""
         done = rubbed = 0.0
         felt = zip(estimate.qd.tolist(), estimate.tau_ext.tolist(), self._before, estimate.friction.tolist(), strict=True)
         for speed, now, before, friction in felt:
@@ -68,9 +68,9 @@ class Work:
         self._ticks += 1
         self._slower = self._energy - estimate.energy
         self._rubbed += rubbed
-        x, y, z, _, _, _ = estimate.v_F.tolist()
+        x, y, z, a, b, c = estimate.v_F.tolist()
         self._by_joints = joints = _pay(self._by_joints, rubbed, done)
-        self._at_flange = flange = _pay(self._at_flange, rubbed, TICK * dot(force, (x, y, z)))
+        self._at_flange = flange = _pay(self._at_flange, rubbed, TICK * (dot(force, (x, y, z)) + dot(torque, (a, b, c))))
         self.unpaid = min(joints[1], flange[1])
 
     @property

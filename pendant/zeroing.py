@@ -8,6 +8,7 @@ little before the joints tell. A sensor that steps is not used any more (`pendan
 
 import math
 from collections import deque
+from typing import NamedTuple
 
 from pendant.estimate import Estimate
 from pendant.events import Event, Kind
@@ -47,6 +48,16 @@ BEGINS = 5
 """Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
 
 
+class Slack(NamedTuple):
+    """What the sensor may have drifted by itself since that was last followed: an uncertainty of what it tells."""
+
+    force: float  # [N]
+    torque: float  # [N·m]
+
+
+SURE = Slack(0.0, 0.0)
+
+
 class Drift:
     """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
 
@@ -84,9 +95,10 @@ class Drift:
         self._count = 0
         self.restart()
 
-    def slack(self, tick: int) -> float:
-        """What a sensor may have drifted by itself since it was last followed [N]."""
-        return SLOWLY * TICK * (tick - self._quiet)
+    def slack(self, tick: int) -> Slack:
+        """At this tick."""
+        seconds = TICK * (tick - self._quiet)
+        return Slack(SLOWLY * seconds, SLOWLY_TURN * seconds)
 
     def begin(self, apart: Wrench, tick: int) -> Wrench | None:
         """The arm has come to rest, and feels so much beyond the baseline, axes of F [N, N·m].
@@ -95,10 +107,10 @@ class Drift:
             What of it the sensor drifted by while the arm was moved; None while a hand holds the arm.
         """
         force, slack = norm((apart[0], apart[1], apart[2])), self.slack(tick)
-        if force > QUIET + slack:
+        if force > QUIET + slack.force:
             return None
         self._quiet = tick
-        return (*_within(list(apart[:3]), slack), *_within(list(apart[3:]), slack * SLOWLY_TURN / SLOWLY))
+        return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
 
     def give_back(self) -> list[Wrench]:
         """What was taken off lately was a hand's, axes of F [N, N·m]."""
@@ -195,8 +207,8 @@ class Zero:
         drifted = (*turned(R_BF, (x, y, z)), *turned(R_BF, (a, b, c)))
         return tuple([value - part for value, part in zip(wrench, drifted, strict=True)])
 
-    def slack(self, estimate: Estimate) -> float:
-        """What of a force at the flange may be drift that could not be followed [N]."""
+    def slack(self, estimate: Estimate) -> Slack:
+        """Of what is told at the flange now."""
         return self._drift.slack(estimate.tick)
 
     def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:

@@ -12,6 +12,7 @@ from pendant.modes import TICK
 from pendant.parameters import reference
 from pendant.settings import Settings
 from pendant.work import ASKED, LEFT
+from pendant.zeroing import Slack
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
@@ -223,7 +224,7 @@ def test_a_force_that_may_be_drift_is_no_hand_unless_it_works(force: float, hand
     bench = Bench()
     value = at(0.0, 0.1, turns=1.0)
     bench.hand.user = (0.0, force, 0.0)
-    told = [bench.alone.step(value, bench.hand, True, False, 2.0) for _ in range(151)]
+    told = [bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2)) for _ in range(151)]
     assert (told[-1] is None) is hand
 
 
@@ -234,4 +235,104 @@ def test_a_light_hand_along_gravity_works_at_the_flange(slack: float, told: bool
     bench.held(at(0.0, 0.1))
     bench.hand.usual = (2.0, 0.0, 0.0)
     value = at(0.0, 0.1, turns=1.0)
-    assert any(bench.alone.step(value, bench.hand, True, False, slack) is not None for _ in range(400)) is told
+    drifts = Slack(slack, 0.1 * slack)
+    assert any(bench.alone.step(value, bench.hand, True, False, drifts) is not None for _ in range(400)) is told
+
+
+@pytest.mark.parametrize(("turn", "told"), [(0.0, True), (2.0, False), (-2.0, True)])
+def test_so_does_its_torque(turn: float, told: bool) -> None:
+    """1 N·m at the end of a tool, with 0.2 N·m that may be drift."""
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    value = at(0.0, 0.1, turns=1.0)
+    value.v_F[3:] = [0.0, 0.0, turn]
+    torque, slack = (0.0, 0.0, 1.0), Slack(2.0, 0.2)
+    assert any(bench.alone.step(value, bench.hand, True, False, slack, torque) is not None for _ in range(400)) is told
+
+
+@pytest.mark.parametrize(("turn", "led"), [(0.199, False), (0.21, True)])
+def test_of_a_torque_what_may_be_drift_pays_for_nothing(turn: float, led: bool) -> None:
+    bench = Bench()
+    value = at(0.0, 0.1, turns=1.0)
+    value.v_F[3:] = [0.0, 0.0, 1000.0]
+    bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2), (0.0, 0.0, turn))
+    assert bench.alone.led is led
+
+
+@pytest.mark.parametrize("pays", [0.99, 1.01])
+def test_who_is_felt_leads_the_arm_where_the_motion_is_paid_for(pays: float) -> None:
+    bench = Bench()
+    bench.hand.user = (0.0, 0.0, 40.0)
+    bench.alone.step(at(0.0, 0.1, turns=1.0, felt=pays * PAYS), bench.hand, True, False)
+    assert bench.alone.led is (pays > 1.0)
+    bench.alone.step(at(0.0, 0.0, turns=1.0, felt=2.0 * PAYS), bench.hand, True, False)
+    assert not bench.alone.led, "it does not move"
+
+
+def test_what_was_paid_while_a_hand_was_felt_does_not_count_later() -> None:
+    bench = Bench()
+    bench.hand.user = (0.0, 0.0, 40.0)
+    for _ in range(1000):
+        bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, True, False)
+    bench.hand.user = (0.0, 0.0, 0.0)
+    assert bench.until([at(0.0, 0.1, turns=1.0)] * 150) is None, "nor what was owed"
+    assert bench.see(at(0.0, 0.1, turns=1.0)) is not None
+
+
+@pytest.mark.parametrize(("felt", "led"), [(0.99 * PAYS, False), (1.01 * PAYS, True)])
+def test_who_leads_it_slowly_is_known_from_where_it_rested(felt: float, led: bool) -> None:
+    bench = Bench()
+    assert bench.until(creep(20, turns=1.0, felt=felt)) is None
+    assert bench.alone.led is led
+    bench.alone.step(creep(21, turns=1.0, felt=felt)[-1], bench.hand, True, True)
+    assert not bench.alone.led, "a wall drives it"
+
+
+@pytest.mark.parametrize("carried", [0.0, CARRIED])
+def test_half_of_the_way_that_nobody_pays_for_is_doubtful(carried: float) -> None:
+    """The doubt stays while the arm rests there, for the way would go on; a hand that is felt ends it."""
+    bench = Bench()
+    bench.hand.usual = (carried, 0.0, 0.0)
+
+    def see(value: Estimate) -> bool:
+        assert bench.alone.step(value, bench.hand, True, False) is None
+        return bench.alone.doubtful
+
+    assert not see(at(0.99 * 0.5 * AWAY, 0.01, turns=1.0))
+    assert see(at(1.01 * 0.5 * AWAY, 0.01, turns=1.0))
+    assert see(at(1.01 * 0.5 * AWAY, 0.0))
+    bench.held(at(1.01 * 0.5 * AWAY, 0.0))
+    assert not see(at(1.01 * 0.5 * AWAY, 0.0))
+    assert not see(at(1.99 * 0.5 * AWAY, 0.0)), "from where it rested after the hand"
+
+
+def test_a_doubt_ends_when_the_way_is_paid_for() -> None:
+    bench = Bench()
+    bench.see(at(0.6 * AWAY, 0.01, turns=1.0))
+    assert bench.alone.doubtful
+    bench.see(at(0.6 * AWAY, 0.01, turns=1.0, felt=9.0))
+    assert not bench.alone.doubtful
+
+
+def test_without_help_an_arm_has_time_to_come_to_rest() -> None:
+    """A hand that pays now and then owes half of the time late: then the doubt lasts for as long before the arm is stopped."""
+    bench = Bench()
+    assert bench.until(at(0.001, 0.1, turns=1.0, felt=0.6 * PAYS) for _ in range(187)) is None
+    assert not bench.alone.doubtful
+    doubted = 0
+    for _ in range(2000):
+        told = bench.see(at(0.001, 0.1, turns=1.0))
+        doubted += bench.alone.doubtful
+        if told is not None:
+            break
+    assert doubted >= 75
+
+
+@pytest.mark.parametrize("ticks", [75, 76])
+def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> None:
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    bench.hand.usual = (CARRIED, 0.0, 0.0)
+    for _ in range(ticks):
+        bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, True, False)
+    assert bench.alone.doubtful is (ticks > 75)

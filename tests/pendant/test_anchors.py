@@ -120,6 +120,15 @@ def test_somebody_drives_along_the_force_or_against_the_residual_in_every_axis(
     assert anchor.step(Stay(NONE, (0.0, 0.0, -1.0), False, False, along(moved), along(force), along(payload), 1, 1)) is anew
 
 
+@pytest.mark.parametrize("led", [True, False])
+@pytest.mark.parametrize(("policy", "out"), [(Policy.STEPWISE, 0.001), (Policy.AVERAGE, 0.001), (Policy.USER, -0.03)])
+def test_who_pays_for_the_motion_drives_the_part_though_no_force_is_felt(policy: Policy, out: float, led: bool) -> None:
+    """The way that the user policy counts leads away from the wall."""
+    anchor = Anchor(Wall(name="w", shape=Sphere(radius=0.2), policy=policy, step=0.02), NONE, 1)
+    stay = Stay(NONE, (0.0, 0.0, -1.0), False, False, (0.0, 0.0, -out), NONE, NONE, 1, 1, led)
+    assert anchor.step(stay) is led
+
+
 def test_average_follows_the_mean_of_the_last_period() -> None:
     anchor, moved = run(Policy.AVERAGE, path(0.3, 3 * N, user=PUSH))
     assert moved == list(range(1, 3 * N + 1))

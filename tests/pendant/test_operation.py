@@ -16,7 +16,7 @@ from pendant.hand import CARRIED, SWING, Hand
 from pendant.hidden_drop import LASTS, LEAST
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.modes import TICK, Mode
-from pendant.operation import CERTAIN, SWINGS, Ending, Operation, way_back
+from pendant.operation import CERTAIN, SWINGS, Ending, Operation, _torque, way_back
 from pendant.operation import LASTS as STEP_LASTS
 from pendant.pose import Vector, Wrench
 from pendant.settings import Settings, apply
@@ -603,9 +603,11 @@ def test_a_share_of_the_load_lies_along_it_and_is_hardly_more_than_all(share: fl
 def test_the_hands_torque_is_its_change_in_every_axis() -> None:
     """FD-12b."""
     baseline = (9.0, 9.0, 9.0, 0.1, 0.2, 0.3)
-    assert Operation._torque(estimate(torque=[0.3, 0.6, -0.1]), baseline) == pytest.approx(0.6)
-    baseline = (9.0, 9.0, 9.0, 0.5, 0.4, 0.3)
-    assert Operation._torque(estimate(torque=[0.7, 0.8, -0.1]), baseline) == pytest.approx(0.6)
+    assert _torque(estimate(torque=[0.3, 0.6, -0.1]), baseline) == pytest.approx((0.2, 0.4, -0.4))
+    # The baseline turns with the flange: here a quarter round z.
+    turned = estimate(torque=[0.3, 0.6, -0.1])
+    turned.R_BF[:] = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    assert _torque(turned, baseline) == pytest.approx((0.5, 0.5, -0.4))
 
 
 @pytest.mark.parametrize("axis", range(3))

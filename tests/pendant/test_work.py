@@ -70,6 +70,20 @@ def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, sha
     assert work.settled is paid
 
 
+@pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True), (-1.01, False)])
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
+def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, share: float, paid: bool) -> None:
+    """A tool that is led at its end turns the flange, at 0.5 rad/s."""
+    value = moving(-1.0)
+    value.v_F[3:] = [0.5 * part for part in way]
+    needed = PAYS * SPEED / 0.5
+    work = Work(BEFORE)
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, torque=(share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+    assert (work.paid, work.settled) == (paid, paid)
+
+
 @pytest.mark.parametrize(("share", "lasts"), [(-1.0, True), (0.0, True), (0.9, True), (1.1, False)])
 def test_an_arm_that_slows_down_pays_with_its_speed(share: float, lasts: bool) -> None:
     """Of what 101 ticks cost, which is a tick more than what may be owed. One that gets faster owes no less."""
