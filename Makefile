@@ -2,6 +2,7 @@
 #
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
+#   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
@@ -23,11 +24,18 @@ BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
 
+ifdef ROOM
+test: $(VENV)/dev.stamp
+	@[ -d tests/$(ROOM) ] || { echo "ROOM=$(ROOM): no tests/$(ROOM); a room is a folder like pendant/walls" >&2; exit 1; }
+	$(BIN)/ruff check --quiet $(ROOM) tests/$(ROOM)
+	$(BIN)/pytest -q tests/$(ROOM) tests/test_rooms.py
+else
 # What keeps one core busy goes in pairs; the rest has the machine to itself.
 test: $(VENV)/dev.stamp
 	$(MAKE) --no-print-directory -j2 --output-sync=target wheel types lint contracts kernels
 	$(MAKE) --no-print-directory unit
 	$(MAKE) --no-print-directory e2e
+endif
 
 $(BIN)/python:
 	@command -v $(PYTHON) >/dev/null || { echo "$(PYTHON) not found: install Python 3.11 or newer" >&2; exit 1; }
@@ -58,7 +66,7 @@ contracts: $(VENV)/dev.stamp
 
 # A fresh clone compiles its kernels once, and not in each worker of the tests.
 kernels: $(VENV)/dev.stamp
-	$(BIN)/python -c "from app.warm_up import warm_up; warm_up()"
+	$(BIN)/python -c "from app.runs.warm_up import warm_up; warm_up()"
 
 unit: $(VENV)/dev.stamp
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10

@@ -12,17 +12,17 @@ from typing import Any
 
 import msgspec
 
-from app.batch import Job, run_all, work
-from app.checked import BadInput, convert, load
+from app.files.checked import BadInput, convert, load
 from app.log.reader import Log
 from app.log.reader import read as read_log
-from app.prepare import prepare
-from app.runner import Outcome, simulate
-from app.session import Session, find
+from app.runs.batch import Job, run_all, work
+from app.runs.runner import Outcome, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session, find
 from pendant.inputs import Button, Command, Inputs
-from sim.desk import Wishes
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Pull, Push, Touch
 
 __all__ = [
     "BadInput",

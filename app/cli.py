@@ -10,13 +10,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from app.checked import ABSENT, BadInput, load
-from app.library import load_arm, robots
-from app.prepare import prepare
-from app.session import Session, Setup, find, find_all
-from pendant.settings import SettingError
-from pendant.settings import find as find_setting
-from sim.arm import Arm
+from app.files.checked import ABSENT, BadInput, load
+from app.files.library import load_arm, robots
+from app.session.prepare import prepare
+from app.session.session_file import Session, Setup, find, find_all
+from pendant.all_settings import find as find_setting
+from pendant.settings.schema import SettingError
+from sim.arm.arm_file import Arm
 
 # Usage errors, whichever click typer was built on: the base of the one that typer exports.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
@@ -102,9 +102,9 @@ def run(
     junit: Annotated[Path | None, typer.Option(help="Write the expectations as JUnit XML.", show_default=False)] = None,
 ) -> None:
     """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
-    from app.batch import Job, run_all, work
-    from app.junit import write as write_junit
-    from app.summary import counting, progress, show, show_all
+    from app.runs.batch import Job, run_all, work
+    from app.runs.junit import write as write_junit
+    from app.runs.progress import counting, progress, show, show_all
 
     changes = dict(setting(text) for text in set_ or [])
     jobs: list[Job] = []
@@ -139,7 +139,7 @@ def run(
 @app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))
 def schema(kind: Annotated[str, typer.Argument(help="session, configuration, robot or tool.")] = "session") -> None:
     """Print the JSON schema of a kind of file, with which an editor completes and checks it."""
-    from app.schema import KINDS, schema_of
+    from app.session.json_schema import KINDS, schema_of
 
     if kind not in KINDS:
         raise BadInput("schema", "KIND", kind, f"one of {', '.join(KINDS)}")
@@ -165,8 +165,8 @@ def claims(
     out: Annotated[Path, typer.Option(help="Folder for claims.md, claims.json and the runs.")] = Path("out/claims"),
 ) -> None:
     """Show every claim: run each session that names some with its switch on and off. Exit code 1 when a row is not shown."""
-    from app.coverage import cover, totals, write
-    from app.summary import counting
+    from app.runs.coverage import cover, totals, write
+    from app.runs.progress import counting
 
     with counting("claims") as told:
         rows = cover(out, told)

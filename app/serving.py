@@ -9,19 +9,19 @@ from pathlib import Path
 
 import typer
 
-from app.checked import BadInput
-from app.library import mesh_path
+from app.files.checked import BadInput
+from app.files.library import mesh_path
 from app.log.playback import Player
 from app.log.reader import read, repair
-from app.prepare import Prepared
-from app.runner import simulate
-from app.warm_up import warm_up
-from app.web.access import access_through, free_port
+from app.runs.runner import simulate
+from app.runs.warm_up import warm_up
+from app.session.prepare import Prepared
+from app.web.access.listening import access_through, free_port
+from app.web.access.site import Site
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
-from app.web.site import Site
-from sim.loop import Loop
+from sim.run.loop import Loop
 
 PATIENCE = 4.0
 """A start that takes longer is explained [s]: it is the first one after an installation."""

@@ -5,7 +5,7 @@ from enum import Enum
 import numpy as np
 
 from pendant.decision import Decision
-from pendant.modes import TICK_RATE, Mode, Phase
+from pendant.tick.modes import TICK_RATE, Mode, Phase
 
 RATE = 16_000
 """Of the samples [Hz]."""

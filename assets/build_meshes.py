@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.library import ASSETS, load_arm, robots
-from sim.arm import Arm
-from sim.frames import link_transform, rotation, transform
+from app.files.library import ASSETS, load_arm, robots
+from sim.arm.arm_file import Arm
+from sim.arm.frames import link_transform, rotation, transform
 
 Array = NDArray[np.float64]
 Profile = list[tuple[float, float]]

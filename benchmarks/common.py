@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from rich.console import Console
 from rich.table import Table
 
-from pendant.settings import Settings, digest
+from pendant.all_settings import Settings, digest
 
 T = TypeVar("T")
 R = TypeVar("R")

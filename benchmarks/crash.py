@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from app.log.reader import read
 from app.serving import replay_until_interrupted
 from benchmarks.common import Report, main
-from pendant.modes import TICK
+from pendant.tick.modes import TICK
 
 KILLS = 20
 LONGEST = 3.0
@@ -25,10 +25,10 @@ LOST = 1.0
 RECORD = """
 import sys
 from pathlib import Path
-from app.checked import convert
-from app.prepare import prepare
-from app.runner import record
-from app.session import Session
+from app.files.checked import convert
+from app.session.prepare import prepare
+from app.runs.runner import record
+from app.session.session_file import Session
 session = convert({"title": "killed", "duration": 600.0, "world": "table"}, Session, "s.yaml")
 record(session, prepare(session, "s.yaml"), Path(sys.argv[1]), progress=lambda seconds: print(seconds, flush=True))
 """

@@ -16,18 +16,18 @@ from benchmarks.common import Report, main, spread
 from benchmarks.guided import Path, across, place_of
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE
 from benchmarks.payload import SETTINGS, Case, postures, simulation, told
-from pendant.event_row import Effect, Severity
-from pendant.events import Event, Kind
+from pendant.all_settings import apply
+from pendant.event_table import TABLE, render
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import Effect, Severity
 from pendant.inputs import Command, Inputs
-from pendant.modes import TICK, Mode
-from pendant.program import JointMove, Program, ProgramState
-from pendant.settings import apply
-from pendant.table import TABLE, render
-from sim.changes import AttachPayload
-from sim.desk import Wishes
-from sim.scenario import Load
+from pendant.program.steps import JointMove, Program, ProgramState
+from pendant.tick.modes import TICK, Mode
+from sim.arm.scenario import Load
+from sim.exchange.desk import Wishes
+from sim.plant.changes import AttachPayload
+from sim.plant.touch import Pull
 from sim.simulation import Simulation
-from sim.touch import Pull
 
 ROBOTS, HOURS = 10, 24
 HOUR = 3600.0  # [s]

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.batch import Job, run_all
-from app.checked import load
-from app.session import Session, bundled, find
+from app.files.checked import load
+from app.runs.batch import Job, run_all
+from app.session.session_file import Session, bundled, find
 from benchmarks.common import Report, main
 
 REALTIME = ("activation-too-short", "contact-3c", "let-go-too-early")

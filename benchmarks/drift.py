@@ -11,13 +11,13 @@ from benchmarks.common import Report, main, spread
 from benchmarks.drop import enter
 from benchmarks.hold import IDLE, MOUNTINGS, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
-from pendant.event_row import LEAVING
-from pendant.events import Kind
-from pendant.modes import Mode
-from pendant.settings import apply
-from pendant.table import TABLE
-from sim.changes import SensorFault
-from sim.desk import Wishes
+from pendant.all_settings import apply
+from pendant.event_table import TABLE
+from pendant.events.event import Kind
+from pendant.events.event_row import LEAVING
+from pendant.tick.modes import Mode
+from sim.exchange.desk import Wishes
+from sim.plant.changes import SensorFault
 
 SECONDS = 10.0
 LASTS = apply(SETTINGS, {"free_drive.period": SECONDS + 1.0, "free_drive.restart_period": SECONDS + 1.0})

@@ -11,13 +11,13 @@ from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, RELEASE, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from benchmarks.use import free_way
-from pendant.events import Kind
-from pendant.modes import Mode
-from pendant.settings import Settings, apply
-from sim.changes import DropPayload
-from sim.desk import Wishes
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode
+from sim.exchange.desk import Wishes
+from sim.plant.changes import DropPayload
+from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Pull, Push, Touch
 
 LONG = apply(SETTINGS, {"free_drive.period": 10.0})
 PACE = 0.25  # [m/s] of the hand that guides

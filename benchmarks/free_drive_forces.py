@@ -12,16 +12,16 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
 from benchmarks.postures import posture
+from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.modes import TICK, TICK_RATE, Mode
-from pendant.settings import Settings, apply
-from sim.desk import Wishes
-from sim.scenario import Load, Scenario
+from pendant.tick.modes import TICK, TICK_RATE, Mode
+from sim.arm.scenario import Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Pull, Push, Touch
 
 Array = np.ndarray
 CENTRE = (0.0, 0.0, 0.0)

@@ -16,15 +16,15 @@ from benchmarks.common import Report, main, spread
 from benchmarks.drop import enter
 from benchmarks.hold import IDLE, MOUNTINGS
 from benchmarks.payload import SETTINGS, Case, draw, simulation
-from pendant.event_row import LEAVING
-from pendant.events import Kind
+from pendant.event_table import TABLE
+from pendant.events.event import Kind
+from pendant.events.event_row import LEAVING
 from pendant.inputs import Command, Inputs
-from pendant.modes import TICK
-from pendant.table import TABLE
-from sim.desk import Wishes
-from sim.hands import STIFFNESS
+from pendant.tick.modes import TICK
+from sim.exchange.desk import Wishes
+from sim.plant.applied_touches import STIFFNESS
+from sim.plant.touch import Pull
 from sim.simulation import Simulation
-from sim.touch import Pull
 
 Array = NDArray[np.float64]
 

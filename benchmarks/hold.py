@@ -7,15 +7,15 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
+from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Command, Inputs
-from pendant.modes import Mode
-from pendant.settings import Settings, apply
-from sim.desk import Wishes
-from sim.scenario import Scenario
+from pendant.tick.modes import Mode
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Pull, Push
 from sim.simulation import Simulation
-from sim.touch import Pull, Push
 
 ARMS = ("ur3e", "ur5e", "ur10e", "ur16e")
 MOUNTINGS = {"floor": (0.0, 0.0, 0.0), "wall": (0.0, np.pi / 2, 0.0), "ceiling": (np.pi, 0.0, 0.0), "tilted": (0.6, 0.4, 0.0)}

@@ -8,20 +8,20 @@ from typing import Literal, NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
 from benchmarks.postures import posture
-from pendant.estimate import Estimate
+from pendant.all_settings import JointControl, Settings
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.modes import TICK, TICK_RATE
-from pendant.program import JointMove, Program, Wait
-from pendant.settings import JointControl, Settings
-from sim.desk import Wishes
-from sim.feedback import Feedback
-from sim.moves import Reference
-from sim.scenario import Load, Scenario
+from pendant.program.steps import JointMove, Program, Wait
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK, TICK_RATE
+from sim.arm.scenario import Load, Scenario
+from sim.control.feedback import Feedback
+from sim.exchange.desk import Wishes
+from sim.motion.moves import Reference
+from sim.plant.touch import Push
 from sim.simulation import Simulation
-from sim.touch import Push
 
 Array = np.ndarray
 IDLE = Wishes(NOTHING, (), ())

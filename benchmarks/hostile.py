@@ -22,7 +22,7 @@ from benchmarks.viewer import CAMERA, VERSION
 
 if TYPE_CHECKING:  # an attacker starts without them
     from app.web.server import Served
-    from sim.loop import Loop
+    from sim.run.loop import Loop
 
 SETTLE, STRETCH = 1.0, 0.5  # [s]
 FEWEST = 0.99  # ticks a second while it is attacked, of those in peace
@@ -147,11 +147,11 @@ def suffer(report: Report, loop: "Loop", served: "Served", seconds: float) -> No
 
 def measure(report: Report) -> None:
     """Serve an arm, and let it be attacked."""
-    from app.library import load_arm
+    from app.files.library import load_arm
     from app.web.server import serve
-    from pendant.settings import Settings
-    from sim.loop import Loop
-    from sim.scenario import Scenario
+    from pendant.all_settings import Settings
+    from sim.arm.scenario import Scenario
+    from sim.run.loop import Loop
     from sim.simulation import Simulation
 
     arm = load_arm("ur5e")

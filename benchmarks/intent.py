@@ -13,16 +13,16 @@ import numpy as np
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
-from pendant.event_row import Effect
-from pendant.events import Event, Kind
+from pendant.all_settings import Settings, apply
+from pendant.event_table import TABLE
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import Effect
 from pendant.inputs import Command, Inputs
-from pendant.modes import Mode
-from pendant.program import JointMove, Program
-from pendant.settings import Settings, apply
-from pendant.table import TABLE
-from sim.desk import Wishes
+from pendant.program.steps import JointMove, Program
+from pendant.tick.modes import Mode
+from sim.exchange.desk import Wishes
+from sim.plant.touch import ZERO, Push
 from sim.simulation import Simulation
-from sim.touch import ZERO, Push
 
 THRESHOLD, PERIOD, ANGLE = 15.0, 1.0, 30.0  # [N], [s], [°]
 PUSH: dict[str, float | bool | str] = {

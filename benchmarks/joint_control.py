@@ -9,10 +9,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
 from benchmarks.controls.runs import LAWS, PROGRAMS, Array, Case, Mismatch, Result, measure_case, measure_step, relative
-from sim.transmission_torque import WAYS
+from sim.estimation.transmission_torque import WAYS
 
 BARS: dict[Mismatch, float] = {"on": 20.0, "nominal": 10.0}
 """Largest friction error [%]."""

@@ -8,18 +8,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
-from pendant.event_row import Effect
-from pendant.events import Event, Kind
-from pendant.modes import Mode
-from pendant.settings import Settings, apply
-from pendant.table import TABLE, render
-from sim.changes import SensorFault
-from sim.desk import Wishes
-from sim.dynamics import Dynamics
-from sim.scenario import Load, Scenario
+from pendant.all_settings import Settings, apply
+from pendant.event_table import TABLE, render
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import Effect
+from pendant.tick.modes import Mode
+from sim.arm.scenario import Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.changes import SensorFault
+from sim.rigid_body.dynamics import Dynamics
 from sim.simulation import Simulation
 
 ARM = "ur5e"

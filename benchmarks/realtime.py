@@ -18,19 +18,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.library import load_arm
-from app.web.messages import Drag, decode
+from app.files.library import load_arm
+from app.web.access.messages import Drag, decode
 from app.web.server import Served, serve
 from benchmarks.common import Report, main
 from benchmarks.viewer import ENTRY, HOLD_RATE, Task
-from pendant.modes import TICK, Mode
-from pendant.settings import Settings
-from sim.desk import Desk, Wishes
-from sim.loop import Loop
-from sim.scenario import Scenario
+from pendant.all_settings import Settings
+from pendant.tick.modes import TICK, Mode
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Desk, Wishes
+from sim.exchange.snapshot import Snapshot
+from sim.plant.touch import Touch
+from sim.run.loop import Loop
 from sim.simulation import Simulation
-from sim.snapshot import Snapshot
-from sim.touch import Touch
 
 PART = "wrist_3"  # is dragged
 BEFORE = 6.0  # from the viewers' start to the measurement: their imports, their first picture, the way into free-drive [s]

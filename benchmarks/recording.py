@@ -11,15 +11,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from app.checked import load
+from app.files.checked import load
 from app.log.recorder import Recorder
-from app.prepare import prepare
-from app.runner import record, simulate
-from app.session import Session, find
+from app.runs.runner import record, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session, find
 from benchmarks.common import Report, main
 from pendant.inputs import NOTHING
-from pendant.modes import TICK
-from sim.desk import Wishes
+from pendant.tick.modes import TICK
+from sim.exchange.desk import Wishes
 
 SHARE = 0.15
 """Recording costs at most this share of a tick."""

@@ -11,17 +11,18 @@ from dataclasses import fields
 
 import numpy as np
 
-from app.library import load_arm
+from app.files.library import load_arm
 from benchmarks.common import Report, main
-from pendant.estimate import Estimate
+from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.modes import Phase
-from pendant.settings import Settings, apply, ticks
-from pendant.shapes import Box
+from pendant.settings.schema import ticks
 from pendant.supervisor import Supervisor
-from pendant.walls import Wall
-from sim.desk import Wishes
-from sim.scenario import Scenario
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Phase
+from pendant.walls.definitions import Wall
+from pendant.walls.shapes import Box
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
 ALL = ("joint_displacement", "joint_acceleration", "motor_torque")

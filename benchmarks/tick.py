@@ -17,20 +17,20 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from app.checked import load
-from app.library import load_arm
-from app.prepare import prepare
-from app.runner import run, simulate
-from app.session import Session, find
+from app.files.checked import load
+from app.files.library import load_arm
+from app.runs.runner import run, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session, find
 from benchmarks.common import Report, main
+from pendant.all_settings import Settings
 from pendant.inputs import NOTHING, Button, Command, Inputs
-from pendant.modes import TICK, Mode
-from pendant.program import JointMove, Program
-from pendant.settings import Settings
-from sim.desk import Wishes
-from sim.scenario import Scenario
+from pendant.program.steps import JointMove, Program
+from pendant.tick.modes import TICK, Mode
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Pull
 from sim.simulation import Simulation
-from sim.touch import Pull
 
 BLOCKS = 9
 SLICES = 10  # of a block: tick and bare physics take turns in each, so that a busy machine slows both

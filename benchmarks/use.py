@@ -11,14 +11,14 @@ import numpy as np
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
-from pendant.event_row import LEAVING
-from pendant.events import Event, Kind
-from pendant.modes import Mode
-from pendant.settings import Settings, apply
-from pendant.table import TABLE
-from sim.desk import Wishes
+from pendant.all_settings import Settings, apply
+from pendant.event_table import TABLE
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import LEAVING
+from pendant.tick.modes import Mode
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Pull, Push, Touch
 
 WAY = 0.3  # [m] free of singularities and limits, as a user would choose it
 SECONDS = 3.0

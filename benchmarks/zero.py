@@ -14,11 +14,11 @@ from benchmarks.drop import enter
 from benchmarks.guided import grip
 from benchmarks.hold import IDLE, MOUNTINGS, flange
 from benchmarks.payload import Case, draw, simulation
-from pendant.events import Kind
+from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
-from pendant.modes import TICK
-from sim.desk import Wishes
-from sim.touch import Push
+from pendant.tick.modes import TICK
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Push
 
 AFTER = 3.0  # [s] that are looked at when the hand has gone
 LEARNS = 2.0  # [s] in which the untouched arm is seen before anybody comes

@@ -5,18 +5,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "modules.md"
-ROOMS = {
-    "pendant": "Modes, free-drive, walls, contacts, programs, limits and events. Pure: time comes as ticks.",
-    "sim": "The arm and its physics, sensors, estimates, control, one tick, the paced loop.",
-    "app": "Files, command line, sessions.",
-    "app/web": "The page.",
-    "app/log": "Recordings.",
-    "app/report": "Reports.",
-    "benchmarks": "What `make bench` measures.",
-    "benchmarks/contacts": "Cells, baselines and scores of `benchmarks/contact.py`.",
-    "benchmarks/soak": "The users of `make soak`.",
-    "examples": "Scripts to copy from.",
-}
+TOPS = ("pendant", "sim", "app", "benchmarks", "examples")
+
+
+def rooms() -> list[str]:
+    """Every folder of modules, its parent before it."""
+    folders = {path.parent for top in TOPS for path in (ROOT / top).rglob("*.py")}
+    return sorted(folder.relative_to(ROOT).as_posix() for folder in folders)
 
 
 def first_line(path: Path) -> str:
@@ -34,8 +29,8 @@ def first_line(path: Path) -> str:
 def page() -> str:
     """The page as it should be."""
     lines = ["# Modules", "", "Written by `python -m docs.modules` from the modules themselves.", ""]
-    for room, does in ROOMS.items():
-        lines += [f"## {room}/", "", does, ""]
+    for room in rooms():
+        lines += [f"## {room}/", "", first_line(ROOT / room / "__init__.py"), ""]
         for path in sorted((ROOT / room).glob("*.py")):
             if path.stem != "__init__":
                 lines.append(f"- [{path.stem}](../{room}/{path.name}): {first_line(path)}")

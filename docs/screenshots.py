@@ -12,19 +12,19 @@ from typing import NamedTuple
 from PIL import Image
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-from app.library import load_arm, load_tool, tools
+from app.files.library import load_arm, load_tool, tools
 from app.web.server import serve
-from pendant.events import Kind
+from pendant.events.event import Kind
 from pendant.inputs import Command
-from pendant.modes import Phase
-from pendant.program import JointMove, Program, Wait
-from pendant.shapes import Box, HalfSpace
-from pendant.walls import AnyBorder, Area, Policy, Wall
-from sim.changes import AttachPayload
-from sim.loop import Loop
-from sim.scenario import Load, Scenario
+from pendant.program.steps import JointMove, Program, Wait
+from pendant.tick.modes import Phase
+from pendant.walls.definitions import AnyBorder, Area, Policy, Wall
+from pendant.walls.shapes import Box, HalfSpace
+from sim.arm.scenario import Load, Scenario
+from sim.plant.changes import AttachPayload
+from sim.plant.touch import Pull
+from sim.run.loop import Loop
 from sim.simulation import Simulation
-from sim.touch import Pull
 from tests.e2e.cell import SETTINGS, Cell
 from tests.e2e.conftest import FLAGS
 from tests.e2e.first_use import FirstUse

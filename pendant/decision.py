@@ -2,43 +2,24 @@
 
 import msgspec
 
-from pendant.axis_locks import AxisLocks
-from pendant.compensation import Balance
-from pendant.contact import Contact
-from pendant.enabling import Grip
-from pendant.events import Event
+from pendant.contact.contact_change import Contact
+from pendant.events.event import Event
+from pendant.freedrive.adaptive_gravity import Balance
+from pendant.freedrive.periods import Remaining
 from pendant.haptics import Shake
-from pendant.limits import Monitored
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.nearness import Nearness
-from pendant.parameters import ZEROS
-from pendant.payload_wizard import IDLE, Progress
-from pendant.pose import Vector, Wrench
-from pendant.program import Move, ProgramState
-from pendant.reduced import SpeedLimits
-from pendant.soft_limits import Damping
-from pendant.tooling import Fitting
-
-
-class Remaining(msgspec.Struct, frozen=True, gc=False):
-    """A running period (FD-20)."""
-
-    name: str  # "activation", "free-drive", "restart", ...
-    ticks: int  # left, counted down to 0
-    total: int  # its whole length
-
-
-class WallState(msgspec.Struct, frozen=True, gc=False):
-    """A wall or an area in one tick, everything in B; the law pushes the part with its force, pictures draw it (VW-7)."""
-
-    name: str
-    part: str  # "flange", "tcp", "elbow"
-    p: Vector  # of the part [m]
-    distance: float  # to the wall, negative inside [m]
-    outward: Vector  # direction towards the wall, of length 1
-    near: float  # 0 before the feedback band, 1 at the wall and beyond
-    exceeded: bool
-    force: Vector  # on the part [N]
+from pendant.limits.axis_locks import AxisLocks
+from pendant.limits.nearness import Nearness
+from pendant.limits.parameters import ZEROS
+from pendant.limits.soft_limits import Damping
+from pendant.program.steps import Move, ProgramState
+from pendant.robot.reduced import SpeedLimits
+from pendant.signals.enabling_device import Grip
+from pendant.tick.limit_engine import Monitored
+from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.pose import Wrench
+from pendant.tooling.payload_wizard import IDLE, Progress
+from pendant.tooling.tool_in_use import Fitting
+from pendant.walls.containment import WallState
 
 
 class Decision(msgspec.Struct, frozen=True):

@@ -8,10 +8,10 @@ bearings keep their grease.
 import math
 from typing import Annotated, NamedTuple
 
-from pendant.events import Event, Kind
-from pendant.modes import TICK, Law, Mode, Phase
-from pendant.schema import Section, number, switch, ticks
-from pendant.word import Word
+from pendant.events.event import Event, Kind
+from pendant.settings.schema import Section, number, switch, ticks
+from pendant.tick.modes import TICK, Law, Mode, Phase
+from pendant.tick.words import Word
 
 FREQUENCY = 15.0
 """Of the cycles [Hz]: a skin feels it well, and it lies above the arms' lowest modes."""

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from pendant.load import Load
-from pendant.program import Program
-from pendant.tools import Tool
-from pendant.word import Word
+from pendant.equipment.load import Load
+from pendant.equipment.tools import Tool
+from pendant.program.steps import Program
+from pendant.tick.words import Word
 
 
 class Button(Word):

@@ -1,16 +1,15 @@
 """A program in the running robot: loading it, its commands, and its tick in mode RUN."""
 
-from pendant.contact_monitor import ContactMonitor
-from pendant.estimate import Estimate
-from pendant.events import Event, Kind, Values
+from pendant.all_settings import Settings
+from pendant.contact.contact_monitor import ContactMonitor
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
-from pendant.modes import Mode, Phase, way_out
-from pendant.pose import Vector
-from pendant.program import Program, ProgramState, misfit
-from pendant.robot import Robot
-from pendant.sequence import JOINTS_SENSED
-from pendant.settings import Settings
-from pendant.watch import WrenchMean, joints_ok, motion_ok
+from pendant.limits.validity import JOINTS_SENSED, WrenchMean, joints_ok, motion_ok
+from pendant.program.steps import Program, ProgramState, misfit
+from pendant.robot.robot_mode import Robot
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.pose import Vector
 
 PROGRAM_COMMANDS = frozenset({Command.START_PROGRAM, Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM})
 

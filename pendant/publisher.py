@@ -2,18 +2,18 @@
 
 from msgspec.structs import replace
 
-from pendant.axis_locks import axis_locks
-from pendant.contact import Contact
+from pendant.all_settings import Settings, limits_checksum
+from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
-from pendant.events import Event
+from pendant.events.event import Event
 from pendant.haptics import Shake
-from pendant.modes import Law, Mode, Phase
-from pendant.program import ProgramState
-from pendant.reduced import SpeedLimits
-from pendant.robot import Robot
-from pendant.settings import Settings, limits_checksum
-from pendant.taring import Taring
-from pendant.tooling import Tooling
+from pendant.limits.axis_locks import axis_locks
+from pendant.program.steps import ProgramState
+from pendant.robot.reduced import SpeedLimits
+from pendant.robot.robot_mode import Robot
+from pendant.sensor.taring import Taring
+from pendant.tick.modes import Law, Mode, Phase
+from pendant.tooling.tool_in_use import Tooling
 
 
 class Publisher:

@@ -4,40 +4,41 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pendant.barrier import Place
-from pendant.calls import Calls
-from pendant.contact import Contact, told
-from pendant.contact_monitor import ContactMonitor
-from pendant.containment import Containment
+from pendant.all_settings import Settings
+from pendant.contact.contact_change import Contact, told
+from pendant.contact.contact_monitor import ContactMonitor
+from pendant.context import Surroundings
 from pendant.decision import Decision
-from pendant.enabling import EnablingDevice
-from pendant.estimate import Estimate
-from pendant.events import Event, Kind, Values
-from pendant.freedrive import FreeDrive
+from pendant.equipment.tools import Equipment, Tool
+from pendant.events.event import Event, Kind, Values
+from pendant.freedrive.periods import RUNNING
+from pendant.freedrive.state_machine import FreeDrive
 from pendant.haptics import Haptics, Moment
 from pendant.inputs import Button, Command, Inputs
-from pendant.joint_zones import JointZones
-from pendant.keepalive import KeepAlive
-from pendant.lock import change
-from pendant.modes import TICK, Law, Mode, Phase, way_out
-from pendant.periods import RUNNING
-from pendant.pose import Pose, Wrench, from_rpy
-from pendant.program import Program
+from pendant.limits.joint_zones import JointZones
+from pendant.limits.validity import WrenchMean
+from pendant.program.sequencer import Sequencer
+from pendant.program.steps import Program
 from pendant.program_run import ProgramRun
 from pendant.publisher import Publisher
-from pendant.robot import Robot
-from pendant.safety_inputs import SafetyInputs
-from pendant.sensing import JointSensors
-from pendant.sensor_spec import SensorSpec
-from pendant.sequencer import Sequencer
-from pendant.settings import Settings, ticks
-from pendant.sources import PROGRAM
-from pendant.surroundings import Surroundings
-from pendant.tare_run import TareRun
-from pendant.tooling import Fitting, Tooling
-from pendant.tools import Equipment, Tool
-from pendant.walls import AnyBorder
-from pendant.watch import WrenchMean
+from pendant.robot.joint_sensors import JointSensors
+from pendant.robot.requests import Calls
+from pendant.robot.robot_mode import Robot
+from pendant.robot.safety_inputs import SafetyInputs
+from pendant.sensor.sensor_spec import SensorSpec
+from pendant.settings.schema import ticks
+from pendant.settings_lock import change
+from pendant.signals.enabling_device import EnablingDevice
+from pendant.signals.keep_alive import KeepAlive
+from pendant.signals.sources import PROGRAM
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
+from pendant.tick.pose import Pose, Wrench, from_rpy
+from pendant.tooling.tool_in_use import Fitting, Tooling
+from pendant.walls.barrier import Place
+from pendant.walls.containment import Containment
+from pendant.walls.definitions import AnyBorder
+from pendant.zeroing import TareRun
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
 RESTING = frozenset(SWITCHABLE.values())
@@ -70,7 +71,7 @@ class Supervisor:
             n_joints: number of joints of the arm, as in every estimate.
             joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
-            borders: walls and areas; `pendant.walls.problem` has found nothing.
+            borders: walls and areas; `pendant.walls.definitions.problem` has found nothing.
             frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
             equipment: what is at the flange, and the tools to choose from; None: nothing.

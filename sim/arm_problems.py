@@ -7,9 +7,9 @@ from itertools import pairwise
 import msgspec
 import numpy as np
 
-from sim.arm import Arm, Sourced
-from sim.chain import chain
-from sim.sensor_drift import BOUND, most
+from sim.arm.arm_file import Arm, Sourced
+from sim.arm.chain import chain
+from sim.sensing.sensor_drift import BOUND, most
 
 LONGEST = 4.0
 """Times its reach that an arm's links are long end to end, at most; the shipped arms 1.4 to 1.8 times."""

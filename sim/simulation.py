@@ -5,33 +5,33 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.all_settings import Settings
 from pendant.decision import Decision
-from pendant.estimate import Estimate
-from pendant.modes import Law
-from pendant.parameters import ZEROS
-from pendant.pose import Pose
-from pendant.sensor_spec import SensorSpec
-from pendant.settings import Settings
+from pendant.equipment.tools import Equipment, Tool
+from pendant.limits.parameters import ZEROS
+from pendant.sensor.sensor_spec import SensorSpec
 from pendant.supervisor import Supervisor
-from pendant.tooling import Fitting
-from pendant.tools import Equipment, Tool
-from sim import calibration
-from sim.arm import Arm
-from sim.chain import chain, load_body, plate_body, tool_body
-from sim.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
-from sim.contact_sources import ContactSources
-from sim.controller import Controller
-from sim.desk import Wishes
-from sim.dynamics import Dynamics
-from sim.estimator import Estimator
-from sim.frames import rotation_from_rpy
-from sim.glance import Glance
-from sim.model import Step
-from sim.plant import Plant
-from sim.scenario import Load, Scenario, table
-from sim.sensor_drift import SensorDrift, lasting, most
-from sim.sensors import Sensors
-from sim.snapshot import Snapshot
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law
+from pendant.tick.pose import Pose
+from pendant.tooling.tool_in_use import Fitting
+from sim.arm.arm_file import Arm
+from sim.arm.chain import chain, load_body, plate_body, tool_body
+from sim.arm.frames import rotation_from_rpy
+from sim.arm.scenario import Load, Scenario, table
+from sim.control.controller import Controller
+from sim.estimation.contact_sources import ContactSources
+from sim.estimation.estimator import Estimator
+from sim.exchange.desk import Wishes
+from sim.exchange.scoring import Glance
+from sim.exchange.snapshot import Snapshot
+from sim.plant.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.plant.model import Step
+from sim.plant.true_arm import Plant
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing import calibration
+from sim.sensing.sensor_drift import SensorDrift, lasting, most
+from sim.sensing.sensors import Sensors
 
 Array = NDArray[np.float64]
 

@@ -10,14 +10,14 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
 
-from app.checked import load
-from app.prepare import prepare
-from app.runner import run, simulate
-from app.session import Session, bundled, find
-from pendant.event_row import Effect
-from pendant.events import Event
-from pendant.modes import TICK
-from pendant.table import TABLE
+from app.files.checked import load
+from app.runs.runner import run, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session, bundled, find
+from pendant.event_table import TABLE
+from pendant.events.event import Event
+from pendant.events.event_row import Effect
+from pendant.tick.modes import TICK
 
 FILE = Path(__file__).parent / "golden.json"
 GRACE = 0.05

@@ -18,7 +18,7 @@ SHARE = 0.10
 
 SURVIVED = (0, 5, 33)  # exit codes of the tests: all passed; none was chosen; none was there to fail
 NOT_RUN = None
-TABLES = ("tests/pendant/test_table.py", "tests/pendant/test_settings.py")
+TABLES = ("tests/pendant/test_event_table.py", "tests/pendant/test_all_settings.py")
 """Tests of what the pendant makes on import."""
 
 PROBE = """
@@ -28,8 +28,8 @@ from pathlib import Path
 
 ran = set()
 sys.setprofile(lambda frame, *_: ran.add(f"{frame.f_globals.get('__name__')}.{frame.f_code.co_name}"))
-for path in sorted(Path("pendant").glob("*.py")):
-    import_module(f"pendant.{path.stem}")
+for path in sorted(Path("pendant").rglob("*.py")):
+    import_module(".".join(path.with_suffix("").parts))
 sys.setprofile(None)
 print("\\n".join(name for name in ran if name.endswith("__mutmut_orig")))
 """

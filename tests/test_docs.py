@@ -13,16 +13,20 @@ import numpy as np
 import pytest
 import yaml
 
-from app import actions
-from app.checked import BadInput, convert
-from app.library import load_arm
-from app.session import Session
-from app.web import surfaces
+from app.files.checked import BadInput, convert
+from app.files.library import load_arm
+from app.session import actions
+from app.session.session_file import Session
+from app.web.scene import surfaces
 from docs import modules
-from pendant import contact_rules, contact_settings, limit_settings, parameters, shapes, solids
-from pendant.history import History
-from pendant.limits import Gauge
-from pendant.signal import Signal
+from pendant.contact import contact_rules
+from pendant.contact import settings as contact_settings
+from pendant.contact.history import History
+from pendant.limits import parameters
+from pendant.limits import settings as limit_settings
+from pendant.tick.limit_engine import Gauge
+from pendant.tick.source_signal import Signal
+from pendant.walls import shapes, solids
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
 
@@ -138,7 +142,7 @@ def test_the_rule_of_the_example_sees_a_large_force() -> None:
     assert (made.level, made.level_force) == (False, 40.0)
     for word in ("wanted", "counts", "hard_count", "misses", "seen", "NEW"):
         assert word in use
-        assert word in (ROOT / "pendant" / "detector.py").read_text()
+        assert word in (ROOT / "pendant" / "contact" / "detector.py").read_text()
 
 
 def test_the_arm_of_the_example_is_one(tmp_path: Path) -> None:

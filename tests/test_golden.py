@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.session import bundled
+from app.session.session_file import bundled
 from tests.golden import GRACE, Deed, differences, known
 
 BEFORE: list[Deed] = [(1.0, "entered"), (4.0, "left_period")]

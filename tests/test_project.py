@@ -23,10 +23,10 @@ def test_the_readme_names_its_sources(document: str) -> None:
 
 
 def test_the_readme_example_session_is_valid_and_passes(tmp_path: Path) -> None:
-    from app.checked import load
-    from app.prepare import prepare
-    from app.runner import run, simulate
-    from app.session import Session
+    from app.files.checked import load
+    from app.runs.runner import run, simulate
+    from app.session.prepare import prepare
+    from app.session.session_file import Session
 
     match = re.search(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
     assert match is not None

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from app.web.panel import CONFIRM, HOLD
+from app.web.panel.mode_panel import CONFIRM, HOLD
 from app.web.server import serve
 from benchmarks.common import Options, Report
 from benchmarks.soak import first_use
@@ -20,9 +20,9 @@ from benchmarks.soak.client import FREE_DRIVE, Client
 from benchmarks.soak.first_use import FirstUses
 from benchmarks.soak.served import BUILD, Pace, State
 from benchmarks.soak.user import User
-from pendant.events import Event, Kind
-from pendant.table import render
-from sim.scenario import Scenario
+from pendant.event_table import render
+from pendant.events.event import Event, Kind
+from sim.arm.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 
 

@@ -4,9 +4,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from pendant.all_settings import Settings
 from pendant.decision import Decision
-from pendant.events import Event
-from pendant.settings import Settings
+from pendant.events.event import Event
 
 
 class Picture(NamedTuple):

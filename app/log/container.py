@@ -29,7 +29,7 @@ from mcap.records import (
 )
 from mcap.records import Chunk as ChunkRecord
 
-from app.checked import ABSENT, BadInput
+from app.files.checked import ABSENT, BadInput
 
 MAGIC = b"\x89MCAP0\r\n"
 LEVEL = 1

@@ -5,8 +5,8 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from pendant.event_row import Severity
-from pendant.modes import TICK_RATE
+from pendant.events.event_row import Severity
+from pendant.tick.modes import TICK_RATE
 
 Json = dict[str, Any]
 NANOSECONDS = 1_000_000_000 // TICK_RATE

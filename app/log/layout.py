@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pendant.modes import Mode, Phase, Safety
-from pendant.parameters import PARAMETERS
-from pendant.program import ProgramState
+from pendant.limits.parameters import PARAMETERS
+from pendant.program.steps import ProgramState
+from pendant.tick.modes import Mode, Phase, Safety
 
 JOINTS = 0
 """Size of a field with a number for each joint."""

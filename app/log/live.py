@@ -7,16 +7,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from app.checked import BadInput
+from app.files.checked import BadInput
 from app.log.recorder import Recorder
 from pendant.decision import Decision
-from pendant.modes import TICK
-from sim.scenario import Scenario
+from pendant.tick.modes import TICK
+from sim.arm.scenario import Scenario
 from sim.simulation import Simulation
 
 
 class Watched(Protocol):
-    """What it needs of the loop, sim.loop.Loop."""
+    """What it needs of the loop, sim.run.loop.Loop."""
 
     watch: Callable[[Simulation, Decision], None] | None
 

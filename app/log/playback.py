@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.checked import ABSENT, BadInput
+from app.files.checked import ABSENT, BadInput
 from app.log.layout import WORDS
 from app.log.reader import Log
-from pendant.decision import Decision, Remaining
-from pendant.estimate import Estimate
-from pendant.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
-from sim.snapshot import Snapshot
+from pendant.decision import Decision
+from pendant.freedrive.periods import Remaining
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
+from sim.exchange.snapshot import Snapshot
 
 
 @dataclass(slots=True)

@@ -27,13 +27,13 @@ from mcap.records import (
 )
 from numpy.typing import NDArray
 
-from app.checked import ABSENT, BadInput
-from app.events_file import Line
+from app.files.checked import ABSENT, BadInput
 from app.log.container import MAGIC, Summary, index_of
+from app.log.events_file import Line
 from app.log.layout import CODES, STATE, TRUTH, record, width
-from pendant.modes import TICK
-from sim.arm import Arm
-from sim.scenario import Scenario
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario
 
 LARGEST = 2**28
 """Largest chunk that is unpacked [bytes]."""

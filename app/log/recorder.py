@@ -9,19 +9,19 @@ from types import TracebackType
 
 import numpy as np
 
-from app.checked import ABSENT, BadInput
+from app.files.checked import ABSENT, BadInput
 from app.log import layout
 from app.log.block import Block, Picture
 from app.log.layout import STATE, TRUTH
 from app.log.writer import Writer
+from pendant.all_settings import Settings
 from pendant.decision import Decision
-from pendant.events import Event, Kind
-from pendant.modes import Mode, Phase, Safety
-from pendant.parameters import PARAMETERS
-from pendant.program import ProgramState
-from pendant.settings import Settings
-from sim.loop import SNAPSHOT_TICKS
-from sim.rows import fill_rows
+from pendant.events.event import Event, Kind
+from pendant.limits.parameters import PARAMETERS
+from pendant.program.steps import ProgramState
+from pendant.tick.modes import Mode, Phase, Safety
+from sim.exchange.recorded_rows import fill_rows
+from sim.run.loop import SNAPSHOT_TICKS
 from sim.simulation import Simulation
 
 BLOCK = 125

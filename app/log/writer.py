@@ -7,18 +7,18 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from app.checked import ABSENT, BadInput
-from app.events_file import line_of
-from app.library import mesh_path
+from app.files.checked import ABSENT, BadInput
+from app.files.library import mesh_path
+from app.files.versions import versions
 from app.log import foxglove, layout
 from app.log.block import Block, Picture
 from app.log.container import Container
+from app.log.events_file import line_of
 from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
-from app.versions import versions
-from pendant.events import Event
-from pendant.settings import describe, digest, limits_checksum, value_of
-from pendant.table import TABLE, render
-from sim.scenario import Plane, Scenario
+from pendant.all_settings import describe, digest, limits_checksum, value_of
+from pendant.event_table import TABLE, render
+from pendant.events.event import Event
+from sim.arm.scenario import Plane, Scenario
 from sim.simulation import Simulation
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.log.reader import Log
 from app.report.summary import SLOW, Span, Summary
-from pendant.parameters import PARAMETERS
+from pendant.limits.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 POINTS = 1500

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import msgspec
 
-from app.checked import ABSENT, BadInput
+from app.files.checked import ABSENT, BadInput
 from app.log.reader import Log
 from app.report.summary import Summary, summarise
-from app.watch import Verdict
+from app.session.expectation_watch import Verdict
 
 
 def write_report(log: Log, out: Path, verdicts: Sequence[Verdict] = ()) -> Summary:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from app.events_file import Line
+from app.log.events_file import Line
 from app.report.summary import NOT_A_VALIDATION, SLOW, Peak, Summary
 
 UNIT = re.compile(r"(?<=\d) (?=(?:s|ms|m|mm|m/s|N|N·m|rad|rad/s|kg)\b)")

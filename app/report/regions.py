@@ -2,9 +2,9 @@
 
 import msgspec
 
-from app.checked import load
-from app.library import ASSETS
-from sim.arm import Positive
+from app.files.checked import load
+from app.files.library import ASSETS
+from sim.arm.arm_file import Positive
 
 
 class Region(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -9,17 +9,17 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from app.events_file import Line
+from app.log.events_file import Line
 from app.log.layout import WORDS
 from app.log.reader import Log
 from app.report.regions import regions
-from app.watch import Verdict
-from pendant.event_row import Effect, Severity
-from pendant.events import Kind
-from pendant.modes import TICK, TICK_RATE
-from pendant.parameters import PARAMETERS
-from pendant.settings import describe
-from pendant.table import TABLE
+from app.session.expectation_watch import Verdict
+from pendant.all_settings import describe
+from pendant.event_table import TABLE
+from pendant.events.event import Kind
+from pendant.events.event_row import Effect, Severity
+from pendant.limits.parameters import PARAMETERS
+from pendant.tick.modes import TICK, TICK_RATE
 
 SLOW = 0.25
 """Speed of tcp and elbow that hand guiding is commonly held to [m/s]."""

@@ -3,23 +3,23 @@
 import viser
 
 from app.log.live import LiveRecording
-from app.web import style
-from app.web.axes_tab import AxesTab
-from app.web.contacts import Contacts
-from app.web.guard import Guard
-from app.web.hand import Hand
-from app.web.journal import Journal
-from app.web.lab import Lab
-from app.web.panel import Panel
-from app.web.plots import Plots
-from app.web.recording import RecordingSwitch
+from app.web.access.guard import Guard
+from app.web.lab.lab_tab import Lab
+from app.web.panel.journal import Journal
+from app.web.panel.mode_panel import Panel
 from app.web.running import Running
-from app.web.settings_tab import SettingsTab
-from app.web.teach import Teach
-from app.web.tools_tab import ToolsTab
-from pendant.events import Event
-from sim.arm import Arm
-from sim.snapshot import Snapshot
+from app.web.scene.virtual_hand import Hand
+from app.web.tabs.axes_tab import AxesTab
+from app.web.tabs.contact_log import Contacts
+from app.web.tabs.plots import Plots
+from app.web.tabs.recording import RecordingSwitch
+from app.web.tabs.settings_tab import SettingsTab
+from app.web.tabs.teach_tab import Teach
+from app.web.tabs.tools_tab import ToolsTab
+from app.web.widgets import style
+from pendant.events.event import Event
+from sim.arm.arm_file import Arm
+from sim.exchange.snapshot import Snapshot
 
 LEFT = 264
 """Width of the left docks [pixels]."""

@@ -7,9 +7,9 @@ from typing import Any, Literal, NamedTuple
 
 import viser
 
+from app.web.access.guard import Guard
 from app.web.docks import Docks
-from app.web.guard import Guard
-from app.web.preferences import Preferences
+from app.web.panel.preferences import Preferences
 from app.web.running import Running
 from pendant.inputs import Command
 

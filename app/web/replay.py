@@ -8,17 +8,17 @@ import numpy as np
 import viser
 from viser import uplot
 
-from app.events_file import Line
+from app.log.events_file import Line
 from app.log.playback import Player, snapshot_at
-from app.web import style, svg
-from app.web.access import Access
-from app.web.html import Html
-from app.web.scene import Scene
-from app.web.site import Site
-from app.web.svg import Colour
-from app.web.words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
-from pendant.event_row import Severity
-from sim.snapshot import Snapshot
+from app.web.access.listening import Access
+from app.web.access.site import Site
+from app.web.panel.state_words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from app.web.scene.arm_picture import Scene
+from app.web.widgets import style, svg
+from app.web.widgets.html import Html
+from app.web.widgets.svg import Colour
+from pendant.events.event_row import Severity
+from sim.exchange.snapshot import Snapshot
 
 POINTS = 600
 """Of a plot's line."""

@@ -1,17 +1,17 @@
-"""What the page needs of the loop, sim.loop.Loop."""
+"""What the page needs of the loop, sim.run.loop.Loop."""
 
 from collections.abc import Callable
 from typing import Protocol
 
+from pendant.all_settings import Settings
 from pendant.decision import Decision
-from pendant.events import Event
-from pendant.settings import Settings
-from pendant.tools import Tool
-from sim.desk import Desk
-from sim.loop import Script
-from sim.scenario import Scenario
+from pendant.equipment.tools import Tool
+from pendant.events.event import Event
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Desk
+from sim.exchange.snapshot import Snapshot
+from sim.run.loop import Script
 from sim.simulation import Simulation
-from sim.snapshot import Snapshot
 
 
 class Running(Protocol):

@@ -7,19 +7,19 @@ from pathlib import Path
 
 import viser
 
-from app.library import mesh_path
+from app.files.library import mesh_path
 from app.log.live import LiveRecording, must_be_writable
-from app.web.access import Access, access_through, must_be_free
-from app.web.control import Control
+from app.web.access.control import Control
+from app.web.access.listening import Access, access_through, must_be_free
+from app.web.access.site import Site
 from app.web.docks import Docks
-from app.web.hand import Hand
 from app.web.keys import Keys
-from app.web.preferences import Preferences
+from app.web.panel.preferences import Preferences
 from app.web.running import Running
-from app.web.scene import TOOL, Scene, frames_of
-from app.web.site import Site
-from sim.arm import Arm
-from sim.scenario import Scenario
+from app.web.scene.arm_picture import TOOL, Scene, frames_of
+from app.web.scene.virtual_hand import Hand
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario
 
 FRAMES_A_PANEL = 4
 """The pendant is brought up to date with every so many pictures."""

@@ -7,16 +7,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from app.library import load_arm, load_tool
+from app.files.library import load_arm, load_tool
 from benchmarks.contacts.recording import TICK, Recording, touching
-from pendant.events import Kind
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Kind
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.program import JointMove, LinearMove, Program
-from pendant.reaction import Until
-from pendant.settings import Settings, apply
-from sim.desk import Wishes
-from sim.frames import quaternion_from_matrix
-from sim.scenario import Box, Load, Scenario
+from pendant.program.reaction import Until
+from pendant.program.steps import JointMove, LinearMove, Program
+from sim.arm.frames import quaternion_from_matrix
+from sim.arm.scenario import Box, Load, Scenario
+from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
 Array = NDArray[np.float64]

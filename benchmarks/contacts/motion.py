@@ -6,12 +6,12 @@ import numpy as np
 
 from benchmarks.contacts.approaches import ARM, IDLE, START, TOOL
 from benchmarks.contacts.recording import Recording
+from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Inputs
-from pendant.program import JointMove, Program
-from pendant.settings import Settings, apply
-from sim.changes import Friction, SensorFault, Temperature
-from sim.desk import Wishes
-from sim.scenario import Load, Scenario
+from pendant.program.steps import JointMove, Program
+from sim.arm.scenario import Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.changes import Friction, SensorFault, Temperature
 from sim.simulation import Simulation
 
 LOW = np.array([-3.0, -2.7, -2.3, -3.1, -3.1, -3.1])

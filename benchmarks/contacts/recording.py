@@ -7,11 +7,11 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from pendant.contact import Contact
-from pendant.estimate import Estimate
-from pendant.signal import Signal
+from pendant.contact.contact_change import Contact
+from pendant.tick.estimate import Estimate
+from pendant.tick.source_signal import Signal
+from sim.estimation.transmission_torque import DEFLECTION
 from sim.simulation import Simulation
-from sim.transmission_torque import DEFLECTION
 
 Array = NDArray[np.float64]
 TICK = 0.002

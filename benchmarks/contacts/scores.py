@@ -11,12 +11,12 @@ from benchmarks.contacts import baselines
 from benchmarks.contacts.approaches import REST, Approach, approach, link_contact
 from benchmarks.contacts.motion import Free, free
 from benchmarks.contacts.recording import TICK, Recording
-from pendant.contact import Change
-from pendant.contact_limits import limits
-from pendant.contact_rules import Rule
-from pendant.contact_settings import ContactUse
-from pendant.detector import Detector
-from pendant.modes import Mode
+from pendant.contact.contact_change import Change
+from pendant.contact.contact_limits import limits
+from pendant.contact.contact_rules import Rule
+from pendant.contact.detector import Detector
+from pendant.contact.settings import ContactUse
+from pendant.tick.modes import Mode
 
 DIED_OUT = 0.3  # true change of acceleration with which a slow contact is rightly called clamping [m/s²]
 REACHES = {"beyond 0.6 m": 0.6, "0.4 to 0.6 m": 0.4, "below 0.4 m": 0.0}

@@ -7,19 +7,19 @@ from typing import Literal, NamedTuple
 import numpy as np
 from msgspec.structs import replace
 
-from app.library import load_arm
+from app.files.library import load_arm
+from pendant.all_settings import JointControl, Settings
 from pendant.decision import Decision
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.modes import TICK_RATE, Mode
-from pendant.program import JointMove, Program, Wait
-from pendant.settings import JointControl, Settings
-from sim.arm import Arm
-from sim.desk import Wishes
-from sim.feedback import Feedback
-from sim.references import DELAY
-from sim.scenario import Load, Scenario
+from pendant.program.steps import JointMove, Program, Wait
+from pendant.tick.modes import TICK_RATE, Mode
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Load, Scenario
+from sim.control.feedback import Feedback
+from sim.exchange.desk import Wishes
+from sim.motion.references import DELAY
+from sim.plant.touch import Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Push, Touch
 
 Array = np.ndarray
 IDLE = Wishes(NOTHING, (), ())

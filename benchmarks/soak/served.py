@@ -13,13 +13,13 @@ from collections import deque
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from app.library import load_arm
-from app.warm_up import warm_up
+from app.files.library import load_arm
+from app.runs.warm_up import warm_up
 from app.web.server import serve
-from pendant.modes import TICK
-from pendant.settings import Settings
-from sim.loop import Loop
-from sim.scenario import Scenario
+from pendant.all_settings import Settings
+from pendant.tick.modes import TICK
+from sim.arm.scenario import Scenario
+from sim.run.loop import Loop
 from sim.simulation import Simulation
 
 PERIOD = 0.5  # [s]

@@ -4,12 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from pendant.decision import Decision, Remaining
-from pendant.estimate import Estimate
-from pendant.events import Event, Kind
-from pendant.modes import Law, Mode, Phase, Safety
-from sim.desk import Wishes
-from sim.snapshot import Snapshot
+from pendant.decision import Decision
+from pendant.events.event import Event, Kind
+from pendant.freedrive.periods import Remaining
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law, Mode, Phase, Safety
+from sim.exchange.desk import Wishes
+from sim.exchange.snapshot import Snapshot
 
 JOINTS = ["base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3"]
 

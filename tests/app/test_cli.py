@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app import cli
-from app.checked import BadInput
+from app.files.checked import BadInput
 
 
 def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
@@ -103,7 +103,7 @@ def test_check_tells_what_a_file_is(
 
 
 def test_check_knows_an_arm(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from app.library import ASSETS
+    from app.files.library import ASSETS
 
     assert pendant(monkeypatch, "check", str(ASSETS / "robots" / "ur5e.yaml")) == 0
     assert "a valid robot" in capsys.readouterr().out
@@ -141,7 +141,7 @@ def test_a_setting_is_a_name_and_a_value(text: str, value: object) -> None:
 
 
 def test_claims_says_what_is_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    monkeypatch.setattr("app.coverage.claiming", dict)
+    monkeypatch.setattr("app.runs.coverage.claiming", dict)
     assert pendant(monkeypatch, "claims", "--out", str(tmp_path)) == 1
     assert "115 rows: 0 shown, 0 fails, 0 holds without its switch, 115 missing" in capsys.readouterr().out
     assert (tmp_path / "claims.md").is_file()

@@ -11,13 +11,13 @@ import msgspec
 import pytest
 
 from app import cli
-from app.checked import convert, load
+from app.files.checked import convert, load
 from app.log.recorder import Recorder
-from app.prepare import prepare
-from app.runner import simulate
-from app.session import Session, bundled, find
+from app.runs.runner import simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session, bundled, find
 from pendant.inputs import NOTHING
-from sim.desk import Wishes
+from sim.exchange.desk import Wishes
 
 ODD: tuple[Any, ...] = (None, "", "soon", -1e9, 1e400, [], {}, [[]], {"a": 1}, "\x00", "2020-01-01", -(2**70))
 COUNT = {"session": 60, "text": 60, "settings": 20, "program": 20, "log": 40}
@@ -56,7 +56,7 @@ def bad_sessions(chance: random.Random) -> Iterator[bytes]:
 
 
 def _fine(raw: Any) -> bool:
-    from app.checked import BadInput
+    from app.files.checked import BadInput
 
     try:
         prepare(convert(raw, Session, "s"), "s")
@@ -165,7 +165,7 @@ def test_a_malformed_log_is_one_line(
 
 def test_any_byte_of_a_log_may_be_wrong(whole: bytes, tmp_path: Path) -> None:
     """Whatever is wrong in it, it is read, or refused in a line."""
-    from app.checked import BadInput
+    from app.files.checked import BadInput
     from app.log.reader import read
 
     chance = random.Random(3)

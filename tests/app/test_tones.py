@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from app.tones import RATE, Tone, tone_for
-from pendant.decision import Decision, Remaining, WallState
-from pendant.modes import Mode, Phase
+from pendant.decision import Decision
+from pendant.freedrive.periods import Remaining
+from pendant.tick.modes import Mode, Phase
+from pendant.walls.containment import WallState
 from tests.app import fakes
 
 

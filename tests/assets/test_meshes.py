@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.library import ASSETS, load_arm, robots
+from app.files.library import ASSETS, load_arm, robots
 from assets.build_meshes import FOOT, build, pictures
-from sim.arm import Arm
-from sim.frames import link_transform
+from sim.arm.arm_file import Arm
+from sim.arm.frames import link_transform
 
 ARMS = {name: load_arm(name) for name in robots()}
 PICTURES = {name: pictures(arm) for name, arm in ARMS.items()}

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from playwright.sync_api import Page
 
-from app.web.scene import frames_of
+from app.web.scene.arm_picture import frames_of
 from app.web.server import Served
-from pendant.events import Kind
-from pendant.modes import TICK_RATE
-from pendant.settings import Settings, apply
-from sim.frames import matrix_from_quaternion
-from sim.loop import Loop
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Kind
+from pendant.tick.modes import TICK_RATE
+from sim.arm.frames import matrix_from_quaternion
+from sim.run.loop import Loop
 
 Array = NDArray[np.float64]
 

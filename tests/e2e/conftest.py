@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-from app.library import load_arm
+from app.files.library import load_arm
 from app.web.server import Served, serve
-from sim.loop import Loop
-from sim.scenario import Scenario
+from sim.arm.scenario import Scenario
+from sim.run.loop import Loop
 from sim.simulation import Simulation
 from tests.e2e.cell import SETTINGS, Cell
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page
 
-from pendant.events import Event, Kind
-from pendant.modes import Mode
+from pendant.events.event import Event, Kind
+from pendant.tick.modes import Mode
 from tests.e2e.cell import Array, Cell
 from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_free_drive, hold_until
 

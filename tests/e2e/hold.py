@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page
 
-from pendant.events import Kind
-from pendant.modes import Mode, Phase
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode, Phase
 from tests.e2e.cell import Cell
 
 IN_VAIN = frozenset({Kind.HOLD_SILENT, Kind.REFUSED_MOVING, Kind.ACTIVATION_CANCELLED, Kind.NOT_YET})

@@ -6,8 +6,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from app.web.server import Served, serve
-from pendant.modes import Mode
-from sim.loop import Loop
+from pendant.tick.modes import Mode
+from sim.run.loop import Loop
 from tests.e2e.cell import Cell
 
 pytestmark = pytest.mark.e2e

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page
 
-from pendant.events import Kind
-from pendant.modes import Mode, Phase
-from sim.touch import Pull
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode, Phase
+from sim.plant.touch import Pull
 from tests.e2e.cell import Cell
 from tests.e2e.hold import enter_free_drive, hold_free_drive
 

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from hypothesis import strategies as st
 
-from pendant.shapes import AnyShape, Box, Cone, Cylinder, Ellipsoid, HalfSpace, Polyhedron, Pyramid, Sphere
+from pendant.walls.shapes import AnyShape, Box, Cone, Cylinder, Ellipsoid, HalfSpace, Polyhedron, Pyramid, Sphere
 
 lengths = st.floats(0.02, 0.6)
 coordinates = st.one_of(st.just(0.0), st.floats(-1.0, 1.0), st.floats(-0.1, 0.1))

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.contact_limits import ContactLimits, limits
-from pendant.contact_settings import ContactUse
-from pendant.detector import Detector, Finding
-from pendant.modes import Mode
-from pendant.signal import Signal
+from pendant.contact.contact_limits import ContactLimits, limits
+from pendant.contact.detector import Detector, Finding
+from pendant.contact.settings import ContactUse
+from pendant.tick.modes import Mode
+from pendant.tick.source_signal import Signal
 
 Array = NDArray[np.float64]
 USE = ContactUse(on=True, instant=False, ratio_of_values=False)

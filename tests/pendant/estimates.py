@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pendant.estimate import Estimate
+from pendant.tick.estimate import Estimate
 
 N = 6
 

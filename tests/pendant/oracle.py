@@ -7,13 +7,13 @@ and the kinds of events. `drive` gives the same of a supervisor.
 from dataclasses import dataclass, field, replace
 from math import inf
 
-from pendant.events import Kind
+from pendant.all_settings import Settings
+from pendant.event_table import TABLE, render
+from pendant.events.event import Kind
 from pendant.inputs import Button, Command, Inputs
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import JointMove, Program, ProgramState
-from pendant.settings import Settings
+from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
-from pendant.table import TABLE, render
+from pendant.tick.modes import Law, Mode, Phase, Safety
 from tests.pendant.estimates import estimate
 
 PROGRAM = Program(name="two moves", steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
@@ -53,7 +53,7 @@ TOOLING = frozenset(
         Kind.ZERO_DUE,
     }
 )
-"""Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/test_tooling.py and
+"""Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/tooling/test_tool_in_use.py and
 test_tare_run.py say when they come."""
 
 

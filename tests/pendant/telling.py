@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from pendant.events import Event
-from pendant.table import TABLE, render
+from pendant.event_table import TABLE, render
+from pendant.events.event import Event
 
 
 def whole(events: Sequence[Event], tick: int) -> list[Event]:

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from pendant.events import Event, Kind
+from pendant.events.event import Event, Kind
 from pendant.haptics import (
     ABOUT_TO_END,
     CONTACTS,
@@ -22,11 +22,11 @@ from pendant.haptics import (
     offset,
 )
 from pendant.inputs import Command, Inputs
-from pendant.modes import TICK, Law, Mode, Phase
-from pendant.settings import ticks
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK, Law, Mode, Phase
 from tests.pendant.estimates import estimate
-from tests.pendant.test_contact_programs import GAINED, Told
-from tests.pendant.test_freedrive import HOLD, LET_GO, Bench
+from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
+from tests.pendant.program.test_contact_programs import GAINED, Told
 
 ON = HapticUse(on=True)
 REST = Moment(Mode.TEACH, Law.HOLD, Phase.OFF, [], False, -1, 250)

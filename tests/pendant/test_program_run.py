@@ -2,15 +2,15 @@
 
 import pytest
 
-from pendant.enabling import Grip
-from pendant.estimate import Estimate
-from pendant.events import Event, Kind
+from pendant.equipment.load import Load
+from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Button, Command, Inputs
-from pendant.load import Load
-from pendant.modes import Mode, Phase
-from pendant.program import Program, ProgramState, SwitchTool, Wait
+from pendant.program.steps import Program, ProgramState, SwitchTool, Wait
+from pendant.signals.enabling_device import Grip
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Phase
 from tests.pendant.estimates import estimate
-from tests.pendant.test_freedrive import HOLD, Bench
+from tests.pendant.freedrive.test_state_machine import HOLD, Bench
 
 START, PAUSE = Command.START_PROGRAM, Command.PAUSE_PROGRAM
 RESUME, STOP = Command.RESUME_PROGRAM, Command.STOP_PROGRAM

@@ -8,15 +8,16 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
-from pendant.event_row import LEAVING, Effect
-from pendant.events import Kind
+from pendant.event_table import TABLE
+from pendant.events.event import Kind
+from pendant.events.event_row import LEAVING, Effect
 from pendant.inputs import Button, Command, Inputs
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import JointMove, Program
-from pendant.settings import Settings, apply, ticks
+from pendant.program.steps import JointMove, Program
+from pendant.settings.schema import ticks
 from pendant.supervisor import Supervisor
-from pendant.table import TABLE
+from pendant.tick.modes import Law, Mode, Phase, Safety
 from tests.pendant.estimates import estimate
 
 PROGRAM = Program(steps=(JointMove(q=(0.0,) * 6),))

@@ -5,19 +5,20 @@ from typing import cast
 
 import pytest
 
-from pendant.axis_locks import axis_locks
-from pendant.contact import Contact
-from pendant.decision import Decision, Remaining
-from pendant.events import Event, Kind
+from pendant.all_settings import Settings, apply, limits_checksum
+from pendant.contact.contact_change import Contact
+from pendant.decision import Decision
+from pendant.events.event import Event, Kind
+from pendant.freedrive.periods import Remaining
 from pendant.haptics import Pattern, Shake
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import ProgramState, Wait
+from pendant.limits.axis_locks import axis_locks
+from pendant.program.steps import ProgramState, Wait
 from pendant.publisher import Publisher
-from pendant.reduced import SpeedLimits
-from pendant.robot import Robot
-from pendant.settings import Settings, apply, limits_checksum
-from pendant.taring import Taring
-from pendant.tooling import Tooling
+from pendant.robot.reduced import SpeedLimits
+from pendant.robot.robot_mode import Robot
+from pendant.sensor.taring import Taring
+from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tooling.tool_in_use import Tooling
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False})
 SPEEDS = SpeedLimits(0.1, 0.2, 0.3)

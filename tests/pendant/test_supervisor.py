@@ -5,18 +5,19 @@ from collections.abc import Callable
 
 import pytest
 
-from pendant.events import Event, Kind, Values
+from pendant.all_settings import Settings, apply, describe, value_of
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import JointMove, Program, ProgramState, Wait
-from pendant.settings import Row, Settings, Value, apply, describe, value_of
-from pendant.shapes import Sphere
+from pendant.program.steps import JointMove, Program, ProgramState, Wait
+from pendant.settings.schema import Row, Value
 from pendant.supervisor import Supervisor
-from pendant.walls import Start, Wall
+from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.walls.definitions import Start, Wall
+from pendant.walls.shapes import Sphere
 from tests.pendant.estimates import estimate
+from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench
 from tests.pendant.oracle import PROGRAM, WRONG
-from tests.pendant.test_freedrive import HOLD, JOINTS, LET_GO, Bench
-from tests.pendant.test_settings import other
+from tests.pendant.test_all_settings import other
 
 START = Bench().supervisor.settings
 LOCKED = [row for row in describe() if row.locked]

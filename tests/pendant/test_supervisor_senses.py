@@ -5,16 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from pendant.events import Kind
+from pendant.equipment.load import Load
+from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
-from pendant.load import Load
-from pendant.modes import Law, Mode
-from pendant.signal import Signals
+from pendant.tick.modes import Law, Mode
+from pendant.tick.source_signal import Signals
 from tests.pendant.contacts import ramp, signals
 from tests.pendant.estimates import estimate
-from tests.pendant.test_contact_programs import NEXT
-from tests.pendant.test_freedrive import LET_GO, Bench
-from tests.pendant.test_hand_guide_step import guided
+from tests.pendant.freedrive.test_state_machine import LET_GO, Bench
+from tests.pendant.program.test_contact_programs import NEXT
+from tests.pendant.program.test_hand_guide_step import guided
 
 AT_ONCE = {"activation__period": 0.0, "free_drive__cool_down": 0.0}
 LEAVE = Inputs(commands=(Command.LEAVE_FREE_DRIVE,))

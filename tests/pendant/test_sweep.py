@@ -5,10 +5,10 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from pendant.all_settings import Settings, apply
 from pendant.inputs import Command
-from pendant.modes import Law, Mode, Phase, Safety
-from pendant.program import ProgramState
-from pendant.settings import Settings, apply
+from pendant.program.steps import ProgramState
+from pendant.tick.modes import Law, Mode, Phase, Safety
 from tests.pendant.oracle import PROGRAM, WRONG, Step, agree, ticks_of
 
 SHORT = apply(

@@ -1,289 +1,372 @@
-"""The flange sensor's zero: drifts and steps are taken off, hands are not (FD-19)."""
+"""The sensor's zero in the running robot: every state x the command, the program's step, and who must not notice it."""
+
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from pendant.events import Kind
-from pendant.hand import Hand
-from pendant.inputs import NOTHING
-from pendant.modes import Phase
-from pendant.pose import ORIGIN
-from pendant.sensor_steps import ANSWER, LATER, MOVED
-from pendant.watch import WrenchMean
-from pendant.zeroing import (
-    BEGINS,
-    FAR,
-    FAR_TURN,
-    FELT,
-    QUIET,
-    SLOW,
-    SLOW_TURN,
-    SLOWLY,
-    SLOWLY_TURN,
-    Drift,
-    Zero,
-)
+from pendant.all_settings import Settings, apply
+from pendant.equipment.load import Load
+from pendant.event_table import render
+from pendant.events.event import Event, Kind
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.limits.validity import WINDOW
+from pendant.program.sequencer import PATIENCE
+from pendant.program.steps import ApplyForce, JointMove, Program, ProgramState, SwitchTool, Wait, ZeroSensor
+from pendant.sensor.taring import WINDOWS
+from pendant.supervisor import Supervisor
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Phase, Safety
+from pendant.tick.pose import Wrench
 from tests.pendant.estimates import estimate
-from tests.pendant.test_freedrive import Bench
+from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO
+from tests.pendant.telling import whole
 
-PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
-WINDOW = 0.1  # [s]
-TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
+ZERO = Inputs(commands=(Command.ZERO_SENSOR,))
+READY = (WINDOWS + 2) * WINDOW
+"""Ticks after which the arm has stood for long enough, whatever moved it before: it counts as still 50 ticks later."""
 
-
-@pytest.mark.parametrize(
-    ("change", "gone"),
-    [
-        ((0.1, -0.2, 0.05, 0.01, 0.0, -0.02), (0.1, -0.2, 0.05, 0.01, 0.0, -0.02)),
-        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, SLOW_TURN * WINDOW)),
-        ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOW * WINDOW, 0.0, 0.8 * SLOW * WINDOW, 0.0, 0.0, 0.0)),
-    ],
-)
-def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
-    drift = Drift()
-    start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
-    assert drift.step(start, ORIGIN) is None
-    assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN) == pytest.approx(gone)
-    drift.restart()
-    assert drift.step(start, ORIGIN) is None
+TORN = "more than on the untouched arm: let go of it"
+OFFSET = (1.0, -2.0, 2.0, 0.01, 0.02, -0.03)
+"""F_user of the untouched arm, axes of F, which are those of B."""
 
 
-def test_a_mean_is_wanted_once_a_window() -> None:
-    drift = Drift()
-    wanted = [drift.due() for _ in range(151)]
-    assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
-    assert drift.memory != Drift().memory
+def command(*commands: Command) -> Inputs:
+    return Inputs(commands=commands)
 
 
-def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
-    bench = Bench(free_drive__period=30.0, **changes).in_period()
-    for tick in range(round(500 * seconds)):
-        bench.step(NOTHING, estimate(force=[start, 0.0, rate * 0.002 * tick]))
-    return bench
+class Robot:
+    """A supervisor whose sensor obeys its zero, from the next tick on."""
+
+    def __init__(self, *steps: Wait | ZeroSensor | JointMove | ApplyForce | SwitchTool, **changes: float | bool) -> None:
+        names = {name.replace("__", "."): value for name, value in {"sequence__on": False, **changes}.items()}
+        self.supervisor = Supervisor(apply(Settings(), names), 6)
+        self.tick, self.offset, self.events = 0, np.array(OFFSET), list[Event]()
+        self.qd, self.valid, self.done = 0.0, True, 0
+        self.decision = self.supervisor.step(self.value(), NOTHING)
+        if steps:
+            self.run(1, Inputs(program=Program(name="p", steps=steps)))
+        self.run(READY)
+
+    def value(self) -> Estimate:
+        value = estimate(self.tick, qd=self.qd, wrench_valid=self.valid, move_done=self.done)
+        value.F_user = self.offset + np.array(self.supervisor.zero) if self.valid else np.zeros(6)
+        return value
+
+    def run(self, ticks: int, inputs: Inputs = NOTHING) -> "Robot":
+        for _ in range(ticks):
+            self.tick += 1
+            self.decision = self.supervisor.step(self.value(), inputs)
+            self.events += whole(self.decision.events, self.tick)
+        return self
+
+    def zero(self) -> str:
+        """Why not, or "" where it was done."""
+        before = self.decision.zero
+        self.events.clear()
+        self.run(1, ZERO)
+        (told,) = [event for event in self.events if event.kind in (Kind.SENSOR_ZEROED, Kind.ZERO_REFUSED)]
+        if told.kind is Kind.SENSOR_ZEROED:
+            assert self.decision.zero == pytest.approx([-each for each in OFFSET])
+            assert self.run(1).value().F_user == pytest.approx(np.zeros(6))
+            return ""
+        assert self.decision.zero is before
+        return str(told.values["reason"])
+
+    def kinds(self) -> list[Kind]:
+        return [event.kind for event in self.events]
 
 
-def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
-    bench = drifting(1.5)
-    assert bench.last.phase is Phase.PERIOD
-    assert bench.last.baseline[2] == pytest.approx(3.0, abs=0.4)
-    assert bench.last.baseline[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+def held(robot: Robot) -> Robot:
+    return robot.run(600, HOLD)
 
 
-def test_only_the_last_windows_are_given_back() -> None:
-    drift = Drift()
-    assert drift.give_back() == []
-    gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
-    for each in gone:
-        drift.keep(each)
-    assert drift.memory != Drift().memory
-    drift.restart()
-    assert drift.give_back() == gone[-BEGINS:]
-    assert drift.give_back() == []
+def free(robot: Robot) -> Robot:
+    robot.run(600, HOLD).run(1, LET_GO)
+    assert robot.decision.phase is Phase.PERIOD
+    return robot
 
 
-@pytest.mark.parametrize("torque", [0.0, 0.5])
-def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_not_used_any_more(torque: float) -> None:
-    """FD-13, FD-19: by 20 N, and by more of a torque than its limit; the arm is left to its period."""
-    bench = Bench(free_drive__period=10.0).in_period()
-    force = 1.0 if torque else 2.0
-    for tick in range(5000):
-        bench.step(NOTHING, estimate(force=[0.002 * force * tick, 0.0, 0.0], torque=[0.0, 0.0, 0.002 * torque * tick]))
-        left = bench.events != []
-        assert bench.last.gain == (0.0 if left else 1.0)
-        assert not left or bench.last.baseline == (0.0,) * 6
-    assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED, Kind.LEFT_PERIOD]
-    told = bench.events[0].values
-    expected = {"force": 2.0, "torque": FAR_TURN} if torque else {"force": FAR, "torque": 0.0}
-    assert told == {name: pytest.approx(value, abs=0.21) for name, value in expected.items()}
-    assert told["torque" if torque else "force"] >= (FAR_TURN if torque else FAR)
+def refused(robot: Robot) -> Robot:
+    """A check that an offset fails."""
+    robot.run(700, HOLD).run(1, LET_GO)
+    assert Kind.REFUSED_PAYLOAD in robot.kinds()
+    return robot
 
 
-@pytest.mark.parametrize("turned", [False, True])
-def test_a_drift_turns_with_the_flange(turned: bool) -> None:
-    R_BF = TURNED if turned else np.eye(3)
-    before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
-    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
-    zero.begin(before, True, mean)
-    for value in [before] * 50 + [after] * 51:
-        mean.step(value)
-        zero.step(value, hand, mean, True)
-    assert zero.felt(after) == pytest.approx((0.0,) * 6)
-    drifted = np.concatenate([R_BF @ zero.drifted[:3], R_BF @ zero.drifted[3:]])
-    after.R_BF = R_BF
-    after.F_user[:] = drifted + np.arange(1.0, 7.0)
-    assert zero.felt(after) == pytest.approx((1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
-    zero.leave()
-    assert zero.felt(after) is None
+def paused(robot: Robot) -> Robot:
+    robot.run(1, command(Command.START_PROGRAM)).run(5).run(1, command(Command.PAUSE_PROGRAM)).run(5)
+    assert robot.decision.program is ProgramState.PAUSED
+    return robot
 
 
-def test_a_drift_is_followed_through_the_sensors_noise() -> None:
-    """2 N/s and 0.4 N·m/s with noise of their size upon the means: what of a mean is beyond the limits waits for the next."""
-    rng = np.random.default_rng(3)
-    rate = np.array([0.0, 0.16, -0.12, 0.04, 0.0, 0.0])
-    noise = np.array([0.15] * 3 + [0.015] * 3)
-    drift, gone = Drift(), np.zeros(6)
-    for window in range(300):
-        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN)
-        gone += taken or (0.0,) * 6
-    assert gone == pytest.approx(299 * rate, abs=1.0)
+MODES: dict[str, tuple[Callable[[], Robot], str]] = {
+    "TEACH": (Robot, ""),
+    "NORMAL": (lambda: Robot().run(1, command(Command.NORMAL)), ""),
+    "REMOTE": (lambda: Robot().run(1, command(Command.REMOTE)), ""),
+    "RUN": (lambda: Robot(Wait(duration=9.0)).run(1, command(Command.START_PROGRAM)), "a program runs: pause or stop it first"),
+    "RUN moving": (
+        lambda: Robot(JointMove(q=(0.1,) * 6)).run(1, command(Command.START_PROGRAM)),
+        "a program runs: pause or stop it first",
+    ),
+    "RUN paused": (lambda: paused(Robot(Wait(duration=9.0))), ""),
+    "program stopped": (lambda: paused(Robot(Wait(duration=9.0))).run(1, command(Command.STOP_PROGRAM)), ""),
+    "emergency stop": (lambda: Robot().run(1, command(Command.EMERGENCY_STOP)), ""),
+    "safeguard stop": (lambda: Robot().run(1, command(Command.SAFEGUARD_OPEN)), ""),
+    "reduced": (lambda: Robot().run(1, command(Command.REDUCED_ON)), ""),
+    "activation": (lambda: Robot().run(100, HOLD), "free-drive is being tried"),
+    "sequence": (lambda: Robot(sequence__on=True).run(501, HOLD), "free-drive is being tried"),
+    "held": (lambda: held(Robot()), "free-drive is on"),
+    "period": (lambda: free(Robot()), "free-drive is on"),
+    "left": (lambda: free(Robot()).run(1, command(Command.LEAVE_FREE_DRIVE)), "the arm must stand untouched for 1.1 s: wait"),
+}
 
 
-@pytest.mark.parametrize(("size", "next_one"), [(0.3, 0.0), (0.5, 0.2), (0.8, 0.3), (1.1, 0.3), (20.0, 0.3)])
-def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
-    """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
-    drift = Drift()
-    drift.step((0.0,) * 6, ORIGIN)
-    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size), ORIGIN) for _ in range(4)]
-    force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
-    assert [step[1] for step in taken if step] == pytest.approx(force)
-    assert [-5.0 * step[5] for step in taken if step] == pytest.approx(force)
+@pytest.mark.parametrize("name", MODES)
+def test_in_every_state_it_is_done_or_refused_with_the_reason(name: str) -> None:
+    make, why_not = MODES[name]
+    assert make().zero() == why_not
 
 
-@pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
-def test_pushes_leave_no_offset_behind(anew: bool) -> None:
-    """Each grows by 10 N/s for 0.3 s before the arm moves; 3 N/s would pass for drift. It is gone before the arm rests."""
-    bench = Bench(free_drive__period=30.0, free_drive__restart_at_manipulation=anew).in_period()
-    for _ in range(6):
-        for tick in range(300):
-            bench.step(NOTHING, estimate(force=[min(0.02 * tick, 6.0), 0.0, 0.0], qd=0.3 if tick > 150 else 0.0))
-        for tick in range(400):
-            bench.step(NOTHING, estimate(qd=0.3 if tick < 60 else 0.0))
-    assert bench.last.phase in (Phase.PERIOD, Phase.RESTART)
-    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
+def test_the_states_are_all_there_are() -> None:
+    robots = [make() for make, _ in MODES.values()]
+    assert {robot.decision.mode for robot in robots} == set(Mode)
+    assert {robot.decision.safety for robot in robots} >= {Safety.NORMAL, Safety.REDUCED, Safety.EMERGENCY_STOP}
 
 
-def test_switched_off_nothing_is_taken_off() -> None:
-    assert drifting(3.0, unexplained__sensor=False).last.baseline == pytest.approx((0.0,) * 6)
+def test_an_arm_that_moves_is_refused_and_has_to_stand_for_a_second_afterwards() -> None:
+    robot = Robot()
+    robot.qd = 0.02
+    assert robot.zero() == "the arm moves"
+    robot.qd = 0.0
+    assert robot.run(WINDOW - 2).zero() == "the arm moves"
+    for _ in range(WINDOWS - 1):
+        assert robot.run(WINDOW - 1).zero() == "the arm must stand untouched for 1.1 s: wait"
+    assert robot.run(WINDOW - 2).zero() == "the arm must stand untouched for 1.1 s: wait"
+    assert robot.zero() == ""
 
 
-def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
-    bench = Bench().in_period()
-    for tick in range(1000):
-        bench.step(NOTHING, estimate(force=[20.0 + 0.002 * tick, 0.0, 0.0], qd=0.3))
-    assert bench.last.phase is Phase.GUIDED
-    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.5)
+def test_without_a_valid_sensor_it_is_refused() -> None:
+    robot = Robot()
+    robot.valid = False
+    assert robot.zero() == "the flange force sensor is not valid"
+    robot.valid = True
+    assert "must stand untouched" in robot.zero()
+    assert robot.run(READY).zero() == ""
 
 
-def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
-    bench = Bench().in_period()
-    bench.run(50)
-    bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0]))
-    for _ in range(LATER):
-        bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0], felt=list(PUSHED)))
-    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.SENSOR_STEPPED]
-    assert bench.events[-1].values == {"force": pytest.approx(15.0, abs=SLOW * WINDOW)}
-    assert (bench.last.baseline, bench.last.gain) == ((0.0,) * 6, 0.0)
+def test_while_the_payload_changes_it_is_refused() -> None:
+    robot = Robot().run(1, Inputs(load=Load(mass=1.0)))
+    assert robot.zero() == "the payload is being changed"
+    robot.run(500 + WINDOW)
+    assert "must stand untouched" in robot.zero(), "what the arm feels with this payload is learned again"
+    assert robot.run(READY).zero() == ""
 
 
-def test_the_baseline_is_in_the_axes_of_the_flange() -> None:
-    """As it was held in the beginning, and as it is turned when the sensor drifts."""
-    zero, mean, start = Zero(), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
-    start.R_BF = TURNED
-    mean.step(start)
-    zero.begin(start, True, mean)
-    assert zero.baseline == pytest.approx((2.0, -1.0, 3.0, 0.2, -0.1, 0.3))
-    bench = Bench(free_drive__period=30.0).in_period()
-    for tick in range(600):
-        value = estimate(force=[0.004 * tick, 0.0, 0.0])
-        value.R_BF = TURNED
-        bench.step(NOTHING, value)
-    assert bench.last.baseline[:3] == pytest.approx((0.0, -2.4, 0.0), abs=0.3)
+def test_while_a_posture_is_measured_it_is_refused() -> None:
+    robot = Robot().run(1, command(Command.WIZARD_MEASURE))
+    assert robot.zero() == "a posture is being measured"
+    assert robot.run(READY).zero() == ""
 
 
-@pytest.mark.parametrize(("speed", "given_back"), [(MOVED, False), (1.001 * MOVED, True), (-1.001 * MOVED, True)])
-def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(speed: float, given_back: bool) -> None:
-    force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
-    before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
-    after.R_BF = TURNED  # since entry
-    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
-    zero.begin(before, True, mean)
-    for value in [before] * 50 + [after] * 51:
-        mean.step(value)
-        assert zero.step(value, hand, mean, True) is None
-    gone = (-0.2, -0.1, 0.05, -0.02, -0.01, 0.03)  # axes of the flange, and of B at entry
-    assert zero.baseline == pytest.approx(gone)
-    hand.step(after, True)
-    assert hand.change == pytest.approx((0.0,) * 3)
-    assert zero.step(after, hand, mean, False) is None
-    hand.step(after, True)
-    assert zero.baseline == pytest.approx((0.0,) * 6 if given_back else gone)
-    assert hand.change == pytest.approx(force if given_back else (0.0,) * 3)
+def test_while_haptic_feedback_shakes_the_arm_it_is_refused() -> None:
+    robot = free(Robot(haptics__on=True)).run(1, command(Command.LEAVE_FREE_DRIVE))
+    robot.run(1)
+    assert robot.decision.shake is not None
+    assert robot.zero() == "haptic feedback shakes the arm"
+    assert robot.run(READY + 500).zero() == ""
 
 
-def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
-    zero, mean = Zero(), WrenchMean()
-    mean.step(estimate(force=3.0))
-    zero.begin(estimate(), True, mean)
-    assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    zero.leave()
-    assert zero.memory == Zero().memory
+@pytest.mark.parametrize("size", [5.0, 30.0])
+def test_a_hand_that_rests_on_the_arm_is_refused_however_it_came(size: float) -> None:
+    robot = Robot()
+    robot.offset[1] += size
+    assert robot.run(READY).zero() == f"{size:.1f} N {TORN}"
+    free(robot).run(1, command(Command.LEAVE_FREE_DRIVE))
+    assert TORN in robot.run(READY).zero(), "also after it has guided the arm"
+    robot.offset[1] -= size
+    assert robot.run(READY).zero() == ""
 
 
-@pytest.mark.parametrize("axis", range(3))
-@pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
-@pytest.mark.parametrize(("size", "asked"), [(0.99 * FELT, False), (1.01 * FELT, True), (3.0, True)])
-def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
-    drift = Drift()
-    force, felt = [0.0] * 6, [2.0, 3.0, 4.0]
-    drift.step(tuple(force), (2.0, 3.0, 4.0))
-    force[axis] += size
-    felt[axis] += answer * size
-    taken = drift.step(tuple(force), (felt[0], felt[1], felt[2]))
-    assert (taken is not None) is (follows or not asked)
+def test_no_push_and_no_signal_is_felt_and_no_mode_changes() -> None:
+    robot = Robot(signals__push__on=True, signals__push__told=True, signals__push__threshold=5.0)
+    robot.valid = False
+    robot.run(1)
+    robot.valid, robot.offset[:] = True, (4.0, -4.0, 4.0, 0.0, 0.0, 0.0)
+    robot.run(READY).events.clear()
+    mode = robot.decision.mode
+    robot.run(1, ZERO).run(1000)
+    assert robot.kinds() == [Kind.SENSOR_ZEROED]
+    assert robot.decision.mode is mode
+    robot.offset[2] -= 8.0
+    robot.run(100)
+    assert Kind.PUSHED in robot.kinds(), "a hand is felt as before"
 
 
-@pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
-def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
-    assert (Drift().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
+def test_a_stored_state_is_of_the_sensor_before() -> None:
+    robot = Robot(sequence__on=True, sequence__stored=True, sequence__age=2.0, activation__period=0.0)
+    robot.run(1000)
+    assert robot.zero() == ""
+    robot.run(500).run(1, HOLD)
+    assert robot.kinds()[-1] is Kind.REFUSED_NOT_STORED
+    assert (
+        Robot(sequence__on=True, sequence__stored=True, sequence__age=2.0).run(1000).run(510, HOLD).kinds()[-1]
+        is not Kind.REFUSED_NOT_STORED
+    )
 
 
-@pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
-def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
-    drift, tick = Drift(1000), 1000 + round(500 * seconds)
-    assert drift.slack(tick) == pytest.approx((SLOWLY * seconds, SLOWLY_TURN * seconds))
-    assert (drift.begin((QUIET + SLOWLY * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick) is None) is held
-    left = seconds if held else 0.0
-    assert drift.slack(tick) == pytest.approx((SLOWLY * left, SLOWLY_TURN * left))
+def test_a_refusal_is_not_told_to_have_been_a_push_when_the_sensor_is_zeroed() -> None:
+    robot = Robot(sequence__on=True, limits__activation__payload_force__max=1.5)
+    refused(robot)
+    robot.run(620)
+    assert robot.zero() == ""
+    robot.run(1500)
+    assert robot.kinds() == [Kind.SENSOR_ZEROED]
 
 
-def test_what_the_sensor_drifted_by_while_the_arm_was_moved_goes_into_the_zero() -> None:
-    """As much as it can have drifted by in that time: 100 s, 1.33 N and 0.1 N·m."""
-    assert Drift().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
-    taken = Drift().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
-    assert taken == pytest.approx((0.0, 100 * SLOWLY, 0.0, 0.0, 0.0, -100 * SLOWLY_TURN))
-    assert Drift().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
+def test_postures_of_the_wizard_are_as_if_measured_with_the_new_zero() -> None:
+    robot = Robot()
+    robot.run(1, command(Command.WIZARD_MEASURE)).run(READY)
+    wizard = robot.supervisor._tooling.wizard
+    (before,) = wizard.memory[0]  # type: ignore[misc]
+    assert robot.zero() == ""
+    (after,) = wizard.memory[0]  # type: ignore[misc]
+    assert np.subtract(after.force, before.force) == pytest.approx(OFFSET[:3])  # type: ignore[attr-defined]
+    assert np.subtract(after.torque, before.torque) == pytest.approx(OFFSET[3:])  # type: ignore[attr-defined]
 
 
-def test_a_sensor_that_drifts_while_a_hand_leads_the_arm_is_followed_when_it_goes() -> None:
-    bench = Bench(free_drive__period=30.0, free_drive__restart_period=30.0).in_period()
-    for tick in range(15000):
-        moves = tick % 3000 < 2000
-        drift = 0.01 * 0.002 * tick
-        hand = 20.0 * moves
-        bench.step(NOTHING, estimate(force=[hand + drift, 0.0, 0.0], felt=[hand, 0.0, 0.0], qd=0.3 if moves else 0.0))
-    assert bench.last.phase is Phase.RESTART
-    assert bench.last.baseline[0] == pytest.approx(0.3, abs=0.06)
+def run_program(*steps: Wait | ZeroSensor | JointMove | ApplyForce | SwitchTool) -> Robot:
+    robot = Robot(*steps)
+    robot.events.clear()
+    return robot.run(1, command(Command.START_PROGRAM))
 
 
-def test_a_hand_that_rests_on_the_arm_leaves_no_offset_behind() -> None:
-    """It holds the arm with 3 N where it came to rest, for 2 s, and becomes lighter; then it is gone."""
-    bench = Bench(free_drive__period=30.0).in_period()
-    for tick in range(200):
-        bench.step(NOTHING, estimate(force=[6.0, 0.0, 0.0], qd=0.3 if tick < 150 else 0.0))
-    for tick in range(1000):
-        bench.step(NOTHING, estimate(force=[3.0 - 0.002 * tick, 0.0, 0.0]))
-    for _ in range(400):
-        bench.step(NOTHING, estimate())
-    assert bench.last.phase is Phase.RESTART
-    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
+def test_a_step_zeroes_the_sensor_at_once_where_the_arm_has_stood() -> None:
+    robot = run_program(ZeroSensor(), SwitchTool(on=True))
+    assert robot.kinds() == [Kind.PROGRAM_STARTED, Kind.SENSOR_ZEROED]
+    assert robot.decision.zero == pytest.approx([-each for each in OFFSET])
+    robot.run(1)
+    assert robot.kinds()[2:] == [Kind.PROGRAM_FINISHED, Kind.TOOL_SWITCHED]
 
 
-def test_a_hand_that_presses_on_an_arm_at_rest_is_felt_by_the_joints() -> None:
-    bench = Bench(free_drive__period=30.0).in_period()
-    for tick in range(1000):
-        force = min(0.004 * tick, 3.0)
-        bench.step(NOTHING, estimate(force=[force, 0.0, 0.0], felt=[force, 0.0, 0.0]))
-    assert bench.last.baseline[0] <= FELT
-    for _ in range(1000):
-        bench.step(NOTHING, estimate())
-    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.15), "of the first newton, which nobody can tell"
+def test_as_the_last_step_it_ends_the_program() -> None:
+    robot = run_program(ZeroSensor())
+    assert robot.kinds() == [Kind.PROGRAM_STARTED, Kind.SENSOR_ZEROED, Kind.PROGRAM_FINISHED]
+    assert (robot.decision.mode, robot.decision.program) == (Mode.TEACH, ProgramState.STOPPED)
+
+
+def test_after_a_motion_it_waits_until_the_arm_has_stood_for_a_second() -> None:
+    robot = run_program(JointMove(q=(0.1,) * 6), ZeroSensor(), Wait(duration=0.02))
+    robot.qd = 0.3
+    robot.run(300)
+    robot.qd, robot.done = 0.0, 1
+    robot.run(1)
+    begun = robot.tick
+    while Kind.SENSOR_ZEROED not in robot.kinds():
+        robot.run(1)
+    assert WINDOWS * WINDOW <= robot.tick - begun <= READY
+    robot.run(9)
+    assert robot.decision.program is ProgramState.RUNNING, "the wait lasts as long as it should"
+    assert robot.run(2).kinds()[-1] is Kind.PROGRAM_FINISHED
+
+
+def test_a_wait_is_time_in_which_the_arm_stands() -> None:
+    robot = run_program(JointMove(q=(0.1,) * 6), Wait(duration=2.0), ZeroSensor())
+    robot.qd = 0.3
+    robot.run(300)
+    robot.qd, robot.done = 0.0, 1
+    assert robot.run(1000).kinds()[1:] == []
+    robot.run(1)
+    assert robot.kinds()[1:] == [Kind.SENSOR_ZEROED, Kind.PROGRAM_FINISHED]
+
+
+def test_with_a_hand_on_the_arm_the_program_stops_with_the_reason() -> None:
+    robot = run_program(Wait(duration=2.0), ZeroSensor(), Wait(duration=1.0))
+    robot.offset[0] += 5.0
+    robot.run(1001).events.clear()
+    robot.run(PATIENCE - 3)
+    assert robot.kinds() == []
+    robot.run(1)
+    (event,) = robot.events
+    assert event.kind is Kind.PROGRAM_FAILED
+    assert event.values == {"name": "p", "step": 2, "reason": f"force sensor not zeroed, 4.9 N {TORN}"}
+    assert (robot.decision.mode, robot.decision.program) == (Mode.TEACH, ProgramState.STOPPED)
+
+
+def test_who_lets_go_in_time_lets_it_go_on() -> None:
+    robot = run_program(Wait(duration=2.0), ZeroSensor())
+    robot.offset[0] += 5.0
+    robot.run(1001 + PATIENCE - 600)
+    robot.offset[0] -= 5.0
+    robot.run(600)
+    assert robot.kinds()[1:] == [Kind.SENSOR_ZEROED, Kind.PROGRAM_FINISHED]
+
+
+def test_a_paused_step_begins_to_wait_again() -> None:
+    robot = run_program(Wait(duration=0.1), ZeroSensor())
+    robot.offset[0] += 5.0
+    robot.run(51 + PATIENCE - 10).run(1, command(Command.PAUSE_PROGRAM)).run(100)
+    robot.events.clear()
+    robot.run(1, command(Command.RESUME_PROGRAM)).run(PATIENCE - 10)
+    assert robot.kinds() == [Kind.PROGRAM_RESUMED]
+    robot.run(20)
+    assert robot.kinds()[1:] == [Kind.PROGRAM_FAILED]
+
+
+def test_a_force_that_a_program_applies_is_measured_with_the_new_zero() -> None:
+    robot = run_program(ZeroSensor(), ApplyForce(force=(0.0, 0.0, -10.0)))
+    robot.run(2)
+    move = robot.decision.move
+    assert isinstance(move, ApplyForce)
+    assert move.untouched == pytest.approx((0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(("force", "zero"), [(4.9, True), (5.1, False)])
+def test_a_refused_payload_names_the_zero_where_it_explains_the_force_as_well(force: float, zero: bool) -> None:
+    robot = Robot(sequence__on=True, limits__activation__payload_force__max=4.5)
+    robot.offset[:] = (0.0, 0.0, -force, 0.0, 0.0, 0.0)
+    refused(robot.run(READY))
+    (event,) = [event for event in robot.events if event.kind is Kind.REFUSED_PAYLOAD]
+    assert event.values["zero"] is zero
+    mass = f"{force / 9.81:+.1f} kg"
+    assert render(event)[1] == (
+        f"5 N: {mass}, the sensor's zero, or a push down. Let go; zero it with nothing touching."
+        if zero
+        else f"Consistent with {mass} at the flange, or with a steady 5 N push down; let go to decide."
+    )
+    robot.run(1200)
+    (event,) = [event for event in robot.events if event.kind is Kind.RESIDUAL_STAYED]
+    assert event.values["zero"] is zero
+    assert ("zero" in render(event)[1]) is zero
+
+
+def test_that_zeroing_is_due_is_told_and_shown() -> None:
+    robot = Robot()
+    assert not robot.decision.zero_due
+    robot.offset[:] = (0.0, 0.0, 4.0, 0.0, 0.0, 0.0)
+    robot.valid = False
+    robot.run(1)
+    robot.valid = True
+    robot.run(READY)
+    assert robot.decision.zero_due
+    assert robot.kinds() == [Kind.ZERO_DUE]
+    robot.run(1, ZERO)
+    assert not robot.decision.zero_due
+
+
+def test_equal_states_decide_equally() -> None:
+    one, other = Robot(), Robot()
+    assert one.supervisor.state == other.supervisor.state
+    one.run(1, ZERO)
+    other.run(1)
+    assert one.supervisor.state != other.supervisor.state
+
+
+def test_the_zero_is_the_same_object_until_it_changes() -> None:
+    robot = Robot()
+    seen: list[Wrench] = [robot.supervisor.zero]
+    for inputs in (NOTHING, ZERO, NOTHING, NOTHING):
+        robot.run(1, inputs)
+        if robot.supervisor.zero is not seen[-1]:
+            seen.append(robot.supervisor.zero)
+    assert len(seen) == 2

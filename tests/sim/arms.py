@@ -1,8 +1,8 @@
 """Arms and scenarios that the tests of this room share."""
 
-from app.library import load_arm
-from sim.arm import Arm
-from sim.scenario import Load, Tool
+from app.files.library import load_arm
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Load, Tool
 
 ARMS = ("ur3e", "ur5e", "ur10e", "ur16e")
 UR5E = load_arm("ur5e")

@@ -3,19 +3,19 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
-from pendant.estimate import Estimate
-from pendant.events import Event
+from pendant.events.event import Event
 from pendant.inputs import NOTHING, Button, Command, Inputs
-from pendant.modes import TICK_RATE, Mode
-from pendant.program import JointMove, LinearMove, Program, Wait
-from pendant.settings import Settings, apply
-from sim.arm import Arm
-from sim.changes import AnyChange
-from sim.desk import Wishes
-from sim.scenario import Scenario
+from pendant.program.steps import JointMove, LinearMove, Program, Wait
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK_RATE, Mode
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.changes import AnyChange
+from sim.plant.touch import Push, Touch
 from sim.simulation import Simulation
-from sim.touch import Push, Touch
 from tests.sim.arms import UR5E
 
 CENTRE = (0.0, 0.0, 0.0)

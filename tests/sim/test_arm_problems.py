@@ -5,8 +5,8 @@ from typing import Any
 import msgspec
 import pytest
 
-from app.library import load_arm
-from sim.arm import Arm
+from app.files.library import load_arm
+from sim.arm.arm_file import Arm
 from sim.arm_problems import problems
 
 GOOD = load_arm("ur5e")

@@ -4,16 +4,16 @@ import msgspec
 import numpy as np
 import pytest
 
-import pendant.tools
-from pendant.events import Kind
+import pendant.equipment.tools
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Kind
 from pendant.inputs import Inputs
-from pendant.modes import Mode
-from pendant.program import LinearMove
-from pendant.settings import Settings, apply
-from sim.chain import tool_body
-from sim.desk import Wishes
-from sim.frames import quaternion_from_matrix, rotation_from_rpy
-from sim.scenario import Load, Scenario, Tool, table
+from pendant.program.steps import LinearMove
+from pendant.tick.modes import Mode
+from sim.arm.chain import tool_body
+from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.scenario import Load, Scenario, Tool, table
+from sim.exchange.desk import Wishes
 from tests.sim.bench import Bench
 
 G = 9.81
@@ -21,7 +21,7 @@ GRIPPER = Tool(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.02, 0
 PROBE = Tool(name="probe", mass=0.3, com=[0.0, 0.0, 0.03], tcp=[0.0, 0.0, 0.05], inertia=[1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0])
 
 
-def wish(tool: str = "", load: Load | None = None, tools: tuple[pendant.tools.Tool, ...] = ()) -> Wishes:
+def wish(tool: str = "", load: Load | None = None, tools: tuple[pendant.equipment.tools.Tool, ...] = ()) -> Wishes:
     return Wishes(Inputs(tool=tool, load=load, tools=tools), (), ())
 
 
@@ -59,7 +59,7 @@ def test_a_tool_takes_its_point_and_its_load_from_the_next_tick_on() -> None:
 def test_the_tool_in_use_is_believed_as_the_table_is_changed() -> None:
     device = bench(Scenario(mismatch="nominal", tool=GRIPPER, payload_configured=Load(mass=1.0), tools=[PROBE]), 0.0)
     assert device.simulation.tools == (GRIPPER, PROBE)
-    ball = pendant.tools.Tool(name="gripper", mass=1.4, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.3])
+    ball = pendant.equipment.tools.Tool(name="gripper", mass=1.4, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.3])
     device.tick(wish(tools=(ball, PROBE)))
     device.tick()
     assert device.simulation.tools == (ball, PROBE)

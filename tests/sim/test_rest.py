@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from pendant.all_settings import Settings
 from pendant.inputs import Command
-from pendant.modes import Mode
-from pendant.settings import Settings
-from sim import calibration
-from sim.changes import Temperature
-from sim.scenario import Moving, Scenario
+from pendant.tick.modes import Mode
+from sim.arm.scenario import Moving, Scenario
+from sim.plant.changes import Temperature
+from sim.sensing import calibration
 from sim.simulation import Simulation
 from tests.sim.arms import PROBE, UR5E
 from tests.sim.bench import NOMINAL, Bench

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from pendant.events import Kind
-from pendant.modes import Mode
-from pendant.program import JointMove
-from sim.changes import SensorFault
-from sim.scenario import Scenario
-from sim.transmission_torque import MOTOR
+from pendant.events.event import Kind
+from pendant.program.steps import JointMove
+from pendant.tick.modes import Mode
+from sim.arm.scenario import Scenario
+from sim.estimation.transmission_torque import MOTOR
+from sim.plant.changes import SensorFault
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench, push
 

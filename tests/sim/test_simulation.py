@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 import sim.simulation
-from pendant.events import Event, Kind
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Event, Kind
 from pendant.inputs import Button, Command, Inputs
-from pendant.modes import Mode
-from pendant.program import JointMove, LinearMove, Program, Wait
-from pendant.settings import Settings, apply
-from sim.arm import Arm
-from sim.calibration import Calibration
-from sim.changes import AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
-from sim.desk import Wishes
-from sim.scenario import Box, Load, Scenario
+from pendant.program.steps import JointMove, LinearMove, Program, Wait
+from pendant.tick.modes import Mode
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Box, Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.changes import AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.plant.touch import Push, Touch
+from sim.sensing.calibration import Calibration
 from sim.simulation import Simulation
-from sim.touch import Push, Touch
 from tests.sim.arms import PROBE, TWO_KG, UR5E
 from tests.sim.bench import CENTRE, IDLE, NOMINAL, Bench, push
 

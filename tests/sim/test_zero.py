@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from pendant.events import Event, Kind
+from pendant.all_settings import Settings, apply
+from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
-from pendant.settings import Settings, apply
-from sim.changes import SensorFault
-from sim.desk import Wishes
-from sim.scenario import Load, Scenario
+from sim.arm.scenario import Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.changes import SensorFault
+from sim.plant.touch import Push
 from sim.simulation import Simulation
-from sim.touch import Push
 from tests.sim.arms import TWO_KG, UR5E
 
 FELT = {"contact.on": True, "signals.push.on": True, "signals.push.told": True, "signals.push.threshold": 5.0}

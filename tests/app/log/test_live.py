@@ -8,17 +8,17 @@ from typing import Any
 
 import pytest
 
-from app.checked import BadInput
-from app.library import load_arm
+from app.files.checked import BadInput
+from app.files.library import load_arm
 from app.log import live
 from app.log.live import LiveRecording, must_be_writable
 from app.log.reader import read
 from app.log.recorder import SLOW, Recorder
+from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.inputs import NOTHING
-from pendant.settings import Settings
-from sim.desk import Wishes
-from sim.scenario import Box, Load, Scenario
+from sim.arm.scenario import Box, Load, Scenario
+from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 from tests.app.web.raw_client import until
 

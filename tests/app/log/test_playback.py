@@ -5,19 +5,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.checked import BadInput, convert
-from app.library import mesh_path
+from app.files.checked import BadInput, convert
+from app.files.library import mesh_path
 from app.log.playback import Player, snapshot_at
 from app.log.reader import Log, read
 from app.log.recorder import Recorder
-from app.prepare import prepare
-from app.runner import simulate
-from app.session import Session
-from app.timeline import Timeline
-from app.web.access import HERE
+from app.runs.runner import simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session
+from app.session.timeline import Timeline
+from app.web.access.listening import HERE
 from app.web.replay import Replay
-from pendant.modes import Mode
-from sim.snapshot import Snapshot
+from pendant.tick.modes import Mode
+from sim.exchange.snapshot import Snapshot
 from tests.app.web.raw_client import until
 
 SESSION: dict[str, Any] = {

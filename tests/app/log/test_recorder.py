@@ -16,17 +16,17 @@ from google.protobuf import json_format
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from app.checked import BadInput, convert
+from app.files.checked import BadInput, convert
 from app.log import foxglove
 from app.log.playback import Player
 from app.log.reader import Log, read, repair
 from app.log.recorder import AHEAD, BLOCK, SLOW, Recorder
-from app.prepare import prepare
-from app.runner import record, simulate
-from app.session import Session
+from app.runs.runner import record, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session
 from benchmarks import crash
 from pendant.inputs import NOTHING
-from sim.desk import Wishes
+from sim.exchange.desk import Wishes
 
 IDLE = Wishes(NOTHING, (), ())
 SESSION: dict[str, Any] = {

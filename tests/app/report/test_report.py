@@ -10,18 +10,18 @@ import msgspec
 import numpy as np
 import pytest
 
-from app.checked import BadInput, convert
-from app.events_file import Line
+from app.files.checked import BadInput, convert
+from app.log.events_file import Line
 from app.log.reader import Log, read
-from app.prepare import prepare
 from app.report.charts import POINTS, charts, thinned
 from app.report.files import write_report
 from app.report.page import page
 from app.report.regions import regions
 from app.report.summary import NOT_A_VALIDATION, Summary, spans, summarise
-from app.runner import record
-from app.session import Session
-from app.watch import Verdict
+from app.runs.runner import record
+from app.session.expectation_watch import Verdict
+from app.session.prepare import prepare
+from app.session.session_file import Session
 
 SESSION: dict[str, Any] = {
     "title": "A <report> & more",

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.web.server import Served, serve
-from sim.scenario import Scenario
+from sim.arm.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 

@@ -1,30 +1,32 @@
-"""A loop without physics: joints that circle on command, phases that can be set, and the calls of sim.loop.Loop."""
+"""A loop without physics: joints that circle on command, phases that can be set, and the calls of sim.run.loop.Loop."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.library import load_arm
-from pendant.axis_locks import AxisLocks
-from pendant.barrier import Place
-from pendant.decision import Decision, Remaining, WallState
-from pendant.estimate import Estimate
-from pendant.events import Event, Kind
-from pendant.limits import Monitored
-from pendant.modes import TICK_RATE, Law, Mode, Phase, Safety
-from pendant.nearness import Nearness
-from pendant.payload_wizard import IDLE
-from pendant.program import ProgramState
-from pendant.settings import Settings
-from pendant.tooling import Fitting
-from pendant.tools import Tool
-from pendant.walls import AnyBorder
-from sim.desk import Desk
-from sim.frames import joint_frames, quaternion_from_matrix
-from sim.scenario import Scenario, table
+from app.files.library import load_arm
+from pendant.all_settings import Settings
+from pendant.decision import Decision
+from pendant.equipment.tools import Tool
+from pendant.events.event import Event, Kind
+from pendant.freedrive.periods import Remaining
+from pendant.limits.axis_locks import AxisLocks
+from pendant.limits.nearness import Nearness
+from pendant.program.steps import ProgramState
+from pendant.tick.estimate import Estimate
+from pendant.tick.limit_engine import Monitored
+from pendant.tick.modes import TICK_RATE, Law, Mode, Phase, Safety
+from pendant.tooling.payload_wizard import IDLE
+from pendant.tooling.tool_in_use import Fitting
+from pendant.walls.barrier import Place
+from pendant.walls.containment import WallState
+from pendant.walls.definitions import AnyBorder
+from sim.arm.frames import joint_frames, quaternion_from_matrix
+from sim.arm.scenario import Scenario, table
+from sim.exchange.desk import Desk
+from sim.exchange.snapshot import Snapshot
 from sim.simulation import Simulation
-from sim.snapshot import Snapshot
 
 ARM = load_arm("ur5e")
 HOME = np.array(ARM.chain.home)
@@ -65,7 +67,7 @@ def estimate(q: NDArray[np.float64]) -> Estimate:
 
 
 class FakeLoop:
-    """Same calls as sim.loop.Loop; `advance` instead of a thread."""
+    """Same calls as sim.run.loop.Loop; `advance` instead of a thread."""
 
     def __init__(self) -> None:
         self.desk = Desk()

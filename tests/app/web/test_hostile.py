@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 import viser
 
-from app.web import gate
-from app.web.door import MAX_CLIENTS
+from app.web.access import message_gate as gate
+from app.web.access.door import MAX_CLIENTS
+from app.web.access.takes import MAX_TEXT
 from app.web.server import Served
-from app.web.takes import MAX_TEXT
 from pendant.inputs import Inputs
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
-from tests.app.web.test_teach import register, upload
+from tests.app.web.tabs.test_teach_tab import register, upload
 
 Join = Callable[[], RawClient]
 EVIL = '<img src=x onerror="window.evil=1">'

@@ -8,7 +8,7 @@ import pytest
 from app.web import keys
 from app.web.server import Served
 from pendant.inputs import Command
-from pendant.modes import Mode
+from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 

@@ -7,7 +7,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from app.web.server import Served, serve
-from sim.scenario import Scenario
+from sim.arm.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 

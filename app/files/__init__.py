@@ -1,0 +1,1 @@
+"""Files that people write, into checked types; what the product ships."""

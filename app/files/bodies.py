@@ -1,0 +1,59 @@
+"""Whether the bodies of a scenario can exist: what the types of loads and world objects cannot say."""
+
+from app.files.checked import BadInput
+from pendant.equipment.load import Problem, problem
+from pendant.equipment.tools import table_problem, tool_problem
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import AnyObject, Load, Tool
+
+OVERLOAD = 10.0
+"""Heaviest load, as a multiple of the arm's rated payload: enough to try any mistake, and within what the physics can bear."""
+
+
+def check_load(load: Load, arm: Arm, where: str, field: str) -> None:
+    """Refuse a load that no arm could carry, or whose inertia no rigid body has.
+
+    Raises:
+        BadInput: mass or centre out of range; or the inertia is not six numbers, or has principal moments that are not
+            positive or of which one exceeds the sum of the others.
+    """
+    _refuse(problem(load, OVERLOAD * arm.payload), arm, where, f"{field}.")
+
+
+def check_tool(tool: Tool, arm: Arm, where: str, field: str) -> None:
+    """Refuse a tool that no arm could carry, as `check_load`, or whose name or tool centre point cannot be.
+
+    Raises:
+        BadInput: as said.
+    """
+    _refuse(tool_problem(tool, OVERLOAD * arm.payload), arm, where, f"{field}.")
+
+
+def check_tools(tools: list[Tool], arm: Arm, where: str, field: str) -> None:
+    """Refuse a table of tools with one that `check_tool` refuses, or with two of a name.
+
+    Raises:
+        BadInput: as said.
+    """
+    _refuse(table_problem(tools, OVERLOAD * arm.payload), arm, where, field)
+
+
+def _refuse(wrong: Problem | None, arm: Arm, where: str, prefix: str) -> None:
+    if wrong is not None:
+        whose = f" for the {arm.name}" if wrong.field.endswith("mass") else ""
+        raise BadInput(where, prefix + wrong.field, wrong.value, wrong.allowed + whose)
+
+
+def check_world(world: list[AnyObject], where: str) -> None:
+    """Refuse objects of the same name, and sizes that are not positive.
+
+    Raises:
+        BadInput: as said.
+    """
+    names = [thing.name for thing in world]
+    for i, thing in enumerate(world):
+        if thing.name in names[:i]:
+            raise BadInput(where, f"world[{i}].name", thing.name, "each object needs a name of its own")
+        for size in getattr(thing, "size", ()):  # a plane has none
+            if size <= 0:
+                raise BadInput(where, f"world[{i}].size", size, "lengths above 0 m")

@@ -1,0 +1,71 @@
+"""What the product ships: arms and tools by name, and the meshes that go with them. A path in place of a name reads that file."""
+
+from pathlib import Path
+
+import assets
+from app.files.checked import ABSENT, BadInput, load
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Tool
+from sim.arm_problems import problems
+
+ASSETS = Path(assets.__file__).parent
+
+
+def robots() -> list[str]:
+    """Names of the shipped arms, sorted."""
+    return _names("robots")
+
+
+def tools() -> list[str]:
+    """Names of the shipped tools, sorted."""
+    return _names("tools")
+
+
+def load_arm(name_or_path: str | Path, where: str = "robots") -> Arm:
+    """The arm of that name, or of the file at that path; `where` names the file or option that asks for it.
+
+    Raises:
+        BadInput: no such arm, or its file does not make sense.
+    """
+    path = _path(name_or_path, "robots", "robot", where)
+    arm = load(path, Arm)
+    for field, value, allowed in problems(arm):
+        raise BadInput(path.name, field, value, allowed)
+    return arm
+
+
+def load_tool(name_or_path: str | Path, where: str = "tools") -> Tool:
+    """The tool of that name, or of the file at that path; `where` names the file or option that asks for it.
+
+    Raises:
+        BadInput: no such tool, or its file does not make sense.
+    """
+    return load(_path(name_or_path, "tools", "tool", where), Tool)
+
+
+def mesh_path(arm_name: str, link: str) -> Path:
+    """The picture of a link: a GLB in the link's joint frame [m]. `link` is "foot" for the fixed base, else its joint's name.
+
+    Raises:
+        BadInput: there is none.
+    """
+    path = ASSETS / "meshes" / arm_name / f"{link}.glb"
+    if not path.is_file():
+        have = sorted(str(mesh.relative_to(ASSETS / "meshes").with_suffix("")) for mesh in (ASSETS / "meshes").glob("*/*.glb"))
+        raise BadInput("meshes", f"{arm_name}/{link}", ABSENT, f"expected one of {', '.join(have)}")
+    return path
+
+
+def _names(folder: str) -> list[str]:
+    return sorted(path.stem for path in (ASSETS / folder).glob("*.yaml"))
+
+
+def _path(name_or_path: str | Path, folder: str, what: str, where: str) -> Path:
+    """A shipped name wins over a file of that name; what looks like a path is one."""
+    text = str(name_or_path)
+    if text in _names(folder):
+        return ASSETS / folder / f"{text}.yaml"
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
+        return path
+    raise BadInput(where, what, text, f"expected one of {', '.join(_names(folder))}, or the path of a YAML file")

@@ -1,0 +1,4 @@
+"""Sessions that run without a window: one, many, for claims, and what is told of them.
+
+Uses files/, log/, report/, session/.
+"""

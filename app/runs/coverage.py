@@ -1,0 +1,162 @@
+"""Which claims are shown: runs every session that names some with its switch on and off, and writes claims.md and claims.json."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from app.files.checked import ABSENT, BadInput, load
+from app.runs.batch import Job, run_all
+from app.runs.runner import Outcome
+from app.session.claims import CLAIMS, Claim
+from app.session.prepare import prepare, without
+from app.session.session_file import Session, bundled, find
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A claim and a session that shows it; without a session, nothing does."""
+
+    claim: Claim
+    session: str | None = None
+    checks: tuple[str, ...] = ()  # what the session expects, in words
+    switch: str | None = None
+    passed: bool | None = None  # with the switch on
+    failed_when_off: bool | None = None
+    why: str = ""  # the first expectation that was not met with the switch on
+
+    @property
+    def shown(self) -> bool:
+        """Whether the claim holds, and does not without its switch."""
+        return self.passed is True and self.failed_when_off is True
+
+    @property
+    def state(self) -> str:
+        """In a word."""
+        if self.session is None:
+            return "missing"
+        return "shown" if self.shown else "fails" if not self.passed else "holds without its switch"
+
+
+def claiming() -> dict[str, Session]:
+    """The bundled sessions that name a switch, by name, checked.
+
+    Raises:
+        BadInput: one of them cannot be used.
+    """
+    found: dict[str, Session] = {}
+    for name in bundled("sessions"):
+        session = load(find(name), Session)
+        if session.switch is not None:
+            prepare(session, f"{name}.yaml")
+            found[name] = session
+    return found
+
+
+def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -> list[Row]:
+    """Run all claiming sessions, on and off, in parallel; their results go into folders of `out`.
+
+    Args:
+        out: folder for the results.
+        told: how many runs are done, of how many.
+
+    Raises:
+        BadInput: a session cannot be used, or a result cannot be written.
+    """
+    sessions = claiming()
+    jobs: list[Job] = []
+    for name, session in sessions.items():
+        jobs.append(Job(f"{name}.yaml", session, out / name / "on", recorded=False))
+        jobs.append(Job(f"{name}.yaml", without(session), out / name / "off", recorded=False))
+    outcomes: dict[int, Outcome] = {}
+    for place, outcome in run_all(jobs):
+        outcomes[place] = outcome
+        told(len(outcomes), len(jobs))
+    pairs = {name: (outcomes[2 * i], outcomes[2 * i + 1]) for i, name in enumerate(sessions)}
+    return rows_of(sessions, pairs)
+
+
+def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[Outcome, Outcome]]) -> list[Row]:
+    """A row for each claim and session that shows it, in the order of the claims; one without a session where there is none."""
+    rows: list[Row] = []
+    for claim in CLAIMS.values():
+        names = [name for name, session in sessions.items() if claim.name in session.claims]
+        rows += [_row(claim, name, sessions[name], *pairs[name]) for name in names] or [Row(claim)]
+    return rows
+
+
+def _row(claim: Claim, name: str, session: Session, on: Outcome, off: Outcome) -> Row:
+    checks = tuple(verdict.expected for verdict in on.verdicts)
+    unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
+    return Row(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)
+
+
+def write(rows: list[Row], out: Path) -> None:
+    """Write `out`/claims.md and `out`/claims.json.
+
+    Raises:
+        BadInput: they cannot be written.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "claims.md").write_text(markdown(rows), encoding="utf-8")
+        (out / "claims.json").write_bytes(msgspec.json.format(msgspec.json.encode(as_json(rows)), indent=1) + b"\n")
+    except OSError as error:
+        raise BadInput(str(out), "", ABSENT, f"cannot be written ({error.strerror})") from None
+
+
+def as_json(rows: list[Row]) -> dict[str, Any]:
+    """The content of claims.json."""
+    return {
+        "totals": totals(rows),
+        "rows": [
+            {
+                "claim": row.claim.name,
+                "to_show": row.claim.text,
+                "ids": row.claim.ids.split(),
+                "session": row.session,
+                "checks": row.checks,
+                "switch": row.switch,
+                "passed": row.passed,
+                "failed_when_off": row.failed_when_off,
+                "why": row.why,
+            }
+            for row in rows
+        ],
+    }
+
+
+def totals(rows: list[Row]) -> dict[str, int]:
+    """How many rows are in each state."""
+    return {state: sum(row.state == state for row in rows) for state in ("shown", "fails", "holds without its switch", "missing")}
+
+
+def markdown(rows: list[Row]) -> str:
+    """The content of claims.md."""
+    counts = ", ".join(f"{number} {state}" for state, number in totals(rows).items())
+    lines = [
+        "# Claims",
+        "",
+        "Written by `pendant claims`. A row is shown when its session meets what it expects, and does not with its switch off.",
+        "",
+        f"{len(rows)} rows: {counts}.",
+        "",
+        "| claim | to show | ids | session | checks | switch | passed | failed when off | |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        checks = "<br>".join(row.checks).replace("|", "\\|")
+        cells = [row.claim.name, row.claim.text, row.claim.ids, row.session or "-", checks or "-", row.switch or "-"]
+        cells += [
+            _word(row.passed),
+            _word(row.failed_when_off),
+            row.state + (f": {row.why}" if row.why else "").replace("|", "\\|"),
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _word(value: bool | None) -> str:
+    return {True: "yes", False: "no", None: "-"}[value]

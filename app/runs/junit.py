@@ -1,0 +1,44 @@
+"""JUnit XML of sessions that ran: a suite a session, a case an expectation, as continuous integration shows them."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from app.files.checked import ABSENT, BadInput
+from app.runs.runner import Outcome
+
+
+def junit(outcomes: dict[str, Outcome]) -> str:
+    """The document, for outcomes by the name of their session."""
+    root = ElementTree.Element("testsuites", name="pendant")
+    total = failed = 0
+    for name, outcome in outcomes.items():
+        unmet = sum(not verdict.passed for verdict in outcome.verdicts)
+        total, failed = total + len(outcome.verdicts), failed + unmet
+        numbers = {"tests": str(len(outcome.verdicts)), "failures": str(unmet), "time": f"{outcome.took:.3f}"}
+        suite = ElementTree.SubElement(root, "testsuite", {"name": name, **numbers})
+        for verdict in outcome.verdicts:
+            case = ElementTree.SubElement(suite, "testcase", classname=name, name=_plain(verdict.expected), time="0")
+            if not verdict.passed:
+                ElementTree.SubElement(case, "failure", message=_plain(verdict.seen)).text = _plain(verdict.expected)
+    root.set("tests", str(total))
+    root.set("failures", str(failed))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def write(path: Path, outcomes: dict[str, Outcome]) -> None:
+    """Write the document.
+
+    Raises:
+        BadInput: it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(junit(outcomes), encoding="utf-8")
+    except OSError as error:
+        raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
+
+
+def _plain(text: str) -> str:
+    """Without the control characters that XML cannot hold."""
+    return "".join(c if c.isprintable() else " " for c in text)

@@ -1,0 +1,78 @@
+"""What `pendant run` prints: progress while it runs, then the modes over time and the expectations."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from app.runs.runner import Outcome
+from app.session.session_file import Session
+from pendant.tick.modes import Mode
+
+COLOURS = {Mode.NORMAL: "green", Mode.TEACH: "green", Mode.RUN: "cyan", Mode.FREE_DRIVE: "blue", Mode.STOP: "red"}
+
+
+@contextmanager
+def progress(session: Session) -> Iterator[Callable[[float], None]]:
+    """A bar over the simulated seconds, on a terminal only; gives the function to tell it how far the run is."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:.1f} s"), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(escape(session.title), total=session.duration)
+        yield lambda seconds: bar.update(task, completed=seconds)
+
+
+@contextmanager
+def counting(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar over runs done, on a terminal only; gives the function to tell it how many are done, of how many."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed} of {task.total}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, of: bar.update(task, completed=done, total=of)
+
+
+def show(session: Session, outcome: Outcome, out: Path) -> None:
+    """Print what became of a session."""
+    console = Console()
+    speed = outcome.seconds / outcome.took if outcome.took > 0 else 0.0
+    console.print(
+        f"[bold]{escape(session.title)}[/bold]: {outcome.seconds:g} s simulated in {outcome.took:.1f} s ({speed:.1f} x real time)"
+    )
+    line = [f"{time:.2f} s [{COLOURS.get(mode, 'default')}]{mode.value}[/]" for time, mode in outcome.modes]
+    console.print("Modes: " + "  ".join(line))
+    if outcome.verdicts:
+        table = Table("", "expected", "seen", box=None, pad_edge=False)
+        for verdict in outcome.verdicts:
+            mark = "[green]pass[/green]" if verdict.passed else "[bold red]FAIL[/bold red]"
+            table.add_row(mark, escape(verdict.expected), escape(verdict.seen))
+        console.print(table)
+    failed = sum(not verdict.passed for verdict in outcome.verdicts)
+    console.print(f"{len(outcome.verdicts) - failed} expectations met, {failed} not")
+    console.print(f"{len(outcome.events)} events; all is in {escape(str(out))}")
+
+
+def show_all(names: list[str], outcomes: list[Outcome], out: Path) -> None:
+    """Print what became of several sessions, a line each, and under it what was not met."""
+    table = Table("", "session", "met", "simulated [s]", "took [s]", "events", box=None, pad_edge=False)
+    for column in (2, 3, 4, 5):
+        table.columns[column].justify = "right"
+    for name, outcome in zip(names, outcomes, strict=True):
+        mark = "[green]pass[/green]" if outcome.passed else "[bold red]FAIL[/bold red]"
+        met = sum(verdict.passed for verdict in outcome.verdicts)
+        numbers = (f"{outcome.seconds:g}", f"{outcome.took:.1f}", str(len(outcome.events)))
+        table.add_row(mark, escape(name), f"{met} of {len(outcome.verdicts)}", *numbers)
+        for verdict in outcome.verdicts:
+            if not verdict.passed:
+                table.add_row("", escape(f"  expected {verdict.expected}; seen: {verdict.seen}"))
+    console = Console()
+    console.print(table)
+    failed = sum(not outcome.passed for outcome in outcomes)
+    console.print(f"{len(outcomes) - failed} sessions passed, {failed} not; results in {escape(str(out))}")

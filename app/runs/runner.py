@@ -1,0 +1,136 @@
+"""Runs a session without a window: as fast as it goes, or in real time; the same either way, and the same for a seed."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from app.log.events_file import EventsFile
+from app.log.recorder import Recorder
+from app.session.expectation_watch import Verdict
+from app.session.measures import watch
+from app.session.prepare import Prepared
+from app.session.session_file import Session
+from app.session.timeline import Timeline
+from pendant.decision import Decision
+from pendant.events.event import Event
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK, Mode
+from sim.exchange.desk import Wishes
+from sim.exchange.scoring import Scored
+from sim.exchange.snapshot import Snapshot
+from sim.simulation import Simulation
+
+Progress = Callable[[float], None]
+
+
+def silent(seconds: float) -> None:
+    """Tell nobody how far a run is."""
+
+
+class Simulated(Protocol):
+    """What the runner needs of a simulation."""
+
+    def tick(self, wishes: Wishes) -> Decision:
+        """One control tick."""
+        ...
+
+    def snapshot(self) -> Snapshot:
+        """A copy of the tick done last."""
+        ...
+
+    def glance(self) -> Scored:
+        """What scoring reads of the tick done last, good until the next."""
+        ...
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of a session."""
+
+    modes: list[tuple[float, Mode]] = field(default_factory=list)  # time at which each mode began [s], the mode
+    events: list[Event] = field(default_factory=list)
+    verdicts: list[Verdict] = field(default_factory=list)
+    seconds: float = 0.0  # simulated
+    took: float = 0.0  # on the wall clock [s]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every expectation was met."""
+        return all(verdict.passed for verdict in self.verdicts)
+
+    @property
+    def unmet(self) -> bool:
+        """Whether something was seen that an expectation forbids; what it waits for was there."""
+        return any(verdict.looked and not verdict.passed for verdict in self.verdicts)
+
+
+def simulate(prepared: Prepared) -> Simulation:
+    """A simulation of what a session or a configuration asks for."""
+    return Simulation(prepared.arm, prepared.scenario, prepared.settings)
+
+
+def record(session: Session, prepared: Prepared, out: Path, realtime: bool = False, progress: Progress = silent) -> Outcome:
+    """Run a session as `run`, and record it into `out`/log.mcap.
+
+    Raises:
+        BadInput: a file cannot be written.
+    """
+    simulation = simulate(prepared)
+    with Recorder(out / "log.mcap", simulation, session.title) as recorder:
+        return run(session, prepared, simulation, out, realtime, progress, lambda now: recorder.see(simulation, now))
+
+
+def run(
+    session: Session,
+    prepared: Prepared,
+    simulation: Simulated,
+    out: Path,
+    realtime: bool = False,
+    progress: Progress = silent,
+    see: Callable[[Decision], None] = lambda decision: None,
+) -> Outcome:
+    """Run a session to its end and write `out`/events.jsonl.
+
+    Args:
+        session: what happens and what is expected.
+        prepared: the same session, checked.
+        simulation: of `prepared`, at its start.
+        out: folder for the results; made when missing.
+        realtime: keep the pace of the wall clock.
+        progress: told the simulated seconds done, ten times a simulated second.
+        see: shown the decision of every tick that was done; a recorder, for example.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    joints = prepared.arm.chain.joints
+    timeline = Timeline(session.timeline, joints, prepared.program)
+    watches = [watch(expectation, joints) for expectation in session.expectations]
+    outcome = Outcome(seconds=session.duration)
+    begun = time.perf_counter()
+    with EventsFile(out / "events.jsonl") as file:
+        last, tenth = ticks(session.duration), ticks(0.1)
+        for tick in range(1, last + 1):
+            decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
+            timeline.see(tick, decision)
+            quiet = not decision.events
+            for each in watches:
+                if each.needs(tick, quiet) or tick == last:
+                    each.see(tick, decision, simulation.glance)
+            see(decision)
+            file.write(tick, decision.events)
+            outcome.events += decision.events
+            if not outcome.modes or outcome.modes[-1][1] is not decision.mode:
+                outcome.modes.append((tick * TICK, decision.mode))
+            if tick % tenth == 0:
+                progress(tick * TICK)
+            if realtime:
+                time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
+    outcome.took = time.perf_counter() - begun
+    outcome.verdicts = [each.verdict() for each in watches]
+    for place, action in timeline.unstarted():
+        seen = f'"{action.after}" never came (time {action.nth}), or too late'
+        outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))
+    return outcome

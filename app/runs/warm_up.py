@@ -1,0 +1,26 @@
+"""Makes ready what is compiled before anybody waits for it: a fresh installation compiles here, later starts only load."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from app.files.checked import load
+from app.files.library import ASSETS
+from app.log.recorder import Recorder
+from app.runs.runner import run, simulate
+from app.session.prepare import prepare
+from app.session.session_file import Session
+
+
+def warm_up() -> None:
+    """Go through all that a tick may do, without a page: half a minute in a fresh installation, a second later on.
+
+    A kernel that is compiled at its first use would stop the arm for seconds, in the middle of a user's first free-drive.
+    """
+    session = load(ASSETS / "warm-up.yaml", Session)
+    prepared = prepare(session, "warm-up")
+    simulation = simulate(prepared)
+    with TemporaryDirectory() as folder:
+        out = Path(folder)
+        with Recorder(out / "log.mcap", simulation, session.title) as recorder:
+            run(session, prepared, simulation, out, see=lambda decision: recorder.see(simulation, decision))
+    simulation.snapshot()

@@ -1,0 +1,1 @@
+"""Sessions: what to simulate, what happens when, what is expected. Uses files/."""

@@ -1,0 +1,263 @@
+"""What a session's time line can do: each action is one struct, told apart by `do`."""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from app.session.profiles import AnyProfile, Constant, HalfSine, Ramp
+from app.session.triggers import When
+from pendant.inputs import Button, Command
+from pendant.limits.axis_locks import PRESETS, freeing
+from sim.arm.arm_file import Positive
+from sim.arm.scenario import Load, Vector
+from sim.plant.changes import AnyChange
+from sim.plant.touch import ZERO, Push, Triple
+
+PLANNED_CONTROLS: dict[str, str] = {
+    "confirm": "FD-8",
+}
+"""Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
+
+Control = Literal[
+    "free_drive",
+    "emergency_stop",
+    "reset",
+    "leave_free_drive",
+    "normal",
+    "teach",
+    "remote",
+    "confirm",
+    "restart_period",
+    "register_waypoint",
+    "detection",
+    "enabling_device",
+    "enabling_device_full",
+    "safeguard_open",
+    "safeguard_closed",
+    "reduced_on",
+    "reduced_off",
+    "wizard_measure",
+    "wizard_apply",
+    "wizard_clear",
+    "zero_sensor",
+]
+# Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
+Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]
+Torque = Annotated[list[Annotated[float, Meta(ge=-500, le=500)]], Meta(min_length=3, max_length=3)]  # [N·m]
+
+HOLDABLE = tuple(button.value for button in Button)
+
+
+class Action(When, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="do"):
+    """Base of all actions."""
+
+    def planned(self) -> str | None:
+        """The requirement that brings what this action needs, where it is not there yet."""
+        return None
+
+
+class Press(Action, tag="press", frozen=True, kw_only=True):
+    """A control goes down and stays held, until `release`."""
+
+    control: Control
+
+    def __post_init__(self) -> None:
+        """Check that the control can be held."""
+        super().__post_init__()
+        must_be_holdable(self.control)
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class Release(Action, tag="release", frozen=True, kw_only=True):
+    """A held control is let go."""
+
+    control: Control
+
+    def __post_init__(self) -> None:
+        """Check that the control can be held."""
+        super().__post_init__()
+        must_be_holdable(self.control)
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class Tap(Action, tag="tap", frozen=True, kw_only=True):
+    """A control is pressed shortly; for a control that acts once, this is how to use it."""
+
+    control: Control
+    length: Positive = msgspec.field(default=0.2, name="for")  # [s]
+
+    def planned(self) -> str | None:
+        """See `Action.planned`."""
+        return PLANNED_CONTROLS.get(self.control)
+
+
+class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
+    """A digital input changes."""
+
+    input: Annotated[int, Meta(ge=0, le=7)]
+    high: bool
+
+
+class Effort(Action, frozen=True, kw_only=True):
+    """Base of what a hand does to a point of the arm for a while."""
+
+    length: Positive = msgspec.field(name="for")  # [s]
+    part: str = "flange"  # "foot", a joint's link by its joint name, "flange", "tool"
+    point: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # in the part's frame [m]
+
+
+class Wrench(Effort, frozen=True, kw_only=True):
+    """Base of efforts that are a force or a torque given over time."""
+
+    def push(self, t: float) -> Push:
+        """The wrench `t` seconds after the start, 0 <= t <= length."""
+        raise NotImplementedError
+
+
+class Pushing(Wrench, tag="push", frozen=True, kw_only=True):
+    """A force on a point, by default all at once."""
+
+    force: Force  # in W [N]
+    profile: AnyProfile = Constant()
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, self.profile.factor(t, self.length)))
+
+
+class Twisting(Wrench, tag="twist", frozen=True, kw_only=True):
+    """A torque on a part, by default all at once."""
+
+    torque: Torque  # in W [N·m]
+    profile: AnyProfile = Constant()
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), ZERO, triple(self.torque, self.profile.factor(t, self.length)))
+
+
+class Bump(Wrench, tag="bump", frozen=True, kw_only=True):
+    """A short knock: half a sine."""
+
+    force: Force  # at its peak, in W [N]
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, HalfSine().factor(t, self.length)))
+
+
+class Lean(Wrench, tag="lean", frozen=True, kw_only=True):
+    """Somebody leans on a point: the force comes and goes slowly."""
+
+    force: Force  # in W [N]
+    profile: AnyProfile = Ramp(rise=0.5, fall=0.5)
+
+    def push(self, t: float) -> Push:
+        """See `Wrench.push`."""
+        return Push(self.part, triple(self.point), triple(self.force, self.profile.factor(t, self.length)))
+
+
+class Hold(Effort, tag="hold", frozen=True, kw_only=True):
+    """A hand grabs a point and keeps it where it is, or carries it: a spring and damper, its force capped."""
+
+    carry: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # by the end, evenly, in W [m]
+    cap: Annotated[float, Meta(gt=0, le=2000)] = 50.0  # [N]
+
+
+class Program(Action, tag="program", frozen=True, kw_only=True):
+    """The session's program is started, paused, resumed or stopped."""
+
+    command: Literal["start", "pause", "resume", "stop"]
+
+
+class Settings(Action, tag="settings", frozen=True, kw_only=True):
+    """Settings are changed, by dotted name."""
+
+    set: Annotated[dict[str, float | bool | str], Meta(min_length=1)]
+
+
+class SelectTool(Action, tag="select_tool", frozen=True, kw_only=True):
+    """A tool of the table is used from now on: tool centre point and load together, and no payload beyond it."""
+
+    tool: str
+
+
+class Payload(Action, tag="payload", frozen=True, kw_only=True):
+    """The payload that the controller is to believe in, beyond the tool, is entered on the pendant."""
+
+    load: Load
+
+
+class Axes(Action, tag="axes", frozen=True, kw_only=True):
+    """Axes of the tool are freed, and the others locked; one of `preset` and `free` says which."""
+
+    preset: Literal["all", "plane", "translation", "rotation"] | None = None
+    free: list[Literal["x", "y", "z", "rx", "ry", "rz"]] | None = None
+    frame: Literal["base", "tool", "user"] = "base"  # of the tool as it stands then
+    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # of the user's frame in the base [rad]
+
+    def __post_init__(self) -> None:
+        """Check that it says what is free, once, and that only the user's frame is turned."""
+        super().__post_init__()
+        if (self.preset is None) == (self.free is None):
+            raise ValueError("do: axes wants either `preset` or `free`")
+        if self.frame != "user" and any(self.rpy):
+            raise ValueError("rpy: turns the user's frame alone, so it wants `frame: user`")
+
+    @property
+    def set(self) -> dict[str, float | bool | str]:
+        """The changes of settings, by dotted name."""
+        free = PRESETS[self.preset] if self.preset is not None else frozenset[str](self.free or ())
+        turned = dict(zip(("axes.roll", "axes.pitch", "axes.yaw"), self.rpy, strict=True))
+        return {**freeing(free), "axes.tool": self.frame == "tool", **turned}
+
+
+class Laboratory(Action, tag="change", frozen=True, kw_only=True):
+    """The true arm or world is changed: payload, sensors, friction, temperature, objects."""
+
+    change: AnyChange
+
+
+AnyAction = (
+    Press
+    | Release
+    | Tap
+    | DigitalInput
+    | Pushing
+    | Twisting
+    | Bump
+    | Lean
+    | Hold
+    | Program
+    | Settings
+    | SelectTool
+    | Payload
+    | Axes
+    | Laboratory
+)
+
+COMMAND_OF_PROGRAM = {
+    "start": Command.START_PROGRAM,
+    "pause": Command.PAUSE_PROGRAM,
+    "resume": Command.RESUME_PROGRAM,
+    "stop": Command.STOP_PROGRAM,
+}
+
+
+def triple(values: list[float], factor: float = 1.0) -> Triple:
+    """Three numbers times `factor`, as a touch wants them."""
+    x, y, z = values
+    return (x * factor, y * factor, z * factor)
+
+
+def must_be_holdable(control: str) -> None:
+    """Raise ValueError when `control` acts once and cannot be held."""
+    if control not in HOLDABLE and control not in PLANNED_CONTROLS:
+        raise ValueError(f'control: "{control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}')

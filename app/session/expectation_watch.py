@@ -1,0 +1,249 @@
+"""Follows what a session expects through its run. A failed expectation says what was expected, what was seen, and when."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.session.expectations import Happens, Heard, Never, Period, State
+from app.session.triggers import NEVER, Trigger
+from app.tones import tone_for
+from pendant.decision import Decision
+from pendant.tick.modes import TICK
+from sim.exchange.scoring import Scored
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What became of an expectation."""
+
+    passed: bool
+    expected: str
+    seen: str  # with the time at which it was seen
+    looked: bool = True  # its moment or interval came, so that something could be seen
+
+
+@dataclass(slots=True)
+class Watch:
+    """Base: one expectation, followed through a run. Call `see` with ticks counted from 1, then `verdict` once.
+
+    Ticks for which `needs` says no may be left out, but for the last of the run.
+    """
+
+    joints: list[str]
+    trigger: Trigger
+    begin: int = 0  # ticks after the trigger
+    end: int | None = None  # ticks after the trigger; None: the session's end
+    last: int = -1  # the last tick seen
+    due: int = 0  # the next tick to be shown
+    ends_alone: bool = False  # looks at the first and the last tick of its interval, and at none between
+    events_alone: bool = False  # looks at nothing but events
+    deaf: bool = False  # from now on a tick without an event tells it nothing
+
+    def needs(self, tick: int, quiet: bool) -> bool:
+        """Whether it has to see a tick, which is `quiet` without an event."""
+        return tick >= self.due and not (quiet and self.deaf)
+
+    def see(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """Take in one tick; `glance` reads it, and is called only where the tick is in the interval and it is needed."""
+        self.last = tick
+        start = self.trigger.happened
+        if start is None:
+            self.trigger.see(tick, decision)
+            start = self.trigger.happened
+            if start is None:
+                return
+        self.deaf = self.events_alone
+        begin, end = start + self.begin, None if self.end is None else start + self.end
+        if begin <= tick and (end is None or tick <= end):
+            self.look(tick, decision, glance)
+        if end is not None and tick >= end:
+            self.due = NEVER
+        elif self.ends_alone and tick >= begin:
+            self.due = NEVER if end is None else end
+        else:
+            self.due = max(begin, tick + 1)
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """Take in one tick of the interval."""
+        raise NotImplementedError
+
+    def verdict(self) -> Verdict:
+        """The end of the run: what became of it."""
+        start = self.trigger.happened
+        if start is None:
+            return Verdict(False, self.expected(), f'"{self.trigger.after}" never came (time {self.trigger.nth})', False)
+        if self.last < start + (self.end if self.end is not None else self.begin) and not self.settled():
+            return Verdict(False, self.expected(), f"the session ended at {at(self.last)}, before the interval did", False)
+        passed, seen = self.judge()
+        return Verdict(passed, self.expected(), seen)
+
+    def settled(self) -> bool:
+        """Whether the verdict cannot change any more, although the interval has not ended."""
+        return False
+
+    def expected(self) -> str:
+        """The expectation, in words."""
+        raise NotImplementedError
+
+    def judge(self) -> tuple[bool, str]:
+        """Whether it is met, and what was seen."""
+        raise NotImplementedError
+
+    def span(self) -> str:
+        """The interval, in words."""
+        since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
+        until = "the end" if self.end is None else at(self.end)
+        return (f"at {until}" if self.begin == self.end else f"from {at(self.begin)} to {until}") + since
+
+
+@dataclass(slots=True)
+class StateWatch(Watch):
+    """Follows `State`."""
+
+    wanted: State = field(kw_only=True)
+    met: int | None = None  # first tick of the interval in which it held
+    broken: int | None = None  # first in which it did not
+    seen: tuple[int, Decision] | None = None  # the last tick in the interval, or the first wrong one
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        wanted = self.wanted
+        holds = (
+            wanted.mode in (None, decision.mode)
+            and wanted.phase in (None, decision.phase)
+            and wanted.safety in (None, decision.safety.name)
+        )
+        if holds and self.met is None:
+            self.met = tick
+        if self.broken is None:
+            self.seen = tick, decision
+            if not holds and wanted.by is None:
+                self.broken = tick
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return self.broken is not None if self.wanted.by is None else self.met is not None
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        words = [("mode", wanted.mode), ("phase", wanted.phase), ("safety", wanted.safety)]
+        state = ", ".join(f"{word} {name}" for word, name in words if name is not None)
+        since = "" if self.trigger.after is None else f' after "{self.trigger.after}"'
+        return f"{state} by {wanted.by:g} s{since}" if wanted.by is not None else f"{state} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.wanted.by is not None and self.met is not None:
+            return True, f"reached at {at(self.met)}"
+        passed = self.wanted.by is None and self.broken is None
+        if self.seen is None:
+            return passed, ""
+        tick, now = self.seen
+        return passed, f"mode {now.mode.value}, phase {now.phase.value}, safety {now.safety.name} at {at(tick)}"
+
+
+@dataclass(slots=True)
+class EventWatch(Watch):
+    """Follows `Happens` and `Never`."""
+
+    events_alone: bool = True
+    wanted: Happens | Never = field(kw_only=True)
+    found: list[int] = field(default_factory=list)
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        wanted = self.wanted
+        for event in decision.events:
+            if event.kind == wanted.kind and all(event.values.get(name) == word for name, word in wanted.values.items()):
+                self.found.append(tick)
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return len(self.found) >= (self.wanted.times if isinstance(self.wanted, Happens) else 1)
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        words = ", ".join(f"{name} {word}" for name, word in wanted.values.items())
+        event = f"event {wanted.kind.value}{f' ({words})' if words else ''}"
+        if isinstance(wanted, Never):
+            return f"no {event} {self.span()}"
+        return f"{event}{f' {wanted.times} times' if wanted.times > 1 else ''} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        return self.settled() == isinstance(self.wanted, Happens), listed(self.found)
+
+
+@dataclass(slots=True)
+class ToneWatch(Watch):
+    """Follows `Heard`."""
+
+    wanted: Heard = field(kw_only=True)
+    before: Decision | None = None  # of the tick before
+    found: list[int] = field(default_factory=list)
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        if self.before is not None:
+            tone = tone_for(self.before, decision)
+            if tone is not None and tone.name == self.wanted.tone:
+                self.found.append(tick)
+        self.before = decision
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return len(self.found) >= self.wanted.times
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        times = f" {self.wanted.times} times" if self.wanted.times > 1 else ""
+        return f"tone {self.wanted.tone}{times} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        return self.settled(), listed(self.found)
+
+
+@dataclass(slots=True)
+class PeriodWatch(Watch):
+    """Follows `Period`: a run is the ticks in which the period is present without its remainder rising."""
+
+    wanted: Period = field(kw_only=True)
+    runs: list[tuple[int, int]] = field(default_factory=list)  # first tick, length in ticks, of each run that has ended
+    began: int | None = None
+    before: int = 0  # the remainder a tick before
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
+        if self.began is not None and (left is None or left > self.before):
+            self.runs.append((self.began, tick - self.began))
+            self.began = None
+        if left is not None:
+            self.began = tick if self.began is None else self.began
+            self.before = left
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        return f"period {wanted.name}, run {wanted.run}, lasts {wanted.length:g} s within {wanted.tolerance:g} s"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if len(self.runs) < self.wanted.run:
+            return False, f"{len(self.runs)} ended runs"
+        first, length = self.runs[self.wanted.run - 1]
+        # Half a tick of grace, since lengths are whole ticks.
+        passed = abs(length * TICK - self.wanted.length) <= self.wanted.tolerance + 0.5 * TICK
+        return passed, f"{length * TICK:.3f} s, from {at(first)}"
+
+
+def listed(found: list[int]) -> str:
+    """When something was seen, in words."""
+    return "none" if not found else f"{len(found)}, at {', '.join(at(tick) for tick in found[:5])}"
+
+
+def at(tick: int) -> str:
+    """The time of a tick, in words."""
+    return f"{tick * TICK:.3f} s"

@@ -1,0 +1,175 @@
+"""What a session expects: each expectation is one struct, told apart by `expect`. `expectation_watch` compares them."""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from app.session.triggers import After
+from pendant.event_table import TABLE
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode, Phase
+from sim.arm.arm_file import NotNegative, Positive
+from sim.arm.scenario import Vector
+
+SafetyName = Literal["NORMAL", "REDUCED", "SAFEGUARD_STOP", "PROTECTIVE_STOP", "EMERGENCY_STOP"]
+
+Quantity = Literal[
+    "flange_speed",  # true speed of the flange's point [m/s]
+    "tcp_speed",  # as the controller estimates it [m/s]
+    "elbow_speed",  # as the controller estimates it [m/s]
+    "joint_angle",  # of `joint`, as measured [rad]
+    "joint_speed",  # of `joint`, as estimated [rad/s]
+    "tracking_error",  # of `joint`, truth scoring: how far its true angle is from the wanted one, 0 in free-drive [rad]
+    "friction_error",  # of `joint`, truth scoring: how wrong its friction estimate is, while it moves [N·m]
+    "torque_error",  # of `joint`, truth scoring: how wrong the estimate of its transmission torque is [N·m]
+    "user_force",  # size of F_user's force, as estimated [N]
+    "user_torque",  # size of F_user's torque, as estimated [N·m]
+    "payload_configured",  # mass that the controller believes in, beyond the tool [kg]
+    "payload_true",  # true mass of what is attached [kg]
+]
+
+OF_A_JOINT = ("joint_angle", "joint_speed", "tracking_error", "friction_error", "torque_error")
+
+
+class Expectation(After, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="expect"):
+    """Base of all expectations. With `after`, all their times count from there."""
+
+    def planned(self) -> str | None:
+        """The requirement that brings what this expectation needs, where it is not there yet."""
+        return None
+
+
+class During(Expectation, frozen=True, kw_only=True):
+    """Base of what is looked at in an interval."""
+
+    begin: NotNegative = msgspec.field(default=0.0, name="from")  # [s]
+    end: Positive | None = msgspec.field(default=None, name="to")  # None: the session's end [s]
+
+    def __post_init__(self) -> None:
+        """Check that the interval has a length."""
+        super().__post_init__()
+        if self.end is not None and self.end <= self.begin:
+            raise ValueError(f"to = {self.end} must come after from = {self.begin}")
+
+
+class State(Expectation, tag="state", frozen=True, kw_only=True):
+    """The robot is in a mode, phase or safety mode: `at` a time, or reached `by` a deadline, or all the time `from` .. `to`."""
+
+    mode: Mode | None = None
+    phase: Phase | None = None
+    safety: SafetyName | None = None
+    at: NotNegative | None = None  # [s]
+    by: Positive | None = None  # [s]
+    begin: NotNegative | None = msgspec.field(default=None, name="from")  # [s]
+    end: Positive | None = msgspec.field(default=None, name="to")  # [s]
+
+    def __post_init__(self) -> None:
+        """Check that there is one thing to see, and one time."""
+        super().__post_init__()
+        if self.mode is None and self.phase is None and self.safety is None:
+            raise ValueError("needs one or more of mode, phase, safety")
+        if [self.at, self.by, self.begin].count(None) != 2 or (self.begin is None) != (self.end is None):
+            raise ValueError("needs one of `at: SECONDS`, `by: SECONDS`, or `from: SECONDS` with `to: SECONDS`")
+        if self.begin is not None and self.end is not None and self.end <= self.begin:
+            raise ValueError(f"to = {self.end} must come after from = {self.begin}")
+
+
+class OfEvents(During, frozen=True, kw_only=True):
+    """Base of what looks for events of a kind, those alone that carry these words: `values: {parameter: flange speed}`."""
+
+    kind: Kind
+    values: dict[str, str | bool] = msgspec.field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check that events of the kind carry such values."""
+        super().__post_init__()
+        keys = TABLE[self.kind].keys
+        for name in self.values:
+            if name not in keys:
+                raise ValueError(f"values: {self.kind.value} carries no {name}; it carries {', '.join(keys) or 'none'}")
+
+
+class Happens(OfEvents, tag="event", frozen=True, kw_only=True):
+    """An event of a kind happens in the interval, at least `times` times."""
+
+    times: Annotated[int, Meta(ge=1)] = 1
+
+
+class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
+    """No event of a kind happens in the interval."""
+
+
+class Heard(During, tag="tone", frozen=True, kw_only=True):
+    """A page with sound lets a tone be heard in the interval, after its first tick, at least `times` times (app/tones.py)."""
+
+    tone: Literal["STOP", "ASK", "FREE", "HELD", "WALL", "COUNT"]
+    times: Annotated[int, Meta(ge=1)] = 1
+
+
+class Bounds(During, frozen=True, kw_only=True):
+    """Base of what must stay within bounds."""
+
+    min: float | None = None
+    max: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check that there are bounds, in order."""
+        super().__post_init__()
+        if self.min is None and self.max is None:
+            raise ValueError("needs min, max, or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"min = {self.min} must not be above max = {self.max}")
+
+
+class Value(Bounds, tag="value", frozen=True, kw_only=True):
+    """A quantity stays within bounds all through the interval."""
+
+    of: Quantity
+    joint: str | None = None  # for a quantity of a joint
+
+    def __post_init__(self) -> None:
+        """Check that a joint is named where one is needed."""
+        super().__post_init__()
+        if (self.of in OF_A_JOINT) != (self.joint is not None):
+            raise ValueError(f"joint goes with {' and '.join(OF_A_JOINT)}, and only with these; of = {self.of}")
+
+
+class Reaches(Value, tag="reaches", frozen=True, kw_only=True):
+    """A quantity is within bounds in one tick of the interval at least."""
+
+
+class Displacement(Bounds, tag="displacement", frozen=True, kw_only=True):
+    """How far a part is from its place at the interval's begin [m]: the largest in the interval, or what is left at its end."""
+
+    part: str = "flange"
+    measure: Literal["largest", "final"] = "largest"
+    along: Vector | None = None  # direction in W to count along, with its sign; None: the distance
+
+    def __post_init__(self) -> None:
+        """Check the direction."""
+        super().__post_init__()
+        if self.along is not None and not any(self.along):
+            raise ValueError("along = [0, 0, 0] is no direction")
+
+
+class Period(Expectation, tag="period", frozen=True, kw_only=True):
+    """The `run`-th run of a period (FD-20), counted after `after`, lasts `length` within `tolerance`."""
+
+    name: str
+    length: Positive  # [s]
+    tolerance: NotNegative = 0.01  # [s]
+    run: Annotated[int, Meta(ge=1)] = 1
+
+
+class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
+    """The contact is detected at most `max` after its true onset."""
+
+    max: Positive  # [s]
+
+    def planned(self) -> str | None:
+        """See `Expectation.planned`."""
+        return "CD-16"
+
+
+AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period | ContactDelay

@@ -1,0 +1,226 @@
+"""Follows numbers that a session wants within bounds: quantities and displacements. `watch` picks the watch of an expectation."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.session.expectation_watch import EventWatch, PeriodWatch, StateWatch, ToneWatch, Watch, at
+from app.session.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
+from app.session.parts import point_of
+from app.session.triggers import Trigger
+from pendant.decision import Decision
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK
+from sim.exchange.scoring import Scored
+from sim.plant.touch import Triple
+
+UNITS = {
+    "flange_speed": "m/s",
+    "tcp_speed": "m/s",
+    "elbow_speed": "m/s",
+    "joint_angle": "rad",
+    "joint_speed": "rad/s",
+    "tracking_error": "rad",
+    "friction_error": "N·m",
+    "torque_error": "N·m",
+    "user_force": "N",
+    "user_torque": "N·m",
+    "payload_configured": "kg",
+    "payload_true": "kg",
+}
+
+
+SLIDING = 0.05
+"""Friction is compared above this speed [rad/s]: a standing joint has none of its own."""
+
+
+def control_error(now: Scored, quantity: str, joint: int) -> float:
+    """Size of an error of the joint control against the truth: for scoring alone."""
+    estimate = now.estimate
+    if quantity == "tracking_error":
+        return abs(float(now.truth_q[joint] - now.wanted_q[joint])) if now.wanted_q.size else 0.0
+    if quantity == "torque_error":
+        return abs(float(estimate.tau_J[joint] - now.truth_tau_J[joint]))
+    if abs(float(estimate.theta_d[joint])) < SLIDING:
+        return 0.0
+    return abs(float(estimate.friction[joint] - now.truth_friction[joint]))
+
+
+@dataclass(slots=True)
+class BoundsWatch(Watch):
+    """Base of what follows numbers within bounds."""
+
+    min: float | None = field(kw_only=True)
+    max: float | None = field(kw_only=True)
+    low: tuple[float, int] = (math.inf, 0)  # the smallest seen, and its tick
+    high: tuple[float, int] = (-math.inf, 0)
+
+    def number(self, value: float, tick: int) -> None:
+        """Take in a number. One that is not finite counts as out of bounds."""
+        if value < self.low[0] or math.isnan(value):
+            self.low = (value, tick)
+        if value > self.high[0] or math.isnan(value):
+            self.high = (value, tick)
+
+    def unit(self) -> str:
+        """The numbers' unit."""
+        raise NotImplementedError
+
+    def name(self) -> str:
+        """What is measured, in words."""
+        raise NotImplementedError
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        low = "" if self.min is None else f"at least {self.min:g}"
+        high = "" if self.max is None else f"at most {self.max:g}"
+        return f"{self.name()} {' and '.join(filter(None, (low, high)))} {self.unit()} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.high[0] == -math.inf:
+            return False, "nothing was measured"
+        low, high = self.min, self.max
+        too_low = low is not None and not self.low[0] >= low
+        too_high = high is not None and not self.high[0] <= high
+        if too_high or (high is not None and not too_low):
+            return not too_high, f"{self.high[0]:.6g} {self.unit()} at {at(self.high[1])}"
+        return not too_low, f"{self.low[0]:.6g} {self.unit()} at {at(self.low[1])}"
+
+
+@dataclass(slots=True)
+class ValueWatch(BoundsWatch):
+    """Follows `Value`."""
+
+    wanted: Value = field(kw_only=True)
+    place: Triple | None = None  # of the flange, a tick before
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        now = glance()
+        estimate = now.estimate
+        match self.wanted.of:
+            case "flange_speed":
+                place = point_of(now, self.joints, "flange")
+                if self.place is not None:
+                    self.number(math.dist(place, self.place) / TICK, tick)
+                self.place = place
+            case "tcp_speed":
+                self.number(estimate.v_tcp, tick)
+            case "elbow_speed":
+                self.number(estimate.v_elbow, tick)
+            case "joint_angle":
+                self.number(float(estimate.q[self.joints.index(self.wanted.joint or "")]), tick)
+            case "joint_speed":
+                self.number(float(estimate.qd[self.joints.index(self.wanted.joint or "")]), tick)
+            case "tracking_error" | "friction_error" | "torque_error":
+                self.number(control_error(now, self.wanted.of, self.joints.index(self.wanted.joint or "")), tick)
+            case "user_force":
+                self.number(math.hypot(*estimate.F_user[:3]), tick)
+            case "user_torque":
+                self.number(math.hypot(*estimate.F_user[3:]), tick)
+            case "payload_configured":
+                self.number(now.configured_mass, tick)
+            case "payload_true":
+                self.number(now.truth_payload_mass, tick)
+
+    def unit(self) -> str:
+        """See `BoundsWatch.unit`."""
+        return UNITS[self.wanted.of]
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        return self.wanted.of.replace("_", " ") + (f" of {self.wanted.joint}" if self.wanted.joint else "")
+
+
+@dataclass(slots=True)
+class ReachWatch(ValueWatch):
+    """Follows `Reaches`."""
+
+    met: int | None = None  # first tick of the interval in which it was within bounds
+
+    def number(self, value: float, tick: int) -> None:
+        """See `BoundsWatch.number`."""
+        BoundsWatch.number(self, value, tick)
+        above = self.min is None or value >= self.min
+        if self.met is None and above and (self.max is None or value <= self.max):
+            self.met = tick
+
+    def settled(self) -> bool:
+        """See `Watch.settled`."""
+        return self.met is not None
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        return ValueWatch.name(self) + " at some time"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if self.met is not None:
+            return True, f"reached at {at(self.met)}"
+        return False, f"{self.low[0]:.6g} to {self.high[0]:.6g} {self.unit()}"
+
+
+@dataclass(slots=True)
+class DisplacementWatch(BoundsWatch):
+    """Follows `Displacement`."""
+
+    wanted: Displacement = field(kw_only=True)
+    place: Triple | None = None  # of the part, at the interval's begin
+
+    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
+        """See `Watch.look`."""
+        now = point_of(glance(), self.joints, self.wanted.part)
+        if self.place is None:
+            self.place = now
+        (x, y, z), (i, j, k), along = now, self.place, self.wanted.along
+        if along is None:
+            distance = math.hypot(x - i, y - j, z - k)
+        else:
+            distance = ((x - i) * along[0] + (y - j) * along[1] + (z - k) * along[2]) / math.hypot(*along)
+        if self.wanted.measure == "final":
+            self.low = self.high = (distance, tick)
+        else:
+            # The largest way is one number at the interval's end, so that `min` asks for a part that has moved that far.
+            if distance > self.high[0] or math.isnan(distance):
+                self.high = (distance, tick)
+            self.low = self.high
+
+    def unit(self) -> str:
+        """See `BoundsWatch.unit`."""
+        return "m"
+
+    def name(self) -> str:
+        """See `BoundsWatch.name`."""
+        along = "" if self.wanted.along is None else f" along {self.wanted.along}"
+        return f"{self.wanted.measure} displacement of {self.wanted.part}{along}"
+
+
+def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
+    """The watch that follows an expectation, for an arm with these joint names."""
+    trigger = Trigger(expectation.after, expectation.nth)
+    match expectation:
+        case State(at=float(time)):
+            moment = max(ticks(time), 1 if expectation.after is None else 0)  # there is no tick before the first
+            return StateWatch(joints, trigger, moment, moment, wanted=expectation)
+        case State(by=float(time)):
+            return StateWatch(joints, trigger, 0, ticks(time), wanted=expectation)
+        case State():
+            return StateWatch(joints, trigger, ticks(expectation.begin or 0.0), ticks(expectation.end or 0.0), wanted=expectation)
+        case Period():
+            return PeriodWatch(joints, trigger, wanted=expectation)
+    begin, end = ticks(expectation.begin), None if expectation.end is None else ticks(expectation.end)
+    match expectation:
+        case Heard():
+            return ToneWatch(joints, trigger, begin, end, wanted=expectation)
+        case Happens() | Never():
+            return EventWatch(joints, trigger, begin, end, wanted=expectation)
+        case Reaches():
+            return ReachWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+        case Value():
+            return ValueWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+        case Displacement():
+            found = DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
+            found.ends_alone = expectation.measure == "final"
+            return found
+    raise AssertionError(f"{type(expectation).__name__} is planned, and app.session.prepare.prepare refuses it")

@@ -1,0 +1,88 @@
+"""Who has control, shown to each client in its own words, with a button to take it and one to give it back.
+
+Two, of which one is shown: a single one could be drawn anew between a press and what the press does, and would then do the
+opposite of what was pressed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import viser
+
+from app.web.access.guard import Guard
+from app.web.widgets import style, svg
+from app.web.widgets.html import Html, enable
+from app.web.widgets.svg import Colour
+
+
+@dataclass(slots=True)
+class Strip:
+    """What one client sees."""
+
+    text: Html
+    take: viser.GuiButtonHandle
+    release: viser.GuiButtonHandle
+
+
+class Control:
+    """The strips of all clients. Lives on viser's event loop."""
+
+    def __init__(self, server: viser.ViserServer, guard: Guard, let_go: Callable[[int], None]) -> None:
+        self._server = server
+        self._guard = guard
+        self._let_go = let_go
+        self._strips: dict[int, Strip] = {}
+
+    def welcome(self, client: viser.ClientHandle) -> None:
+        """Give a new client its strip."""
+        gui, number = client.gui, client.client_id
+        strip = Strip(
+            Html(gui, order=-3.0),
+            gui.add_button("Take", color="gray", order=-2.0),
+            gui.add_button("Release", color="gray", order=-1.0, visible=False),
+        )
+        self._strips[number] = strip
+
+        # The guard has already made whoever presses it the operator, if control was free.
+        @strip.take.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self.show()
+
+        @strip.release.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._let_go(number)
+            self._guard.operator.leave(number)
+            self.show()
+
+        self.show()
+
+    def farewell(self, client: int) -> None:
+        """A connection closed: what it held is released at once, and control is free."""
+        self._strips.pop(client, None)
+        self._let_go(client)
+        self._guard.operator.leave(client)
+        self.show()
+
+    def close(self) -> None:
+        """Tell nobody any more: the server is about to end."""
+        self._strips.clear()
+
+    def show(self) -> None:
+        """Bring every strip up to date."""
+        holder = self._guard.operator.holder
+        free = self._guard.operator.free(self._guard.now())
+        here = self._server.get_clients()
+        for number, strip in self._strips.items():
+            if number not in here:
+                continue
+            if holder == number:
+                text, colour = "You have control", Colour.GREEN
+            elif holder is None:
+                text, colour = "Nobody has control", Colour.GREY
+            else:
+                text, colour = f"Client {holder + 1} has control", Colour.AMBER
+            strip.text.show(svg.who(text, colour) + style.beside(strip.take._impl.uuid) + style.beside(strip.release._impl.uuid))
+            enable(strip.take, free)
+            for button, shown in ((strip.take, holder != number), (strip.release, holder == number)):
+                if button.visible is not shown:
+                    button.visible = shown

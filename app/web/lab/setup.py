@@ -1,0 +1,58 @@
+"""What a laboratory sets up before the arm is switched on: mounting, tool, world, seed, mismatch."""
+
+import math
+
+import msgspec
+import viser
+
+from app.files.checked import load
+from app.files.library import load_tool, tools
+from app.session.prepare import MOUNTINGS
+from app.session.session_file import World, bundled, folder
+from app.web.running import Running
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario, Tool
+from sim.simulation import Simulation
+
+AS_IS = "as it is"
+NOTHING = "nothing"
+
+
+class Setup:
+    """The set-up's part of the laboratory: takes effect when the simulation begins again."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+        self._loop, self._arm = loop, arm
+        with gui.add_folder("Set-up", expand_by_default=False):
+            self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
+            self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
+            self.tool = gui.add_dropdown("Tool", (AS_IS, *tools()))
+            self.world = gui.add_dropdown("World", (AS_IS, NOTHING, *bundled("worlds")))
+            self.seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1)
+            self.mismatch = gui.add_checkbox("Controller mismatch", True)
+            self.begin = gui.add_button("Begin with this", color="gray")
+
+        @self.begin.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            scenario, settings = self.chosen(), self._loop.settings
+            self._loop.begin(lambda: Simulation(self._arm, scenario, settings))
+
+    def chosen(self) -> Scenario:
+        """What the controls ask for; what they leave is as in the running scenario."""
+        now = self._loop.scenario
+        mounting = now.mounting if self.mounting.value == AS_IS else MOUNTINGS[self.mounting.value]
+        tilt = math.radians(float(self.tilt.value))
+        world = now.world
+        if self.world.value == NOTHING:
+            world = []
+        elif self.world.value != AS_IS:
+            world = load(folder("worlds") / f"{self.world.value}.yaml", World).objects
+        return msgspec.structs.replace(
+            now,
+            mounting=[mounting[0], mounting[1] + tilt, mounting[2]],
+            tool=now.tool if self.tool.value == AS_IS else load_tool(self.tool.value),
+            tools=[tool for tool in self._loop.tools if isinstance(tool, Tool)],  # as they were edited; the app has no others
+            world=world,
+            seed=int(self.seed.value),
+            mismatch="on" if self.mismatch.value else "nominal",
+        )

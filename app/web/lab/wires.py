@@ -1,0 +1,78 @@
+"""What is wired to the robot: the safety inputs and the digital inputs, as switches of the laboratory."""
+
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from app.web.running import Running
+from pendant.all_settings import Settings
+from pendant.inputs import Command
+from sim.exchange.snapshot import Snapshot
+
+COUNT = 8
+"""Digital inputs, numbered from 0: as many as `signals.digital_input` may name."""
+
+LEVELS = {
+    "Safeguard open": (Command.SAFEGUARD_OPEN, Command.SAFEGUARD_CLOSED),
+    "Reduced mode": (Command.REDUCED_ON, Command.REDUCED_OFF),
+}
+"""Safety inputs, with what they command when switched on and off."""
+
+HINT = "Settings, signals: which input enters free-drive, which leaves it"
+
+
+class Wires:
+    """A folder of switches that keep their level. Its controls run on viser's event loop; `show` runs in the painter."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running) -> None:
+        self._loop = loop
+        self._tick = 0
+        with gui.add_folder("Inputs", expand_by_default=False):
+            self.safety = {label: gui.add_checkbox(label, False) for label in LEVELS}
+            self.digital = [gui.add_checkbox(_label(number, loop.settings), False, hint=HINT) for number in range(COUNT)]
+        for label, control in self.safety.items():
+            _by_hand(control, self._commands(label))
+        for number, control in enumerate(self.digital):
+            _by_hand(control, self._wires(number))
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show the levels and what uses them; True if anything changed."""
+        high, settings = self._loop.desk.high, self._loop.settings
+        changed = [_bring(control, "value", number in high) for number, control in enumerate(self.digital)]
+        changed += [_bring(control, "label", _label(number, settings)) for number, control in enumerate(self.digital)]
+        if snapshot.tick < self._tick:  # the simulation began again, with everything closed and off
+            changed += [_bring(control, "value", False) for control in self.safety.values()]
+        self._tick = snapshot.tick
+        return any(changed)
+
+    def _commands(self, label: str) -> Callable[[], None]:
+        on, off = LEVELS[label]
+        return lambda: self._loop.desk.command(on if self.safety[label].value else off)
+
+    def _wires(self, number: int) -> Callable[[], None]:
+        return lambda: self._loop.desk.wire(number, self.digital[number].value)
+
+
+def _label(number: int, settings: Settings) -> str:
+    """The input's name, and what it does with free-drive."""
+    use = settings.signals
+    enters = use.digital and int(use.digital_input) == number
+    leaves = use.leaving and int(use.leaving_input) == number
+    does = ": both" if enters and leaves else ": enter" if enters else ": leave" if leaves else ""
+    return f"Input {number}{does}"
+
+
+def _by_hand(control: Any, act: Callable[[], None]) -> None:
+    @control.on_update
+    async def _(event: viser.GuiEvent) -> None:
+        if event.client_id is not None:  # a person, and not the page bringing itself up to date
+            act()
+
+
+def _bring(control: Any, name: str, value: bool | str) -> bool:
+    """Let an attribute of a control be `value`; True if that changed anything."""
+    if getattr(control, name) == value:
+        return False
+    setattr(control, name, value)
+    return True

@@ -1,0 +1,50 @@
+"""The words and colours of the pendant's states."""
+
+from app.web.widgets.svg import Colour
+from pendant.events.event_row import Severity
+from pendant.tick.modes import Mode, Phase, Safety
+
+WORDS = {
+    Mode.NORMAL: ("Holding still", Colour.GREEN),
+    Mode.TEACH: ("Ready", Colour.GREEN),
+    Mode.REMOTE: ("Remote control", Colour.GREY),
+    Mode.RUN: ("Program runs", Colour.GREEN),
+    Mode.FREE_DRIVE: ("Guide it by hand", Colour.BLUE),
+    Mode.STOP: ("Stopped", Colour.RED),
+}
+ASKED = {
+    Phase.ACTIVATION: ("Keep holding", Colour.BLUE),
+    Phase.FEEDBACK: ("Let go and wait", Colour.BLUE),
+    Phase.CONFIRM: ("Confirm now", Colour.AMBER),
+    Phase.LET_GO: ("Let go of the arm", Colour.AMBER),
+    Phase.SEQUENCE: ("Hands off", Colour.BLUE),
+}
+"""What the user is to do before free-drive begins."""
+
+SAFETY_WORDS = {
+    Safety.NORMAL: "Normal",
+    Safety.REDUCED: "Reduced",
+    Safety.SAFEGUARD_STOP: "Safeguard stop",
+    Safety.PROTECTIVE_STOP: "Protective stop",
+    Safety.EMERGENCY_STOP: "Emergency stop",
+}
+SEVERITY_COLOURS = {
+    Severity.INFO: Colour.GREY,
+    Severity.NOTICE: Colour.BLUE,
+    Severity.WARNING: Colour.AMBER,
+    Severity.STOP: Colour.RED,
+}
+PERIOD_COLOURS = {
+    "activation": Colour.BLUE,
+    "sequence": Colour.BLUE,
+    "confirmation": Colour.AMBER,
+    "let go": Colour.AMBER,
+    "compensation": Colour.AMBER,
+    "feedback": Colour.GREY,
+    "cool-down": Colour.GREY,
+    "safety": Colour.GREY,
+}
+"""Of countdown rings; a period that is not named here has the colour of the mode light."""
+
+LEAVING_PERIODS = ("free-drive", "restart")
+"""Periods whose end ends free-drive."""

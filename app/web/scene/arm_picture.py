@@ -1,0 +1,224 @@
+"""The picture: arm, tool, payload, world and touches, drawn from snapshots."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import trimesh
+import viser
+from numpy.typing import NDArray
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from app.web.scene.stage import DARK, LIGHT, lay
+from app.web.scene.wall_pictures import Walls
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
+from sim.exchange.snapshot import Snapshot
+
+Array = NDArray[np.float64]
+
+STEP = 2e-5
+"""Changes smaller than this are not sent [m, and 1 for quaternions]."""
+
+METRES_PER_NEWTON = 0.004
+METRES_PER_NEWTON_METRE = 0.03
+SHORTEST = 0.06
+LONGEST = 0.4
+"""Length of the arrows of touches [m]."""
+
+TOOL = "/arm/tool"
+"""Name of the tool's node."""
+
+TOUCHES = 4
+"""Touches shown at once."""
+
+FORCE_COLOUR = (25, 113, 194)
+TORQUE_COLOUR = (156, 54, 181)
+GREY = (173, 181, 189)
+WORLD_COLOURS = {Pad: (150, 190, 160), SnapFit: (190, 170, 140), TwoFrictions: (170, 170, 200)}
+
+
+def frames_of(arm: Arm) -> dict[str, int]:
+    """For each part of the arm, the row of `Snapshot.truth_links` with its frame."""
+    rows = {name: row for row, name in enumerate(("foot", *arm.chain.joints))}
+    return rows | {"flange": arm.n + 1, "tool": arm.n + 1}
+
+
+class Scene:
+    """What viser shows. `meshes` has a GLB file for each part that has a shape."""
+
+    def __init__(
+        self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot
+    ) -> None:
+        self._server = server
+        self._scenario = scenario
+        self.on_tool: Callable[[viser.GlbHandle], None] = lambda tool: None  # told of a tool that another scenario brings
+        self._frames = frames_of(arm)
+        self._last: dict[str, Array] = {}
+        self._nodes: dict[str, viser.SceneNodeHandle] = {}
+        self.draggable: dict[str, viser.GlbHandle] = {}
+        self._stage()
+        self._frame(first.truth_links[:, :3], arm.reach)
+        for part, row in self._frames.items():
+            if part in meshes:
+                self.draggable[part] = server.scene.add_glb(f"/arm/{part}", meshes[part], cast_shadow=False, receive_shadow=False)
+                self._nodes[f"link {row} {part}"] = self.draggable[part]
+        self._add_tool(scenario)
+        self._add_world(scenario)
+        self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
+        self._arrows = [self._arrow(i) for i in range(TOUCHES)]
+        self._shown: list[tuple[float, ...]] = [()] * TOUCHES
+        self.walls = Walls(server)
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Draw a snapshot, in one batch that clients apply together; True if anything changed."""
+        changed = False
+        with self._server.atomic():
+            if snapshot.scenario is not None and snapshot.scenario is not self._scenario:
+                self._change_to(snapshot.scenario)
+            for key, node in self._nodes.items():
+                kind, row, _ = key.split(" ", 2)
+                poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
+                changed |= self._place(key, node, poses[int(row)])
+            changed |= self._show_payload(snapshot)
+            changed |= self._show_touches(snapshot)
+            changed |= self.walls.show(snapshot)
+        if changed:
+            self._server.flush()
+        return changed
+
+    def _change_to(self, scenario: Scenario) -> None:
+        """Put away the tool and the world of the last scenario, and show those of `scenario`."""
+        self._scenario = scenario
+        for key in [key for key in self._nodes if key.startswith("object ") or key.endswith(" tool")]:
+            self._nodes.pop(key).remove()
+        self._last.clear()
+        self.draggable.pop("tool", None)
+        self._add_tool(scenario)
+        self._add_world(scenario)
+        if "tool" in self.draggable:
+            self.on_tool(self.draggable["tool"])
+
+    def _place(self, key: str, node: viser.SceneNodeHandle, pose: Array) -> bool:
+        last = self._last.get(key)
+        if last is not None and float(np.max(np.abs(last - pose))) < STEP:
+            return False
+        if last is None or float(np.max(np.abs(last[:3] - pose[:3]))) >= STEP:
+            node.position = np.round(pose[:3], 5)
+        if last is None or float(np.max(np.abs(last[3:] - pose[3:]))) >= STEP:
+            node.wxyz = np.round(pose[3:], 5)
+        self._last[key] = pose.copy()
+        return True
+
+    def _show_payload(self, snapshot: Snapshot) -> bool:
+        pose = snapshot.truth_payload
+        visible = pose is not None
+        changed = self._payload.visible != visible
+        if changed:
+            self._payload.visible = visible
+        if pose is None:
+            return changed
+        radius = round((max(snapshot.truth_payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0), 4)
+        if snapshot.truth_payload_mass > 0.0 and self._payload.scale != radius:
+            self._payload.scale = radius
+            changed = True
+        return self._place("payload", self._payload, pose) or changed
+
+    def _show_touches(self, snapshot: Snapshot) -> bool:
+        changed = False
+        for i, (arrow, label) in enumerate(self._arrows):
+            shown: tuple[float, ...] = ()
+            if i < len(snapshot.touches):
+                _, point, force, torque = snapshot.touches[i]
+                shown = tuple(np.round([*point, *force, *torque], 3))
+            if shown == self._shown[i]:
+                continue
+            changed = True
+            self._shown[i] = shown
+            arrow.visible = label.visible = bool(shown)
+            if shown:
+                self._draw(arrow, label, np.array(shown))
+        return changed
+
+    def _draw(self, arrow: viser.ArrowsHandle, label: viser.LabelHandle, touch: Array) -> None:
+        point, force, torque = touch[:3], touch[3:6], touch[6:]
+        turning = float(np.linalg.norm(force)) < 1e-9
+        vector, size, unit = (torque, METRES_PER_NEWTON_METRE, "N·m") if turning else (force, METRES_PER_NEWTON, "N")
+        amount = float(np.linalg.norm(vector))
+        length = min(max(amount * size, SHORTEST), LONGEST)
+        tip = point + (vector / amount * length if amount > 0.0 else 0.0)
+        arrow.points = np.array([[point, tip]], dtype=np.float32)
+        arrow.colors = np.array(TORQUE_COLOUR if turning else FORCE_COLOUR, dtype=np.uint8)
+        label.position = tip
+        label.text = f"{amount:.1f} {unit}" if turning else f"{amount:.0f} {unit}"
+
+    def _arrow(self, i: int) -> tuple[viser.ArrowsHandle, viser.LabelHandle]:
+        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        arrow = self._server.scene.add_arrows(
+            f"/touch/{i}/arrow", nothing, FORCE_COLOUR, shaft_radius=0.006, head_radius=0.016, head_length=0.04, visible=False
+        )
+        return arrow, self._server.scene.add_label(f"/touch/{i}/label", "", visible=False, anchor="bottom-center")
+
+    def _add_tool(self, scenario: Scenario) -> None:
+        tool = scenario.tool
+        if tool is None or tool.length <= 0.0:
+            return
+        shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
+        shape.apply_translation([0.0, 0.0, tool.length / 2])
+        shape.visual = TextureVisuals(
+            material=PBRMaterial(baseColorFactor=[38, 42, 48, 255], metallicFactor=0.0, roughnessFactor=0.5)
+        )
+        handle = self._server.scene.add_mesh_trimesh(TOOL, shape, cast_shadow=False, receive_shadow=False)
+        self.draggable["tool"] = handle
+        self._nodes[f"link {self._frames['tool']} tool"] = handle
+
+    def _add_world(self, scenario: Scenario) -> None:
+        level = min([0.0, *(thing.position[2] for thing in scenario.world if isinstance(thing, Plane) and not any(thing.rpy))])
+        self._floor.position = (0.0, 0.0, level)  # so that it hides nothing that stands on a lower floor
+        for row, thing in enumerate(scenario.world):
+            if isinstance(thing, Plane) and thing.position[2] == level and not any(thing.rpy):
+                continue  # it is the floor
+            size = np.array([3.0, 3.0, 0.002] if isinstance(thing, Plane) else thing.size)
+            colour = WORLD_COLOURS.get(type(thing), GREY)
+            self._nodes[f"object {row} {thing.name}"] = self._server.scene.add_box(
+                f"/world/{row}",
+                dimensions=size,
+                color=colour,
+                opacity=0.35 if isinstance(thing, Plane) else None,
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+
+    def _stage(self) -> None:
+        """Lamps, floor and background."""
+        scene = self._server.scene
+        scene.set_up_direction("+z")
+        # Light from lamps alone: an environment map makes a frame 25 times as long where there is no graphics card.
+        scene.configure_environment_map(None)
+        scene.configure_default_lights(False)
+        scene.add_light_hemisphere("/light/sky", sky_color=(255, 255, 255), ground_color=(176, 182, 190), intensity=2.6)
+        self._floor = lay(scene, LIGHT)
+
+    def set_theme(self, scene: viser.SceneApi, dark: bool) -> None:
+        """Floor and background of one client's page."""
+        lay(scene, DARK if dark else LIGHT).position = self._floor.position
+
+    def _frame(self, points: Array, reach: float) -> None:
+        """Look at the arm and light it from its front, a little from above, so that its whole reach is in view."""
+        centre = (points.min(axis=0) + points.max(axis=0)) / 2
+        side = points[-1] - points[0]
+        side[2] = 0.0
+        side = side / max(float(np.linalg.norm(side)), 1e-6)
+        across = np.array([-side[1], side[0], 0.0])
+        lamps = self._server.scene
+        lamps.add_light_directional(
+            "/light/key", intensity=2.2, position=centre + 2.0 * across - 0.6 * side + np.array([0.0, 0.0, 2.5])
+        )
+        lamps.add_light_directional(
+            "/light/fill", intensity=0.7, position=centre + 2.5 * side - 0.5 * across + np.array([0.0, 0.0, 0.6])
+        )
+        camera = self._server.initial_camera
+        camera.look_at = tuple(centre)
+        camera.position = tuple(centre + reach * (0.9 * side + 1.9 * across + np.array([0.0, 0.0, 0.75])))
+        camera.fov = math.radians(40.0)

@@ -1,0 +1,90 @@
+"""The axes tab: what is free in free-drive, axis by axis, and how near the arm is to a singularity (FD-4)."""
+
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from app.web.running import Running
+from app.web.widgets import svg
+from app.web.widgets.html import Html
+from app.web.widgets.svg import Colour
+from pendant.all_settings import Settings
+from pendant.limits.axis_locks import AXES, PRESETS, freeing
+from pendant.limits.nearness import Nearness
+from sim.exchange.snapshot import Snapshot
+
+NAMES = {name.capitalize(): name for name in PRESETS}
+"""Presets by what is written on their buttons."""
+
+TOLD = {
+    Nearness.OK: ("Away from singularities", "Locked axes hold.", Colour.GREEN),
+    Nearness.NEAR: ("Near a singularity", "With a lock, further in is resisted.", Colour.AMBER),
+    Nearness.TOO_NEAR: ("Too near a singularity", "Locks may give way. Turn back, or free them.", Colour.RED),
+}
+
+
+class AxesTab:
+    """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running) -> None:
+        self._loop = loop
+        self._settings: Settings | None = None
+        self.now = Html(gui)
+        self.singularity = Html(gui)
+        self.preset = gui.add_button_group("Free", tuple(NAMES))
+        self.free = {axis: gui.add_checkbox(_label(axis), True) for axis in AXES}
+        self.tool = gui.add_checkbox("Axes of the tool", False)
+
+        @self.preset.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            loop.desk.set(freeing(PRESETS[NAMES[self.preset.value]]))
+
+        for axis, control in self.free.items():
+            control.on_update(self._sets(f"axes.{axis}", control))
+        self.tool.on_update(self._sets("axes.tool", self.tool))
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show what is free and the nearness; True if anything changed."""
+        settings = self._loop.settings
+        fresh = settings is not self._settings
+        if fresh:
+            self._settings = settings
+            for axis, control in self.free.items():
+                _bring(control, getattr(settings.axes, axis))
+            _bring(self.tool, settings.axes.tool)
+        return any([fresh, self.now.show(svg.facts(_facts(settings, snapshot))), self.singularity.show(_told(snapshot))])
+
+    def _sets(self, name: str, control: viser.GuiCheckboxHandle) -> Callable[[viser.GuiEvent], Any]:
+        async def update(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                self._loop.desk.set({name: control.value})
+
+        return update
+
+
+def _bring(control: viser.GuiCheckboxHandle, value: bool) -> None:
+    if control.value != value:
+        control.value = value
+
+
+def _label(axis: str) -> str:
+    return f"{axis}: turn about {axis[1]}" if axis.startswith("r") else f"{axis}: way along it"
+
+
+def _facts(settings: Settings, snapshot: Snapshot) -> list[tuple[str, str]]:
+    axes = settings.axes
+    locked = [axis for axis in AXES if not getattr(axes, axis)]
+    if axes.tool:
+        frame = "tool, as it stands when locked"
+    else:
+        frame = "base, turned" if any((axes.roll, axes.pitch, axes.yaw)) else "base"
+    state = "switched off" if not axes.on else "hold" if snapshot.decision.locks is not None else "hold in free-drive"
+    return [("Locked", ", ".join(locked) or "nothing"), ("Axes of", frame), ("Locks", state if locked else "none")]
+
+
+def _told(snapshot: Snapshot) -> str:
+    nearness = snapshot.decision.singularity
+    if nearness is None:
+        return svg.note("Singularities", "Told in free-drive.", Colour.GREY)
+    return svg.note(*TOLD[nearness])

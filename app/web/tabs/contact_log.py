@@ -1,0 +1,151 @@
+"""The contact log: changes in contact, newest first, one of them shown in the picture, all of them as a file."""
+
+import csv
+import io
+from collections import deque
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from app.web.scene.ghost import Ghost
+from app.web.tabs.plots import MARKED
+from app.web.widgets import svg
+from app.web.widgets.html import Html
+from pendant.events.event import Event, posture_of
+from pendant.tick.modes import TICK, TICK_RATE
+from sim.arm.arm_file import Arm
+from sim.arm.frames import matrix_from_quaternion
+from sim.exchange.snapshot import Snapshot
+
+Array = NDArray[np.float64]
+
+LENGTH = 200
+"""Contacts kept."""
+
+SHOWN = 30
+"""Contacts in the table."""
+
+NEWEST = "newest"
+RED, BLUE = (201, 42, 42), (28, 126, 214)
+COLUMNS = (
+    "number",
+    "t",
+    "kind",
+    "part",
+    "source",
+    "rule",
+    "force",
+    "fx",
+    "fy",
+    "fz",
+    "ax",
+    "ay",
+    "az",
+    "delay_ms",
+    "x",
+    "y",
+    "z",
+    "posture",
+    "action",
+)
+METRES_PER_NEWTON, METRES_PER_ACCELERATION = 0.006, 0.03  # the latter for 1 m/s²
+SHORTEST, LONGEST = 0.05, 0.25
+"""Length of an arrow [m]."""
+
+
+class Contacts:
+    """The tab with the contact log, and the mark of one contact in the picture."""
+
+    def __init__(self, server: viser.ViserServer, arm: Arm) -> None:
+        self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
+        self._count = 0
+        gui = server.gui
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
+        self.table = Html(gui, svg.contacts(()))
+        self.export = gui.add_button("Export CSV", color="gray", disabled=True)
+        self.force = _arrow(server, "/contact/force", RED)
+        self.acceleration = _arrow(server, "/contact/acceleration", BLUE)
+        self.label = server.scene.add_label("/contact/label", "", visible=False, anchor="bottom-center")
+        self.ghost = Ghost(server, arm, "/ghost/contact", RED)
+        self._marked: tuple[int, str] | None = None
+
+        @self.export.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("contacts.csv", self.file(), save_immediately=True)
+
+    def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
+        """Add contacts, and mark the chosen one; True if anything changed."""
+        found = [event for event in fresh if event.kind.value.startswith(MARKED)]
+        for event in found:
+            self._count += 1
+            self._log.append((self._count, event))
+        if found:
+            self.table.show(svg.contacts(_row(number, event) for number, event in list(reversed(self._log))[:SHOWN]))
+            self.choice.options = choices(self._count)
+            self.export.disabled = False
+        return self._mark(snapshot) or bool(found)
+
+    def file(self) -> bytes:
+        """The log as CSV: SI units, force and pose in B, the delay in milliseconds, the joint angles at its beginning."""
+        text = io.StringIO()
+        writer = csv.writer(text)
+        writer.writerow(COLUMNS)
+        for number, event in self._log:
+            values = event.values | {"number": number, "t": round(event.tick * TICK, 3), "kind": event.kind.value}
+            values["delay_ms"] = round(1000.0 * float(values["steps"]) * TICK)
+            writer.writerow([values[name] for name in COLUMNS])
+        return text.getvalue().encode()
+
+    def _mark(self, snapshot: Snapshot) -> bool:
+        if not self._log:
+            return False
+        wanted = self.choice.value
+        number, event = next((entry for entry in self._log if f"{entry[0]}" == wanted), self._log[-1])
+        if self._marked == (number, wanted):
+            return False
+        self._marked = (number, wanted)
+        values = event.values
+        base = snapshot.truth_links[0]
+        turn = matrix_from_quaternion(base[3:])
+        point = base[:3] + turn @ np.array([float(values[name]) for name in "xyz"])
+        force, acceleration = (turn @ np.array([float(values[name + axis]) for axis in "xyz"]) for name in "fa")
+        tail = point - _drawn(force, METRES_PER_NEWTON)  # outside of what was touched
+        self.force.points = np.array([[tail, point]], dtype=np.float32)
+        self.acceleration.points = np.array([[point, point + _drawn(acceleration, METRES_PER_ACCELERATION)]], dtype=np.float32)
+        self.force.visible = self.acceleration.visible = self.label.visible = True
+        self.label.position = tail
+        size = f"{float(values['force']):.0f} N, {float(values['acceleration']):.1f} m/s²"
+        self.label.text = f"{number}: {_kind(event)}, {size}"
+        self.ghost.show(posture_of(values) if wanted != NEWEST else None, snapshot)  # of one that somebody has asked for
+        return True
+
+
+def _arrow(server: viser.ViserServer, name: str, colour: tuple[int, int, int]) -> viser.ArrowsHandle:
+    nothing = np.zeros((1, 2, 3), dtype=np.float32)
+    return server.scene.add_arrows(name, nothing, colour, shaft_radius=0.005, head_radius=0.014, head_length=0.035, visible=False)
+
+
+def _drawn(vector: Array, scale: float) -> Array:
+    """A vector as long as its arrow [m]."""
+    size = max(float(np.linalg.norm(vector)), 1e-9)
+    return vector / size * min(max(size * scale, SHORTEST), LONGEST)
+
+
+def choices(count: int) -> tuple[str, ...]:
+    """What can be marked, when `count` contacts were seen."""
+    return (NEWEST, *(f"{number}" for number in range(count, max(count - SHOWN, 0), -1)))
+
+
+def _kind(event: Event) -> str:
+    return event.kind.value.removeprefix(MARKED)
+
+
+def _row(number: int, event: Event) -> tuple[str, ...]:
+    values = event.values
+    along = max("xyz", key=lambda axis: abs(float(values[f"f{axis}"])))
+    sign = "+" if float(values[f"f{along}"]) >= 0.0 else "−"
+    delay = f"{1000.0 * float(values['steps']) * TICK:.0f} ms"
+    time = f"{event.tick / TICK_RATE:.2f}"
+    return (f"{number}", time, _kind(event), f"{values['rule']}", f"{float(values['force']):.0f} N {sign}{along}", delay)

@@ -1,0 +1,137 @@
+"""Live plots of what the controller measures, estimates and limits, beside the truth: 20 times a second, in a fixed memory."""
+
+from collections import deque
+from enum import StrEnum
+
+import numpy as np
+import viser
+
+from app.web.running import Running
+from app.web.widgets.chart import Array, Line, chart
+from app.web.widgets.html import Html
+from pendant.events.event import Event
+from pendant.tick.modes import TICK_RATE
+from sim.arm.arm_file import Arm
+from sim.exchange.snapshot import Snapshot
+
+RATE = 20  # samples a second of simulated time
+SAMPLES = 200  # ten seconds
+MARKED = "contact_"  # events whose kind begins like this are marked
+
+
+class View(StrEnum):
+    """What can be plotted."""
+
+    FORCE = "Force, acceleration"
+    LIMITS = "Against limits"
+    FRICTION = "Friction"
+    TORQUE = "Transmission torque"
+    TRACKING = "Tracking error"
+    RATE = "Rate"
+
+
+class History:
+    """The last samples of everything, oldest first, in arrays of a fixed size."""
+
+    def __init__(self, n: int) -> None:
+        blank = np.full(SAMPLES, np.nan)
+        self.force, self.acceleration = np.full((3, SAMPLES), np.nan), np.full((3, SAMPLES), np.nan)
+        self.share, self.rate = blank.copy(), blank.copy()
+        self.friction = np.full((3, n, SAMPLES), np.nan)  # true, estimated, its deviation [N·m]
+        self.torque = np.full((4, n, SAMPLES), np.nan)  # true, three ways [N·m]
+        self.tracking = np.full((n, SAMPLES), np.nan)  # [mrad]
+        self.tick = 0
+
+    def add(self, snapshot: Snapshot, rate: float) -> None:
+        """Take a sample."""
+        seen = snapshot.estimate
+        shares = [abs(value.value) / value.limit for value in snapshot.decision.monitored if value.limit > 0.0]
+        n = len(self.tracking)
+        _push(self.force, seen.F_user[:3])
+        _push(self.acceleration, seen.a_F)
+        _push(self.share, 100.0 * max(shares) if shares else np.nan)
+        _push(self.rate, rate)
+        friction = (snapshot.truth_friction, seen.friction, seen.friction_deviation)
+        _push(self.friction, np.array([_sized(values, n) for values in friction]))
+        ways = seen.tau_ways if seen.tau_ways.shape == (3, n) else np.full((3, n), np.nan)
+        _push(self.torque, np.vstack([_sized(snapshot.truth_tau_J, n), ways]))
+        _push(self.tracking, np.full(n, np.nan) if snapshot.reference is None else 1000.0 * (seen.q - snapshot.reference))
+        self.tick = snapshot.tick
+
+
+class Plots:
+    """The plots' tab."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+        self._loop, self._joints = loop, arm.chain.joints
+        self.history = History(arm.n)
+        self._marks: deque[int] = deque(maxlen=20)  # ticks
+        self.view = gui.add_dropdown("Plot", tuple(view.value for view in View))
+        self.joint = gui.add_dropdown("Joint", tuple(self._joints), visible=False)
+        self.upper, self.lower = Html(gui), Html(gui)
+
+        @self.view.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self.joint.visible = self.view.value in (View.FRICTION, View.TORQUE)
+            self._draw()
+
+    def note(self, fresh: list[Event]) -> None:
+        """Mark the contacts among new events."""
+        self._marks.extend(event.tick for event in fresh if event.kind.value.startswith(MARKED))
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Take a sample and draw, if it is time; True if anything changed."""
+        passed = snapshot.tick - self.history.tick
+        if 0 <= passed < TICK_RATE // RATE - 4:  # snapshots come every 8 ticks
+            return False
+        if passed < 0:  # the simulation began again
+            self.history = History(len(self._joints))
+            self._marks.clear()
+        self.history.add(snapshot, self._loop.actual_rate)
+        return self._draw()
+
+    def _draw(self) -> bool:
+        pictures = self._pictures()
+        return any([self.upper.show(pictures[0]), self.lower.show(pictures[1])])
+
+    def _pictures(self) -> tuple[str, str]:
+        history = self.history
+        newest = SAMPLES - 1
+        marks = [newest - round((history.tick - tick) * RATE / TICK_RATE) for tick in self._marks]
+        marks = [mark for mark in marks if 0 <= mark <= newest]
+        joint = self._joints.index(self.joint.value)
+        match View(self.view.value):
+            case View.FORCE:
+                force = chart("User force", "N", _xyz(history.force), marks)
+                return force, chart("Acceleration", "m/s²", _xyz(history.acceleration), marks)
+            case View.LIMITS:
+                return chart("Nearest to its limit", "%", [Line("share of the limit", history.share)], marks, 100.0), ""
+            case View.FRICTION:
+                true, estimated, deviation = history.friction[:, joint]
+                lines = [Line("true", true), Line("estimated", estimated, dashed=True)]
+                return chart("Friction", "N·m", lines), chart("Its uncertainty", "N·m", [Line("standard deviation", deviation)])
+            case View.TORQUE:
+                names = ("true", "dynamics", "deflection", "motor")
+                lines = [Line(name, row, name != "true") for name, row in zip(names, history.torque[:, joint], strict=True)]
+                errors = [Line(line.name, line.values - lines[0].values) for line in lines[1:]]
+                return chart("Transmission torque", "N·m", lines), chart("Error of each way", "N·m", errors)
+            case View.TRACKING:
+                rows = [Line(name, row) for name, row in zip(self._joints, history.tracking, strict=True)]
+                return chart("Tracking error", "mrad", rows, marks), ""
+            case View.RATE:
+                return chart("Rate, simulated over real", "×", [Line("rate", history.rate)]), ""
+
+
+def _xyz(rows: Array) -> list[Line]:
+    return [Line(name, row) for name, row in zip("xyz", rows, strict=True)]
+
+
+def _sized(values: Array, n: int) -> Array:
+    """`values`, or gaps where there are none."""
+    return values if len(values) == n else np.full(n, np.nan)
+
+
+def _push(store: Array, value: Array | float) -> None:
+    """Shift a store by one sample and add the newest at its end."""
+    store[..., :-1] = store[..., 1:]
+    store[..., -1] = value

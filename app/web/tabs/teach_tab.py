@@ -1,0 +1,239 @@
+"""The teach tab: waypoints, a program of steps, and running it."""
+
+from collections.abc import Callable
+
+import msgspec
+import numpy as np
+import viser
+import yaml
+
+from app.files.checked import BadInput, parse
+from app.files.taught_program import MOST, MOVES, WAITS, Lesson, Step, Waypoint, program
+from app.web.running import Running
+from app.web.scene.ghost import Ghost
+from app.web.widgets import svg
+from app.web.widgets.html import Html, enable
+from app.web.widgets.svg import Colour
+from pendant.inputs import Command
+from pendant.program.steps import ProgramState
+from pendant.tick.modes import Mode
+from sim.arm.arm_file import Arm
+from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.exchange.snapshot import Snapshot
+
+NONE = "none"
+BLUE = (25, 113, 194)
+HERE = 0.02
+"""The arm is at a waypoint when no joint is further from it [rad]."""
+
+APART = 0.08
+"""A recorded path gets a waypoint whenever a joint has turned by this much since the last one [rad]."""
+
+MOVABLE = {text: do for do, text in MOVES.items()}
+WAITING = {text: do for do, text in WAITS.items()}
+
+
+class Teach:
+    """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
+
+    def __init__(self, server: viser.ViserServer, loop: Running, arm: Arm) -> None:
+        gui = server.gui
+        self._loop, self._arm = loop, arm
+        self.lesson = Lesson()
+        self.ghost = Ghost(server, arm, "/ghost/waypoint", BLUE)
+        self._running: list[Step] = []  # the steps of the program handed over last
+        self._first: int | None = None  # place of the first of them in the plan; None: they are none of it
+        self._next = 0  # the step that `Step` does
+        self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", names_of(Lesson()))
+        self.edit = gui.add_button_group("Change", ("Go to", "↑", "↓", "✕"))
+        self.name = gui.add_text("Name", "")
+        self.record = gui.add_checkbox("Record a path", False)
+        with gui.add_folder("Program"):
+            self.list = Html(gui)
+            self.step = gui.add_dropdown("Step", (*MOVABLE, *WAITING))
+            self.change = gui.add_button_group("Steps", ("Add", "Undo", "Clear"))
+            self.speed = gui.add_slider("Speed [%]", min=10, max=100, step=5, initial_value=50)
+            self.run = gui.add_button_group("Run", ("Run", "Pause", "Step", "Stop"))
+        self.save = gui.add_button("Save as file", color="gray")
+        self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
+        self.message = Html(gui)
+        self._connect()
+        self._refresh()
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show where the program is; record a path while the arm is guided; True if anything changed."""
+        decision = snapshot.decision
+        if self.record.value and decision.mode is Mode.FREE_DRIVE:
+            last = self.lesson.waypoints[-1].q if self.lesson.waypoints else None
+            if last is None or float(np.max(np.abs(snapshot.estimate.q - np.array(last)))) > APART:
+                self._register(snapshot)
+        active = decision.program in (ProgramState.RUNNING, ProgramState.PAUSED)
+        at = decision.step if active else 0
+        name: str | None = None
+        if active and 0 < at <= len(self._running):
+            name = self._running[at - 1].to
+        elif self.choice.value != NONE and decision.mode is not Mode.RUN:
+            name = self.choice.value
+        target = next((w.q for w in self.lesson.waypoints if w.name == name), None)
+        if target is not None and float(np.max(np.abs(snapshot.estimate.q - np.array(target)))) < HERE:
+            target = None  # the arm is there
+        now = self._now(at)
+        rows = [(step.text, number == now) for number, step in enumerate(self.lesson.plan)]
+        return any(
+            [
+                self.list.show(svg.steps(rows, decision.program.value.lower() if active else "")),
+                self.ghost.show(target, snapshot, name or ""),
+                enable(self.register, decision.mode is not Mode.RUN),
+            ]
+        )
+
+    def mark(self) -> None:
+        """Register where the arm is; in free-drive that counts as guiding it (FD-13)."""
+        self._loop.desk.command(Command.REGISTER_WAYPOINT)
+        self._register(self._loop.latest())
+
+    def _now(self, at: int) -> int | None:
+        """The place in the plan of step `at` of the program that runs, unless the plan has changed since."""
+        if self._first is None or not 0 < at <= len(self._running):
+            return None
+        now, plan = self._first + at - 1, self.lesson.plan
+        return now if now < len(plan) and plan[now] == self._running[at - 1] else None
+
+    def _register(self, snapshot: Snapshot) -> None:
+        if len(self.lesson.waypoints) >= MOST:
+            return
+        seen = snapshot.estimate
+        fitting = snapshot.decision.fitting
+        R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
+        name = self.lesson.free_name()
+        waypoint = Waypoint(
+            name=name,
+            q=np.round(seen.q, 6).tolist(),
+            position=np.round(seen.tcp[:3], 6).tolist(),
+            quaternion=np.round(quaternion_from_matrix(R_BT), 8).tolist(),
+        )
+        self.lesson = self.lesson.with_waypoint(waypoint)
+        self._refresh(name)
+
+    def _refresh(self, chosen: str | None = None) -> None:
+        names = names_of(self.lesson)
+        wanted = next((name for name in (chosen, self.choice.value) if name is not None and name in names), names[-1])
+        if self.choice.options != names:
+            self.choice.options = names
+        if self.choice.value != wanted:
+            self.choice.value = wanted
+        self.name.value = "" if wanted == NONE else wanted
+
+    def _hand_over(self, steps: list[Step], first: int | None) -> None:
+        """Load and start a program of these steps; `first` is the place of the first one in the plan."""
+        if not steps:
+            self.message.show(svg.note("Nothing to run", "Register a waypoint first.", Colour.AMBER))
+            return
+        self._running, self._first = steps, first
+        self._loop.desk.load(program(self.lesson, steps, float(self.speed.value) / 100.0))
+        self._loop.desk.command(Command.START_PROGRAM)
+        self.message.show("")
+
+    def _connect(self) -> None:
+        def on(control: viser.GuiButtonHandle | viser.GuiButtonGroupHandle, act: Callable[[], None]) -> None:
+            @control.on_click
+            async def _(_: viser.GuiEvent) -> None:
+                act()
+
+        on(self.register, self.mark)
+        on(self.edit, self._edit)
+        on(self.change, self._change)
+        on(self.run, self._run)
+
+        @self.choice.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:
+                self.name.value = self.choice.value
+
+        @self.name.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:
+                self._rename(self.name.value.strip())
+
+        @self.save.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("taught.yaml", self.file(), save_immediately=True)
+
+        @self.load.on_upload
+        async def _(_: viser.GuiEvent) -> None:
+            self.read(self.load.value.name, self.load.value.content)
+
+    def file(self) -> bytes:
+        """What was taught, as a file."""
+        return yaml.safe_dump(msgspec.to_builtins(self.lesson), sort_keys=False, allow_unicode=True).encode()
+
+    def read(self, name: str, content: bytes) -> None:
+        """Take what a file teaches, or say in a line why not."""
+        try:
+            lesson = parse(content.decode("utf-8", "replace"), Lesson, name)
+            for number, waypoint in enumerate(lesson.waypoints):
+                if len(waypoint.q) != self._arm.n:
+                    raise BadInput(name, f"waypoints[{number}].q", waypoint.q, f"{self._arm.n} joint angles")
+        except BadInput as refusal:
+            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
+            return
+        self.lesson = lesson
+        self._refresh()
+        self.message.show(svg.note("File loaded", f"{len(lesson.waypoints)} waypoints, {len(lesson.plan)} steps.", Colour.GREEN))
+
+    def _edit(self) -> None:
+        name = self.choice.value
+        if name == NONE:
+            return
+        if self.edit.value == "Go to":
+            self._hand_over([Step(do="joint", to=name)], None)
+        elif self.edit.value == "✕":
+            self.lesson = self.lesson.without(name)
+        else:
+            self.lesson = self.lesson.moved(name, -1 if self.edit.value == "↑" else 1)
+        self._refresh(name)
+
+    def _rename(self, new: str) -> None:
+        old = self.choice.value
+        taken = any(waypoint.name == new for waypoint in self.lesson.waypoints)
+        if old != NONE and 0 < len(new) <= 40 and not taken:
+            self.lesson = self.lesson.renamed(old, new)
+            self._refresh(new)
+        else:
+            self._refresh(old)
+
+    def _change(self) -> None:
+        steps = self.lesson.steps
+        if self.change.value == "Clear":
+            steps = []
+        elif self.change.value == "Undo":
+            steps = steps[:-1]
+        elif self.step.value in WAITING:
+            steps = [*steps, Step(do=WAITING[self.step.value])]  # type: ignore[arg-type]
+        elif self.choice.value != NONE:
+            steps = [*steps, Step(do=MOVABLE[self.step.value], to=self.choice.value)]  # type: ignore[arg-type]
+        self.lesson = self.lesson.with_steps(steps[:MOST])
+        self._next = 0
+
+    def _run(self) -> None:
+        desk, state = self._loop.desk, self._loop.latest().decision.program
+        if self.run.value == "Pause":
+            desk.command(Command.PAUSE_PROGRAM)
+        elif self.run.value == "Stop":
+            self._next = 0
+            desk.command(Command.STOP_PROGRAM)
+        elif state is ProgramState.PAUSED and self.run.value == "Run":
+            desk.command(Command.RESUME_PROGRAM)
+        elif self.run.value == "Run":
+            self._hand_over(self.lesson.plan, 0)
+        else:
+            plan = self.lesson.plan
+            self._hand_over(plan[self._next : self._next + 1], self._next)
+            self._next = (self._next + 1) % max(len(plan), 1)
+
+
+def names_of(lesson: Lesson) -> tuple[str, ...]:
+    """What the dropdown offers: the waypoints, or that there is none."""
+    return tuple(waypoint.name for waypoint in lesson.waypoints) or (NONE,)

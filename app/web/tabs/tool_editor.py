@@ -1,0 +1,193 @@
+"""The editor of the table of tools: a form for one tool, and the whole table as a file."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import msgspec
+import viser
+import yaml
+
+from app.files.bodies import OVERLOAD, check_tools
+from app.files.checked import BadInput, parse
+from app.web.running import Running
+from app.web.widgets import svg
+from app.web.widgets.html import Html, enable
+from app.web.widgets.svg import Colour
+from pendant.equipment.load import FARTHEST
+from pendant.equipment.tools import Tool
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import BARE
+from sim.arm.scenario import Tool as ShapedTool
+
+
+class Unit(NamedTuple):
+    """How a quantity is shown: so many of it are one SI unit, with so many digits after the point."""
+
+    many: float
+    digits: int
+
+
+MILLIMETRES, DEGREES, SQUARE_CENTIMETRES = Unit(1e3, 1), Unit(180.0 / math.pi, 2), Unit(1e4, 2)
+"""Of lengths, angles, moments of inertia [kg·cm²]."""
+
+FAR = MILLIMETRES.many * FARTHEST
+"""Largest coordinate that the page takes [mm]: as large as in files."""
+
+ADD, SET, DELETE = "Add", "Set", "✕"
+
+FULLEST = 402.0
+"""Largest angle that the page takes [°]: as large as in files."""
+
+HEAVIEST = 1e4
+"""Largest moment of inertia that the page takes [kg·cm²]."""
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A file of tools; it also serves as a file for `pendant serve --config`."""
+
+    tools: list[ShapedTool]
+
+
+class ToolEditor:
+    """A folder of the tools' tab. It asks for another table; the pendant's logic takes or refuses that, whole."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+        self._loop, self._arm = loop, arm
+        self._tool: Tool = BARE  # that the form was filled with
+        self.wanted = ""  # name of the tool that was asked for last
+        with gui.add_folder("Edit the table", expand_by_default=False):
+            self.name = gui.add_text("Name", BARE.name)
+            self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
+            self.com = _vector(gui, "Centre [mm]", MILLIMETRES, FAR, "Centre of mass in the flange: x, y, z")
+            self.tcp = _vector(gui, "TCP [mm]", MILLIMETRES, FAR, "Tool centre point in the flange: x, y, z")
+            self.rpy = _vector(gui, "Turned [°]", DEGREES, FULLEST, "Roll, pitch, yaw of the tool in the flange")
+            self.known = gui.add_checkbox("Own inertia", False, hint="Else it follows from mass and shape")
+            self.moments = _vector(gui, "I [kg·cm²]", SQUARE_CENTIMETRES, HEAVIEST, "xx, yy, zz about the centre")
+            self.products = _vector(gui, "I xy xz yz", SQUARE_CENTIMETRES, HEAVIEST, "Products about the centre [kg·cm²]")
+            self.change = gui.add_button_group(
+                "Table", (ADD, SET, DELETE), hint="Add this, set the chosen one to it, delete that"
+            )
+            self.save = gui.add_button("Save the table", color="gray")
+            self.load = gui.add_upload_button("Load tools", mime_type=".yaml", color="gray")
+            self.message = Html(gui)
+        self._reveal()
+        self._connect()
+
+    def show(self, chosen: Tool | None, locked: bool) -> bool:
+        """Fill the form with the tool chosen, once; True if anything changed."""
+        filled = chosen is not None and chosen != self._tool
+        if chosen is not None and filled:
+            self._fill(chosen)
+        turned = self.change.visible is locked
+        if turned:
+            self.change.visible = not locked  # viser knows no disabled group of buttons
+        return any([filled, turned, enable(self.load, not locked)])
+
+    def entered(self) -> Tool:
+        """What the form says; what was not touched is as it was."""
+        was = self._tool
+        inertia = None
+        if self.known.value:
+            old = was.inertia or [0.0] * 6
+            inertia = _back(self.moments, old[:3], SQUARE_CENTIMETRES) + _back(self.products, old[3:], SQUARE_CENTIMETRES)
+        return msgspec.structs.replace(
+            was,
+            name=self.name.value.strip(),
+            mass=float(self.mass.value),
+            com=_back(self.com, was.com, MILLIMETRES),
+            tcp=_back(self.tcp, was.tcp, MILLIMETRES),
+            rpy=_back(self.rpy, was.rpy, DEGREES),
+            inertia=inertia,
+        )
+
+    def file(self) -> bytes:
+        """The table as a file."""
+        tools = [msgspec.to_builtins(tool) for tool in self._loop.tools]
+        return yaml.safe_dump({"tools": tools}, sort_keys=False, allow_unicode=True).encode()
+
+    def read(self, name: str, content: bytes) -> None:
+        """Take the tools of a file into the table, over those of the same names, or say in a line why not."""
+        try:
+            tools = parse(content.decode("utf-8", "replace"), Table, name).tools
+            check_tools(tools, self._arm, name, "tools")
+        except BadInput as refusal:
+            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
+            return
+        new = {tool.name: tool for tool in tools}
+        old = [new.pop(tool.name, tool) for tool in self._loop.tools]
+        self._loop.desk.tabulate((*old, *new.values()))
+        self.message.show(svg.note("File read", f"{len(tools)} tools.", Colour.GREEN))
+
+    def _fill(self, tool: Tool) -> None:
+        self._tool = tool
+        inertia = tool.inertia or [0.0] * 6
+        values: list[tuple[Any, Any]] = [
+            (self.name, tool.name),
+            (self.mass, tool.mass),
+            (self.com, _shown(tool.com, MILLIMETRES)),
+            (self.tcp, _shown(tool.tcp, MILLIMETRES)),
+            (self.rpy, _shown(tool.rpy, DEGREES)),
+            (self.known, tool.inertia is not None),
+            (self.moments, _shown(inertia[:3], SQUARE_CENTIMETRES)),
+            (self.products, _shown(inertia[3:], SQUARE_CENTIMETRES)),
+        ]
+        for control, value in values:
+            if control.value != value:
+                control.value = value
+        self._reveal()
+
+    def _reveal(self) -> None:
+        for control in (self.moments, self.products):
+            if control.visible != self.known.value:
+                control.visible = self.known.value
+
+    def _change(self) -> None:
+        """Ask for the table with the tool of the form, or without it."""
+        table, tool = self._loop.tools, self.entered()
+        if self.change.value == ADD:
+            table = (*table, tool)
+        elif self.change.value == SET:
+            table = tuple(tool if each.name == self._tool.name else each for each in table)
+        else:
+            table = tuple(each for each in table if each.name != self._tool.name)
+        self.wanted = tool.name
+        self.message.show("")
+        self._loop.desk.tabulate(table)
+
+    def _connect(self) -> None:
+        def on(control: Any, act: Callable[[], None]) -> None:
+            @control.on_click
+            async def _(_: viser.GuiEvent) -> None:
+                act()
+
+        on(self.change, self._change)
+
+        @self.known.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._reveal()
+
+        @self.save.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("tools.yaml", self.file(), save_immediately=True)
+
+        @self.load.on_upload
+        async def _(_: viser.GuiEvent) -> None:
+            self.read(self.load.value.name, self.load.value.content)
+
+
+def _vector(gui: viser.GuiApi, label: str, unit: Unit, most: float, hint: str) -> viser.GuiVector3Handle:
+    step = 10.0**-unit.digits
+    return gui.add_vector3(label, (0.0, 0.0, 0.0), min=(-most, -most, -most), max=(most, most, most), step=step, hint=hint)
+
+
+def _shown(values: Sequence[float], unit: Unit) -> tuple[float, ...]:
+    """Three values as the page shows them."""
+    return tuple(round(unit.many * value, unit.digits) for value in values)
+
+
+def _back(control: viser.GuiVector3Handle, was: Sequence[float], unit: Unit) -> list[float]:
+    """What a control says, in SI units: exactly what it was filled with, unless it was touched."""
+    said = control.value
+    return list(was) if said == _shown(was, unit) else [value / unit.many for value in said]

@@ -1,0 +1,88 @@
+"""The thresholds of contact detection, from settings, payload, posture, speed and mode (CD-5, CD-11, CD-12)."""
+
+from typing import NamedTuple
+
+from pendant.contact.settings import ContactUse
+from pendant.tick.modes import Mode
+
+LIGHTEST = 0.3
+"""Carried mass below which the ratio's threshold does not follow it: a bare flange has hardly any [kg] (CD-5)."""
+ARM_SHARE = 0.3
+"""Of the effective mass: a contact's ratio is minus the whole of it, so no threshold goes beyond this share (CD-5)."""
+OLDER = 16
+"""Samples before the newest, whose mean a clear difference is measured from: they add little noise to the newest's (CD-9)."""
+
+
+class ContactLimits(NamedTuple):
+    """Thresholds of all rules for one source; squares where sizes are compared squared."""
+
+    noise_force_sq: float  # difference of two samples: below, it is noise (CD-0) [N²]
+    noise_acceleration_sq: float  # [m²/s⁴]
+    opposite: bool  # directions must be opposite (CD-0)
+    cosine_sq: float  # of the angle limit
+    force_sq: float  # difference rule (CD-4) [N²]
+    acceleration_sq: float  # [m²/s⁴]
+    clear_sq: float  # over the variance of the contact force: beyond, it needs no second tick (CD-9)
+    clear_acceleration_sq: float  # [m²/s⁴]
+    ratio: float  # ratio rule: beyond minus this (CD-5) [kg]
+    ratio_acceleration_sq: float  # its second threshold [m²/s⁴]
+    value_force: float  # instant rule, beside what a wrong payload explains (CD-3) [N]
+    value_acceleration: float  # [m/s²]
+    confidence_sq: float  # statistical rule: standard errors, squared (CD-6)
+    force_variance: float  # least, of one axis, that the buffer is taken to have [N²]
+    acceleration_variance: float  # [m²/s⁴]
+    slow_force: float  # slow rule (CD-7) [N]
+    payload_margin: float  # force that a wrong payload may explain, an acceleration difference [kg]
+    clamping: float  # force difference over acceleration difference, beyond which it is clamping [kg]
+    mass: float  # configured [kg]
+
+
+def limits(
+    use: ContactUse, mass: float, effective_mass: float, speed: float, mode: Mode, link: bool = False, lever: float = 0.0
+) -> ContactLimits:
+    """The thresholds of one source now.
+
+    Args:
+        use: the settings.
+        mass: configured, that the force carries [kg].
+        effective_mass: of the arm behind the part [kg].
+        speed: of the tool centre point [m/s].
+        mode: robot mode.
+        link: the source is the joints and the part a link.
+        lever: of the carried mass: the angular acceleration's noise counts with it [m].
+    """
+    scale = (1.0 + use.speed_share * speed) / use.sensitivity
+    if mode is Mode.FREE_DRIVE:
+        scale *= use.free_drive_factor
+    # Of the three axes of a turning, each point feels two.
+    noise_f, noise_a = use.force_noise, (use.acceleration_noise**2 + 2.0 / 3.0 * (use.turn_noise * lever) ** 2) ** 0.5
+    slow_force = use.slow_force + use.slow_payload * mass
+    if link:
+        noise_f, noise_a, slow_force = use.link_force_noise, use.link_acceleration_noise, use.link_force
+    pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
+    noisy = use.noise_limit * pair
+    hard = use.hard_limit * pair * scale
+    # The acceleration of a load off the axis comes up to a tick later than its force: in vibration they lie against each other.
+    mismatch = scale * use.hard_payload * mass
+    margin = use.link_margin if link else use.payload_error * mass
+    return ContactLimits(
+        (noisy * noise_f) ** 2,
+        (noisy * noise_a) ** 2,
+        use.opposite,
+        use.angle**2,
+        (hard * noise_f + mismatch) ** 2,
+        (hard * noise_a) ** 2,
+        (1.0 + 1.0 / OLDER) * (use.clear_limit * scale) ** 2,
+        (use.clear_acceleration * scale) ** 2,
+        scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
+        (use.ratio_acceleration * scale) ** 2,
+        scale * use.value_force,
+        use.value_acceleration * scale,
+        (use.confidence * scale) ** 2,
+        noise_f * noise_f,
+        noise_a * noise_a,
+        slow_force * scale,
+        margin,
+        use.clamping_ratio + margin,
+        mass,
+    )

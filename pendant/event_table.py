@@ -1,0 +1,19 @@
+"""The one event table: effect on the mode, severity, texts, what clears it, who may override. Interfaces render from it."""
+
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import Row
+from pendant.freedrive.entry_rows import ENTRY
+from pendant.freedrive.rows import FREE_DRIVE
+from pendant.program.rows import PROGRAM
+from pendant.robot.rows import SAFETY
+
+TABLE: dict[Kind, Row] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROGRAM}
+
+
+def render(event: Event) -> tuple[str, str]:
+    """Headline and guidance of an event, with its numbers."""
+    row = TABLE[event.kind]
+    guidance = row.guidance
+    if row.variant is not None and event.values[row.variant[0]]:
+        guidance = row.variant[1]
+    return row.headline.format_map(event.values), guidance.format_map(event.values)

@@ -1,0 +1,1 @@
+"""What an event and its row are."""

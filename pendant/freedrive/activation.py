@@ -1,0 +1,264 @@
+"""The activation of free-drive: from the signal through the sequence to entry or its refusal (FD-7 to FD-12)."""
+
+from pendant.all_settings import Settings
+from pendant.context import Surroundings
+from pendant.events.event import Event, Kind, Values
+from pendant.freedrive.adaptive_gravity import Balance, Compensation
+from pendant.freedrive.attempt import Attempt, Outcome
+from pendant.freedrive.gate import Gate
+from pendant.freedrive.origins import may_enter, origins
+from pendant.freedrive.periods import Remaining
+from pendant.freedrive.sequence import SHORTEST, Sequence
+from pendant.guided.sensor_bias import Zero
+from pendant.limits.validity import JOINTS_SENSED, joints_ok
+from pendant.settings.schema import ticks
+from pendant.signals.sources import BUTTON
+from pendant.signals.stored_baseline import Stored
+from pendant.tick.limit_engine import Monitored
+from pendant.tick.modes import TICK, Mode, Phase
+from pendant.walls.barrier import Reading
+from pendant.walls.containment import NOBODY, Containment, facts
+from pendant.walls.definitions import Start
+
+NAMES = {
+    Phase.ACTIVATION: "activation",
+    Phase.FEEDBACK: "feedback",
+    Phase.CONFIRM: "confirmation",
+    Phase.LET_GO: "let go",
+}
+"""Of the periods before the sequence, for interfaces."""
+
+
+class Activation:
+    """One attempt after the other. Its events say what comes of them; whoever follows their effects calls `end`.
+
+    Attributes:
+        phase: OFF, one of an attempt, or SEQUENCE.
+        posture: of the joints, when the attempt's signal was complete [rad] (FD-22).
+    """
+
+    __slots__ = (
+        "_attempt",
+        "_compensation",
+        "_containment",
+        "_joints",
+        "_left",
+        "_rated",
+        "_sequence",
+        "_stored",
+        "_total",
+        "_zero",
+        "phase",
+        "posture",
+    )
+
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zero: Zero) -> None:
+        """
+        Args:
+            joints: the names used in events, base to flange.
+            rated: torque of each joint [N·m].
+            containment: walls and areas.
+            zero: of the flange sensor.
+        """
+        self.phase = Phase.OFF
+        self.posture: tuple[float, ...] | None = None
+        self._joints, self._rated = joints, rated
+        self._containment, self._zero = containment, zero
+        self._attempt: Attempt | None = None
+        self._sequence: Sequence | None = None
+        self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
+        self._left = self._total = 0  # ticks of the sequence
+        self._stored = Stored()  # for the sequence to compare with
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; what it was given is compared elsewhere."""
+        parts = (self._attempt, self._sequence, self._compensation, self._stored)
+        memories = [None if part is None else part.memory for part in parts]
+        return (self.phase, self.posture, self._left, self._total, *memories)
+
+    @property
+    def remaining(self) -> Remaining | None:
+        """Of the running period (FD-20)."""
+        attempt = self._attempt
+        if attempt is not None:
+            return Remaining(NAMES[attempt.phase], attempt.left, attempt.total)
+        balancing = self._compensation
+        if balancing is not None:
+            return Remaining("compensation", balancing.left, balancing.total)
+        return None if self._sequence is None else Remaining("sequence", self._left, self._total)
+
+    @property
+    def monitored(self) -> tuple[Monitored, ...]:
+        """What the sequence checks, while it runs."""
+        return () if self._sequence is None else self._sequence.monitored()
+
+    @property
+    def balance(self) -> Balance | None:
+        """For the control law, while a refused arm is balanced (FD-10)."""
+        return None if self._compensation is None else self._compensation.balance
+
+    def keep(self, around: Surroundings, known: bool) -> None:
+        """Keep the state of an arm that is held, before anybody tries to free it (FD-9); `known`: it is free already."""
+        estimate = around.estimate
+        if known or (around.mode is Mode.RUN and around.still.count == 0):
+            self._stored.forget()
+        elif self.phase is Phase.OFF and self._stored.due(estimate.tick):
+            if not joints_ok(estimate):
+                self._stored.forget()
+            elif around.still.count > 0:  # an arm that a stop leaves braking is not held yet
+                self._stored.keep(estimate, around.wrench_ok, around.mean)
+
+    def forget(self) -> None:
+        """The configured payload changes: what was stored is no more."""
+        self._stored.forget()
+
+    def end(self) -> None:
+        """Free-drive is entered or refused, or the attempt is given up."""
+        self.phase = Phase.OFF
+        self._attempt = None
+        self._sequence = None
+        self._compensation = None
+
+    def step(self, around: Surroundings, settings: Settings, gate: Gate) -> list[Event]:
+        """One tick with a signal, or of an attempt. Returns what happened, in order."""
+        if self.phase is Phase.SEQUENCE:
+            return self._check(around, settings)
+        tick, signal, attempt = around.estimate.tick, gate.signal, self._attempt
+        if attempt is None and gate.shut:
+            return [Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.appeared else []
+        counting = self.phase is Phase.ACTIVATION and not signal.source
+        if not counting and not around.guided and not may_enter(around.mode, settings):
+            return [_not_from(around.mode, tick, settings)]
+        if not around.enabled:
+            return [Event(Kind.REFUSED_ENABLING, tick, {"grip": around.grip or ""})]
+        events: list[Event] = []
+        if attempt is None:
+            attempt = self._attempt = Attempt(signal, settings)
+            self._containment.begin(Start.ACTIVATION, settings.walls)
+            events.append(_started(attempt, tick))
+            outcome = attempt.first()
+        else:
+            static = around.still.count >= ticks(settings.static.time)  # an arm that a hand has left still swings
+            outcome = attempt.step(signal, around.touched, around.hand_off and static)
+        self.phase = attempt.phase
+        if outcome is Outcome.CANCELLED:
+            self.end()
+            self._containment.leave()
+            limit = attempt.total * TICK
+            return [*events, Event(Kind.ACTIVATION_CANCELLED, tick, {"value": attempt.present, "limit": limit})]
+        if joints_ok(around.estimate):  # a wall may be anchored here already (VW-6)
+            reading = self._containment.step(around.estimate, *NOBODY)
+            if reading is not None:
+                events.append(_behind(reading, tick, settings))
+                return events
+        if outcome is Outcome.READY:
+            events += self._ready(attempt.confirmed, around, settings)
+        elif outcome is not Outcome.GOES_ON:
+            events.append(_asked(outcome, attempt, around, settings))
+        return events
+
+    def _ready(self, confirmed: bool, around: Surroundings, settings: Settings) -> list[Event]:
+        """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
+        tick = around.estimate.tick
+        if not joints_ok(around.estimate):
+            return [Event(Kind.REFUSED_SENSORS, tick, {"sensor": JOINTS_SENSED})]
+        if around.changing is not None:
+            return [Event(Kind.REFUSED_CHANGING, tick, {"mass": around.changing})]
+        if around.still.count < ticks(settings.static.time):
+            return [Event(Kind.REFUSED_MOVING, tick, around.still.moves(self._joints, settings.static))]
+        self.posture = tuple(around.estimate.q.tolist())
+        if not settings.sequence.on:
+            return [_entered(around, settings)]
+        use, stored = settings.sequence, None
+        if use.stored:
+            stored = self._stored.of(tick, ticks(use.age), around.wrench_ok)
+            if stored is None:
+                return [Event(Kind.REFUSED_NOT_STORED, tick, {"age": use.age})]
+        elif use.period < SHORTEST and not confirmed:
+            return [Event(Kind.REFUSED_SHORT, tick, {"value": use.period, "limit": SHORTEST})]
+        self._attempt = None
+        self.phase = Phase.SEQUENCE
+        self._total = self._left = ticks(use.period)
+        sequence = self._sequence = Sequence(around, settings, self._joints, self._rated, stored)
+        self._zero.begin(around.estimate, around.wrench_ok, around.mean)
+        self._containment.begin(Start.SEQUENCE, settings.walls)
+        return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(sequence, around, settings)]
+
+    def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """The sequence runs; the button does not matter any more (FD-8a)."""
+        sequence, balancing = self._sequence, self._compensation
+        if not around.guided and not may_enter(around.mode, settings):
+            return [_not_from(around.mode, around.estimate.tick, settings)]
+        if balancing is not None:
+            return self._balance(balancing, around, settings)
+        assert sequence is not None
+        self._left -= 1
+        return self._judge(sequence, around, settings)
+
+    def _judge(self, sequence: Sequence, around: Surroundings, settings: Settings) -> list[Event]:
+        """One tick of the sequence: what refuses free-drive, or entry at its end."""
+        tick = around.estimate.tick
+        missing = sequence.missing(around)
+        if missing:
+            return [Event(Kind.REFUSED_SENSORS, tick, {"sensor": missing})]
+        beyond = sequence.check(around)
+        reading = self._containment.step(around.estimate, *NOBODY)
+        if not beyond and reading is None:
+            return [_entered(around, settings)] if self._left == 0 else []
+        if beyond:
+            events = sequence.reasons(beyond, around, settings)
+        else:
+            assert reading is not None
+            events = [_behind(reading, tick, settings)]
+        if settings.sequence.compensate and not settings.sequence.protective_stop:
+            balancing = self._compensation = Compensation(events.pop(), around)
+            self._sequence = None
+            events.append(balancing.begun(tick))
+        return events
+
+    def _balance(self, balancing: Compensation, around: Surroundings, settings: Settings) -> list[Event]:
+        """One tick after a limit of the sequence was exceeded: the arm is balanced (FD-10)."""
+        if not joints_ok(around.estimate):
+            return [Event(Kind.REFUSED_SENSORS, around.estimate.tick, {"sensor": JOINTS_SENSED})]
+        self._containment.step(around.estimate, *NOBODY)
+        return balancing.step(around, settings.static)
+
+
+def _started(attempt: Attempt, tick: int) -> Event:
+    values: Values = {"period": attempt.total * TICK}
+    if attempt.source == BUTTON.source:
+        return Event(Kind.ACTIVATION_STARTED, tick, values)
+    return Event(Kind.SIGNAL_SEEN, tick, {"source": attempt.source, **values})
+
+
+def _asked(outcome: Outcome, attempt: Attempt, around: Surroundings, settings: Settings) -> Event:
+    """A confirmation or hands off is asked for, or was asked for and did not come."""
+    tick, handshake, off = around.estimate.tick, settings.handshake, settings.let_go
+    if outcome is Outcome.CONFIRM:
+        values: Values = {"source": attempt.source, "feedback": handshake.feedback, "window": handshake.window}
+        return Event(Kind.CONFIRM_ASKED, tick, values)
+    if outcome is Outcome.UNCONFIRMED:
+        return Event(Kind.REFUSED_UNCONFIRMED, tick, {"source": attempt.source, "limit": handshake.window})
+    values = {"force": around.felt, "limit": off.force, "within": off.within}
+    return Event(Kind.LET_GO_ASKED if outcome is Outcome.LET_GO else Kind.REFUSED_STILL_HELD, tick, values)
+
+
+def _not_from(mode: Mode, tick: int, settings: Settings) -> Event:
+    """Free-drive cannot be entered from `mode`."""
+    return Event(Kind.REFUSED_MODE, tick, {"mode": mode, "allowed": origins(settings)})
+
+
+def _behind(reading: Reading, tick: int, settings: Settings) -> Event:
+    """The activation shape is exceeded (VW-6, FD-10)."""
+    values = facts(reading)
+    if settings.sequence.protective_stop:
+        metres = float(values["distance"]) / 1000.0
+        values = {"parameter": f"wall {values['wall']}", "part": values["part"], "value": metres, "limit": 0.0, "unit": "m"}
+        return Event(Kind.SEQUENCE_STOPPED, tick, values)
+    return Event(Kind.REFUSED_WALL, tick, values)
+
+
+def _entered(around: Surroundings, settings: Settings) -> Event:
+    gain = settings.free_drive.gain if around.wrench_ok else 0.0
+    return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})

@@ -1,0 +1,143 @@
+"""Rows of the event table: activation and entry of free-drive (FD-7 to FD-12), and pushes (FD-6a)."""
+
+from pendant.events.event import Kind
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, denied, info, protected, refused
+
+ENTRY: dict[Kind, Row] = {
+    # Activation and entry (FD-7, FD-8a, FD-12)
+    Kind.ACTIVATION_STARTED: info(
+        "Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)
+    ),
+    Kind.ACTIVATION_CANCELLED: info(
+        "Free-drive not started: let go too early",
+        "Held for {value:.2f} s. Hold the button for {limit:.2f} s.",
+        ("value", "limit"),
+    ),
+    Kind.SIGNAL_SEEN: info("Free-drive: {source}", "Go on for {period:.1f} s.", ("source", "period")),
+    Kind.CONFIRM_ASKED: info(
+        "Free-drive: confirm",
+        "Let go; after {feedback:.1f} s, push it or press the button within {window:.0f} s.",
+        ("source", "feedback", "window"),
+    ),
+    Kind.REFUSED_UNCONFIRMED: refused(
+        "Free-drive refused: not confirmed", "Nobody confirmed the {source} within {limit:.0f} s.", ("source", "limit")
+    ),
+    Kind.LET_GO_ASKED: info(
+        "Free-drive: let go",
+        "{force:.0f} N; hands off, to below {limit:.0f} N in {within:.1f} s.",
+        ("force", "limit", "within"),
+    ),
+    Kind.REFUSED_STILL_HELD: refused(
+        "Free-drive refused: let go",
+        "Still {force:.0f} N after {within:.1f} s, limit {limit:.0f} N. Let go before the check.",
+        ("force", "limit", "within"),
+    ),
+    # In every mode (FD-6a)
+    Kind.PUSHED: info(
+        "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
+    ),
+    Kind.ENTERED: Row(
+        Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
+    ),
+    Kind.REFUSED_MODE: refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
+    Kind.REFUSED_SENSORS: refused("Free-drive refused: joint sensors not valid", "Check {sensor}, then try again.", ("sensor",)),
+    Kind.REFUSED_MOVING: refused(
+        "Free-drive refused: the arm moves",
+        "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Hands off, then try again.",
+        ("joint", "value", "limit", "time"),
+    ),
+    Kind.REFUSED_CHANGING: refused(
+        "Free-drive refused: the payload is being changed", "{mass:.2f} kg by now. Wait until it is done.", ("mass",)
+    ),
+    Kind.REFUSED_SHORT: refused(
+        "Free-drive refused: the check is too short",
+        "{value:.3f} s; below {limit:.2f} s only with the handshake or a stored state.",
+        ("value", "limit"),
+    ),
+    Kind.REFUSED_NOT_STORED: refused(
+        "Free-drive refused: no stored state",
+        "None of {age:.1f} s ago to compare with. Leave the arm untouched for so long, then try again.",
+        ("age",),
+    ),
+    Kind.SEQUENCE_STARTED: Row(
+        Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
+    ),
+    Kind.ENTRY_PREVENTED: denied(
+        "Beyond its limit: {parameter}",
+        "{part}: {value:.3f} {unit}, limit {limit:.3f} {unit}, {time:.2f} s into the check.",
+        (*EXCESS, "time"),
+    ),
+    Kind.REFUSED_LIMIT: refused(
+        "Free-drive refused: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go; check the payload and mounting.",
+        EXCESS,
+    ),
+    Kind.REFUSED_PAYLOAD: refused(
+        "Free-drive refused: wrong payload or a push",
+        "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
+        ("mass", "force", "way", "zero", "parameter"),
+    )._replace(
+        variant=(
+            "zero",
+            "{force:.0f} N: {mass:+.1f} kg, the sensor's zero, or a push {way}. Let go; zero it with nothing touching.",
+        )
+    ),
+    Kind.REFUSED_WALL: refused(
+        "Free-drive refused: {part} beyond {wall}",
+        "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
+        WALL,
+    ),
+    Kind.SEQUENCE_STOPPED: protected(
+        "Protective stop: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go, check the payload, then reset.",
+        EXCESS,
+    ),
+    Kind.COMPENSATING: info(
+        "Free-drive is refused: the arm is balanced", "Hands off. When it stands, within {period:.1f} s, it is held.", ("period",)
+    ),
+    Kind.COMPENSATED: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "The arm is balanced, and held",
+        "It moved by {moved:.1f} mm, within {time:.1f} s.",
+        ("moved", "time"),
+    ),
+    Kind.NOT_COMPENSATED: denied(
+        "The arm did not come to rest: it is held",
+        "It moved by {moved:.1f} mm within {time:.1f} s. Check the payload.",
+        ("moved", "time"),
+    ),
+    Kind.LOAD_FOUND: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "What the arm bears beyond its payload",
+        "{mass:+.2f} kg at the flange, or a steady {force:.0f} N push {way}.",
+        ("mass", "force", "way"),
+    ),
+    Kind.RESIDUAL_GONE: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "It was a push: the force is gone",
+        "{force:.0f} N at the refusal, {left:.0f} N now. Hands off while the arm is checked.",
+        ("force", "left"),
+    ),
+    Kind.RESIDUAL_STAYED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The force has stayed: check the payload",
+        "{force:.0f} N, as of {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
+        ("force", "mass", "zero"),
+        variant=(
+            "zero",
+            "{force:.0f} N, as of {mass:+.1f} kg or of the sensor's zero. Hands off? Zero it, or correct the payload.",
+        ),
+    ),
+    Kind.NOT_YET: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Free-drive not yet",
+        "Let go first; ready in {remaining:.1f} s.",
+        ("remaining",),
+        Clears.COOL_DOWN,
+    ),
+}

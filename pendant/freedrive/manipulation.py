@@ -1,0 +1,71 @@
+"""Manipulation (FD-13): is the user changing, or trying to change, the posture?"""
+
+import math
+
+from pendant.all_settings import Settings
+from pendant.limits.parameters import Monitor, Reference, View, reference
+from pendant.limits.residual import Split, upward
+from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.limit_engine import Excess
+from pendant.tick.modes import TICK
+from pendant.tick.pose import Wrench
+
+SETTLING = 0.5
+"""Time constant with which a change that a payload could explain stops counting as the user's [s]: a hand never keeps one."""
+
+RATE = 1.0 - math.exp(-TICK / SETTLING)
+
+
+class Maintained:
+    """Watches one free-drive or restart period for manipulation. Forces and torques are changes since it began."""
+
+    __slots__ = ("_joints", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
+
+    def __init__(self, estimate: Estimate, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]) -> None:
+        """
+        Args:
+            estimate: of the tick in which the period begins.
+            settings: as they are now; they stay so to the end of the period.
+            wrench: F_user without what the sensor drifted by, axes of B [N, N·m]; None: judged by the joints alone (FD-3a).
+            joints: names, base to flange.
+        """
+        self._monitor = Monitor(settings.limits.maintain)
+        self._share = settings.limits.maintain.load_share
+        self._since: Reference = reference(estimate, wrench)
+        self._joints = joints
+        self._ones = (1.0,) * len(joints)
+        self._up = upward(estimate.g_B.tolist())
+        self._slow = [0.0] * 6  # the change, smoothed
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._since, self._up, tuple(self._slow), self._monitor.memory)
+
+    def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
+        """The period begins anew in this tick."""
+        self._since = reference(estimate, wrench)
+        self._slow = [0.0] * 6
+
+    def step(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
+        """One tick; its joint values are finite. Returns the first parameter that exceeds its maintain limit, or None."""
+        parts = None if wrench is None else self._split(wrench)
+        share = self._share
+        heavier = share * GRAVITY * estimate.load_mass
+        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
+        return beyond[0].excess if beyond else None
+
+    def _split(self, wrench: Wrench) -> Split:
+        """The change without its payload-like part: that which stays, along gravity (force) or across it (torque)."""
+        change = [now - then for now, then in zip(wrench, self._since.wrench, strict=True)]
+        slow = self._slow
+        for k in range(6):
+            slow[k] += RATE * (change[k] - slow[k])
+        ux, uy, uz = self._up
+        fx, fy, fz, tx, ty, tz = slow
+        along = fx * ux + fy * uy + fz * uz
+        about = tx * ux + ty * uy + tz * uz
+        x, y, z = change[0] - along * ux, change[1] - along * uy, change[2] - along * uz
+        rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
+        force, torque = math.sqrt(x * x + y * y + z * z), math.sqrt(rx * rx + ry * ry + rz * rz)
+        return Split(0.0, 0.0, force, torque)  # no limit here asks for a payload

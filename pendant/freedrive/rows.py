@@ -1,0 +1,121 @@
+"""Rows of the event table: free-drive while it lasts, and its leaving (FD-8a, FD-12 to FD-23)."""
+
+from pendant.events.event import Kind
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, info, left, refused, stopped
+
+FREE_DRIVE: dict[Kind, Row] = {
+    # While it lasts (FD-13, FD-15, FD-23)
+    Kind.MANIPULATION: info(
+        "The arm is guided",
+        "{parameter}, {part}: {value:.2f} {unit}, limit {limit:.2f} {unit}.",
+        EXCESS,
+    ),
+    Kind.WAYPOINT: info("Waypoint registered", "In free-drive this counts as guiding the arm."),
+    Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
+    Kind.PERIOD_ANEW: info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
+    Kind.WALL_REACHED: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "{part} held at {wall}",
+        "{distance:.1f} mm out. Push it back, {way} of the base.",
+        WALL,
+    ),
+    Kind.SINGULARITY: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Singularity: {status}",
+        "Value {value:.3f} m, near below {limit:.3f} m. Locked axes: turn back, or free them.",
+        ("status", "value", "limit"),
+    ),
+    Kind.WRENCH_LOST: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "Flange force sensor not valid",
+        "The arm is heavier to move: no help from the force sensor.",
+    ),
+    Kind.SENSOR_STEPPED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The flange force sensor stepped",
+        "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
+        ("force",),
+    ),
+    Kind.SENSOR_DRIFTED: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "The flange force sensor drifts",
+        "Gone by {force:.1f} N, {torque:.1f} N·m while nobody moved the arm: no help from it any more. Leave, and check it.",
+        ("force", "torque"),
+    ),
+    Kind.HOLD_SILENT: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "Button counts as released",
+        "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s. Check the connection.",
+        ("value", "limit"),
+    ),
+    # Leaving (FD-8a, FD-12, FD-14, FD-15, FD-17)
+    Kind.LEFT_PERIOD: left(
+        "Free-drive ended: nobody moved the arm", "No motion for {limit:.1f} s. Hold the button to start again.", ("limit",)
+    ),
+    Kind.LEFT_RESTART: left(
+        "Free-drive ended: the arm stood still", "Still for {limit:.1f} s. Hold the button to start again.", ("limit",)
+    ),
+    Kind.LEFT_PRESS: left(
+        "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
+    ),
+    Kind.LEFT_RELEASE: left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
+    Kind.LEFT_LIMIT: left(
+        "Free-drive ended: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Guide it more gently.",
+        EXCESS,
+        Severity.WARNING,
+    ),
+    Kind.STOPPED_LIMIT: stopped(
+        "Stopped: {parameter}",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. See what happened, then reset.",
+        EXCESS,
+    ),
+    Kind.STOPPED_MOTION: stopped(
+        "Stopped: the arm moved and nobody moved it",
+        "{distance:.0f} mm on its own, at last {time:.2f} s above {limit:.3f} m/s. Check payload and mounting, then reset.",
+        ("distance", "time", "limit"),
+    ),
+    Kind.STOPPED_PAYLOAD: stopped(
+        "Stopped: the payload dropped or changed",
+        "{mass:+.1f} kg, {force:.0f} N at once. Correct the payload, then reset.",
+        ("mass", "force"),
+    ),
+    Kind.WAY_BACK: info("Back to the posture at activation", "{joints}.", ("joints", "posture")),
+    Kind.LEFT_WALL: left(
+        "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
+    ),
+    Kind.STOPPED_WALL: stopped("Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL),
+    Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
+    Kind.SENSORS_LOST: Row(
+        Effect.LEAVE_TO_STOP,
+        Severity.STOP,
+        "Stopped: joint sensors not valid",
+        "Free-drive needs {sensor}. Check it, then reset.",
+        ("sensor",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    # Enabling device: released and fully pressed both stop
+    Kind.REFUSED_ENABLING: refused(
+        "Free-drive refused: enabling device {grip}", "Hold the enabling device in its middle position.", ("grip",)
+    ),
+    Kind.LEFT_ENABLING: left(
+        "Free-drive ended: enabling device {grip}",
+        "Let go, then hold the enabling device in its middle position.",
+        ("grip",),
+        Severity.WARNING,
+    ),
+    Kind.RUN_ENABLING: Row(
+        Effect.INFO,
+        Severity.WARNING,
+        "Program stopped: enabling device {grip}",
+        "Let go, hold the enabling device in its middle position, then resume.",
+        ("grip",),
+    ),
+}

@@ -1,0 +1,218 @@
+"""Free-drive: activation, entry, staying in, and leaving with its cause and the way back (FD-7 to FD-17, FD-22)."""
+
+from pendant.all_settings import Settings
+from pendant.context import Surroundings
+from pendant.event_table import TABLE
+from pendant.events.event import Event, Kind, posture_text
+from pendant.events.event_row import LEAVING, Effect
+from pendant.freedrive.activation import Activation
+from pendant.freedrive.adaptive_gravity import Balance
+from pendant.freedrive.gate import Gate
+from pendant.freedrive.periods import Periods, Remaining
+from pendant.freedrive.sequence import Verdict
+from pendant.guided.endings import way_back
+from pendant.guided.free_arm import FreeArm
+from pendant.guided.sensor_bias import Zero
+from pendant.limits.joint_zones import JointZones
+from pendant.settings.schema import ticks
+from pendant.signals.sources import Presence
+from pendant.tick.limit_engine import Monitored
+from pendant.tick.modes import Phase
+from pendant.walls.containment import Containment, WallState
+
+ASKED_FOR = frozenset({Kind.LEFT_PRESS, Kind.LEFT_RELEASE, Kind.DEACTIVATED})
+"""Leavings that the user asked for: nobody has to be told the way back (FD-22)."""
+
+IN_FREE_DRIVE = frozenset({Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART})
+
+KNOWN = IN_FREE_DRIVE | {Phase.SEQUENCE}
+"""Phases in which the posture at activation is remembered."""
+
+ENDING = LEAVING | {Effect.NO_ENTRY}
+"""Effects of events with which free-drive or its activation is over."""
+
+
+class FreeDrive:
+    """State machine of the phases. Its events say what becomes of the mode; it changes no mode itself.
+
+    Attributes:
+        phase: of now.
+        arm: the free arm, from entry to leaving.
+    """
+
+    __slots__ = (
+        "_activation",
+        "_containment",
+        "_gate",
+        "_joints",
+        "_periods",
+        "_rated",
+        "_verdict",
+        "_zero",
+        "_zones",
+        "arm",
+        "phase",
+    )
+
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zones: JointZones) -> None:
+        """
+        Args:
+            joints: the names used in events, base to flange.
+            rated: torque of each joint [N·m].
+            containment: walls and areas.
+            zones: before the joint limits.
+        """
+        self.phase = Phase.OFF
+        self._joints, self._rated = joints, rated
+        self._containment, self._zones = containment, zones
+        self._gate = Gate()
+        self._zero = Zero()
+        self._activation = Activation(joints, rated, containment, self._zero)
+        self._verdict = Verdict()
+        self.arm: FreeArm | None = None
+        self._periods: Periods | None = None  # from entry to leaving
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        values = [getattr(self, name) for name in self.__slots__]
+        return tuple([getattr(value, "memory", value) for value in values])
+
+    @property
+    def idle(self) -> bool:
+        """Nothing runs that would have to be published."""
+        return self.phase is _OFF and self._gate.left == 0
+
+    def periods(self) -> tuple[Remaining, ...]:
+        """Every running period (FD-20)."""
+        gate = self._gate
+        running = (self._activation if self._periods is None else self._periods).remaining
+        told = () if running is None else (running,)
+        return (*told, Remaining("cool-down", gate.left, gate.total)) if gate.left > 0 else told
+
+    def monitored(self) -> tuple[Monitored, ...]:
+        """What the activation sequence checks, while it runs."""
+        return self._activation.monitored
+
+    @property
+    def balance(self) -> Balance | None:
+        """For the control law, while an arm that was refused is balanced (FD-10)."""
+        return self._activation.balance
+
+    def walls(self) -> tuple[WallState, ...]:
+        """Walls and areas that hold."""
+        return self._containment.states()
+
+    @property
+    def baseline(self) -> tuple[float, ...]:
+        """F_user that is nobody's, axes of F [N, N·m]; zeros without the flange sensor."""
+        return self._zero.baseline
+
+    @property
+    def caught(self) -> bool:
+        """A wall keeps the arm where it is (VW-6)."""
+        return self.arm is not None and self.arm.caught
+
+    @property
+    def zones(self) -> tuple[float, ...]:
+        """Torques that resist joints before the end of their ranges [N·m]; empty where none is (FD-4)."""
+        return self._zones.torque
+
+    @property
+    def helping(self) -> bool:
+        """The user's force is amplified: not while a payload may have dropped (FD-19)."""
+        return self._zero.used and not (self.arm is not None and self.arm.suspect)
+
+    def sense(self, held: bool, signal: Presence) -> None:
+        """Begin a tick: the button, and the signal of activation."""
+        self._gate.sense(held, signal)
+
+    def ask_anew(self) -> bool:
+        """The free-drive or restart period is to begin anew in this tick (FD-16). Returns whether one runs."""
+        return self._periods is not None and self._periods.ask_anew()
+
+    def register(self) -> None:
+        """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
+        if self._periods is not None:
+            self._periods.register()
+
+    def forget(self) -> None:
+        """The configured payload changes: what a refusal was to be told by, and was stored, is no more."""
+        self._verdict.waiting = False
+        self._activation.forget()
+
+    def stop(self, kind: Kind, settings: Settings) -> None:
+        """Free-drive or its activation ends because of an event of `kind`, from here or from elsewhere: an emergency stop."""
+        self.phase = Phase.OFF
+        self.arm = self._periods = None
+        self._activation.end()
+        self._containment.leave()
+        self._zones.leave()
+        self._zero.leave()
+        self._verdict.waiting = False
+        self._gate.close(ticks(settings.free_drive.cool_down) if TABLE[kind].cool_down else 0)
+
+    def step(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """Decide the tick that `sense` began. Returns what happened, in order."""
+        activation = self._activation
+        if settings.sequence.stored:
+            activation.keep(around, self.phase in KNOWN)
+        events = self._decide(around, settings)
+        if events:
+            self._follow(events[-1].kind, around, settings)
+        if activation.posture is not None and self.phase not in KNOWN:
+            if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
+                self._tell_way_back(activation.posture, around, settings, events)
+            activation.posture = None
+        return events
+
+    def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
+        """What happens; what it does to the phase, unless the next period begins, is decided by its effect."""
+        phase = self.phase
+        if phase is not _OFF and not around.enabled:
+            kind = Kind.LEFT_ENABLING if phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
+            return [Event(kind, around.estimate.tick, {"grip": around.grip or ""})]
+        if self.arm is not None and self._periods is not None:
+            return self._stay(self.arm, self._periods, around, settings)
+        gate = self._gate
+        told = self._verdict.step(around, gate.left <= 1) if self._verdict.waiting else []
+        if phase is Phase.OFF and not gate.signal.source:
+            return told
+        events = told + self._activation.step(around, settings, gate)
+        self.phase = self._activation.phase
+        return events
+
+    def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> list[Event]:
+        """One tick of free-drive."""
+        events = arm.step(around, settings, periods.waits)
+        if not events or TABLE[events[-1].kind].effect not in ENDING:
+            events += periods.step(around, settings, self._gate, arm.user, self._zero.felt(around.estimate))
+            self.phase = periods.phase
+        return events
+
+    def _follow(self, kind: Kind, around: Surroundings, settings: Settings) -> None:
+        """Do what an event of `kind` asks for."""
+        effect = TABLE[kind].effect
+        if effect is Effect.ENTER:
+            self._enter(around, settings)
+        elif effect in ENDING:
+            self.stop(kind, settings)
+            if kind is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
+                self._verdict.begin(around)
+
+    def _enter(self, around: Surroundings, settings: Settings) -> None:
+        zero = self._zero
+        self._activation.end()
+        zero.begin(around.estimate, around.wrench_ok, around.mean)
+        self._periods = Periods(self._gate.held, around, settings, zero.felt(around.estimate), self._joints)
+        self.arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
+        self.phase = self._periods.phase
+
+    def _tell_way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings, events: list[Event]) -> None:
+        """From where the arm is to the `posture` at activation (FD-22)."""
+        joints = way_back(posture, tuple(around.estimate.q.tolist()), self._joints)
+        if joints and settings.free_drive.way_back:
+            events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)}))
+
+
+_OFF = Phase.OFF  # looked up in every tick

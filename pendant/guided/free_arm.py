@@ -1,0 +1,125 @@
+"""The free arm, from entry to leaving: whose force moves it, what holds it back, and what ends it (FD-4, FD-18, FD-19, VW-6)."""
+
+from pendant.all_settings import Settings
+from pendant.context import Surroundings
+from pendant.events.event import Event, Kind, Values
+from pendant.guided.endings import Operation
+from pendant.guided.sensor_bias import Zero
+from pendant.guided.user_force import Hand
+from pendant.limits.axis_locks import axis_locks
+from pendant.limits.joint_zones import JointZones
+from pendant.limits.nearness import SingularityWatch
+from pendant.limits.soft_limits import Damping
+from pendant.limits.validity import JOINTS_SENSED, joints_ok
+from pendant.tick.pose import ORIGIN, Vector
+from pendant.walls.barrier import Consequence
+from pendant.walls.containment import NOBODY, Containment, caught, facts
+
+
+class FreeArm:
+    """One free-drive.
+
+    Attributes:
+        caught: a wall keeps the arm where it is (VW-6).
+        user: the user's force, axes of B [N].
+        damping: where free motion is resisted before a limit on its speed (FD-12b).
+        singularity: how near the arm is to one (FD-4).
+        suspect: a payload may have dropped (FD-19).
+        doubtful: it may be that nobody leads the moving arm (FD-19).
+    """
+
+    __slots__ = (
+        "_containment",
+        "_hand",
+        "_operation",
+        "_singularity",
+        "_zero",
+        "_zones",
+        "caught",
+        "damping",
+        "doubtful",
+        "singularity",
+        "suspect",
+        "user",
+    )
+
+    def __init__(
+        self,
+        around: Surroundings,
+        settings: Settings,
+        zero: Zero,
+        containment: Containment,
+        zones: JointZones,
+        joints: tuple[str, ...],
+        rated: tuple[float, ...],
+    ) -> None:
+        """
+        Args:
+            around: the tick of entry; its joint values are finite.
+            settings: as they are now.
+            zero: of the flange sensor, as of entry.
+            containment: walls and areas; here they begin to hold.
+            zones: before the joint limits; they begin to hold, too.
+            joints: names, base to flange.
+            rated: torque of each joint [N·m].
+        """
+        estimate = around.estimate
+        self._zero, self._containment, self._zones = zero, containment, zones
+        self._hand = Hand(estimate, around.mean.mean())
+        self._operation = Operation(estimate, settings, joints, rated, around.payload)
+        self._singularity = SingularityWatch()
+        self.caught = self.suspect = self.doubtful = False
+        self.user: Vector = ORIGIN
+        self.damping: Damping | None = None
+        self.singularity = self._singularity.status
+        zones.enter(settings.joint_limits)
+        containment.enter(settings.walls)
+        containment.step(estimate, *NOBODY)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; what it was given is compared elsewhere."""
+        return (self._hand.memory, self._operation.memory, self._singularity.memory, self.caught)
+
+    def step(self, around: Surroundings, settings: Settings, waits: bool) -> list[Event]:
+        """One tick. Returns what happened; free-drive is left where the last of it says so.
+
+        Args:
+            around: this tick.
+            settings: as they are now.
+            waits: nobody is known to move the arm.
+        """
+        estimate, zero, hand, operation = around.estimate, self._zero, self._hand, self._operation
+        tick = estimate.tick
+        if not joints_ok(estimate):
+            return [Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED})]
+        events: list[Event] = []
+        if zero.used and not around.wrench_ok:
+            zero.leave()
+            events.append(Event(Kind.WRENCH_LOST, tick))
+        hand.step(estimate, zero.used)
+        self.user = hand.user
+        if zero.used and settings.unexplained.sensor:
+            told = zero.step(estimate, hand, around.mean, waits)
+            if told is not None:
+                events.append(told)
+        reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
+        before, self.caught = self.caught, reading is not None and caught(reading)
+        if reading is not None and not self.caught:
+            kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
+            events.append(Event(kind, tick, facts(reading)))
+            return events
+        if reading is not None and not before:
+            events.append(Event(Kind.WALL_REACHED, tick, facts(reading)))
+        self._zones.step(estimate)
+        if self._singularity.step(estimate.singularity, settings.axes) and axis_locks(settings.axes) is not None:
+            values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
+            events.append(Event(Kind.SINGULARITY, tick, values))
+        self.singularity = self._singularity.status
+        baseline = zero.baseline if zero.used else None
+        driven = around.shaken or self.caught or self._zones.pushing
+        ending = operation.step(estimate, hand, baseline, driven, zero.slack(estimate))
+        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
+        if ending is not None:
+            events.append(Event(ending.kind, tick, ending.values))
+        return events

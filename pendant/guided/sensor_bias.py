@@ -1,0 +1,263 @@
+"""The flange sensor's zero in free-drive: what it drifts and steps by is no hand's, and must not drive the arm (FD-19).
+
+A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
+taken off, unless the joints feel it as well: a hand that rests on an arm at rest would be taken for drift, and would seem to push
+the other way when it lets go. What was taken off in the last moments before the arm moves is given back, for a hand pushes a
+little before the joints tell. A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
+"""
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+from pendant.events.event import Event, Kind
+from pendant.guided.sensor_steps import ANSWER, MOVED, Steps
+from pendant.guided.user_force import Hand
+from pendant.limits.parameters import ZEROS
+from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned
+
+SLOW = 3.0
+"""So fast may a force drift [N/s]."""
+
+SLOW_TURN = 0.6
+"""And a torque [N·m/s]."""
+
+NOISY, NOISY_TURN = 0.5, 0.1
+"""What of a change was too fast waits for the next windows up to so much [N, N·m], for it may be noise; more is a hand's."""
+
+FAR, FAR_TURN = 4.0, 1.0
+"""A sensor that has drifted so far beyond what it does by itself [N, N·m] is not used any more: it is not so good as it should
+be, or a hand presses slowly on an arm that does not move, and would seem to push the other way when it lets go."""
+
+FELT = 1.0
+"""From so large a change on [N] the joints are asked: of less they cannot tell."""
+
+QUIET = 0.7
+"""No drift begins with more than this [N]: an arm that comes to rest with more of a force is held by a hand."""
+
+SLOWLY, SLOWLY_TURN = 0.0133, 0.001
+"""And so much for each second since it was last followed [N/s, N·m/s]: so fast a sensor drifts by itself (assets/robots/)."""
+
+SMOOTH = 1.0 / WINDOW
+"""Weight of a tick in what the joints feel: their mean over a window."""
+
+BEGINS = 5
+"""Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
+
+
+class Slack(NamedTuple):
+    """What the sensor may have drifted by itself since that was last followed: an uncertainty of what it tells."""
+
+    force: float  # [N]
+    torque: float  # [N·m]
+
+
+SURE = Slack(0.0, 0.0)
+
+
+class Drift:
+    """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
+
+    Attributes:
+        lately: what was taken off in the last windows, axes of F [N, N·m].
+    """
+
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "lately")
+
+    def __init__(self, tick: int = 0) -> None:
+        """`tick` of now."""
+        self._quiet = tick  # when it was last followed
+        self._count = 0
+        self._followed: Wrench | None = None
+        self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
+        self._felt: Vector = ORIGIN  # by the joints in it [N]
+        self.lately: deque[Wrench] = deque(maxlen=BEGINS)
+
+    @property
+    def begun(self) -> bool:
+        """It follows an arm at rest."""
+        return self._followed is not None
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._quiet, self._count, self._followed, self._began, self._felt, tuple(self.lately))
+
+    def restart(self) -> None:
+        """The arm may be moved, held by a hand, or the sensor is not used."""
+        self._followed = None
+
+    def pause(self) -> None:
+        """The same, and the next window begins with the next tick in which nobody moves the arm."""
+        self._count = 0
+        self.restart()
+
+    def slack(self, tick: int) -> Slack:
+        """At this tick."""
+        seconds = TICK * (tick - self._quiet)
+        return Slack(SLOWLY * seconds, SLOWLY_TURN * seconds)
+
+    def begin(self, apart: Wrench, tick: int) -> Wrench | None:
+        """The arm has come to rest, and feels so much beyond the baseline, axes of F [N, N·m].
+
+        Returns:
+            What of it the sensor drifted by while the arm was moved; None while a hand holds the arm.
+        """
+        force, slack = norm((apart[0], apart[1], apart[2])), self.slack(tick)
+        if force > QUIET + slack.force:
+            return None
+        self._quiet = tick
+        return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
+
+    def give_back(self) -> list[Wrench]:
+        """What was taken off lately was a hand's, axes of F [N, N·m]."""
+        lately = list(self.lately)
+        self.lately.clear()
+        return lately
+
+    def keep(self, gone: Wrench) -> None:
+        """So much was taken off, axes of F [N, N·m]."""
+        self.lately.append(gone)
+
+    def due(self) -> bool:
+        """One tick; whether a mean is wanted in it."""
+        self._count = self._count % WINDOW + 1
+        return self._count == 1
+
+    def step(self, mean: Wrench, felt: Vector) -> Wrench | None:
+        """The mean of the last window, and the force that the joints felt in it, axes of B [N, N·m]: what is to be taken off.
+
+        None for the first one, and for what the joints feel as well.
+        """
+        force: Vector = (mean[0], mean[1], mean[2])
+        if self._followed is None:
+            self._followed, self._began, self._felt = mean, force, felt
+            return None
+        since, answer = _less(force, self._began), _less(felt, self._felt)
+        size = dot(since, since)
+        if size >= FELT * FELT and dot(since, answer) >= ANSWER * size:
+            return None
+        change = [now - then for now, then in zip(mean, self._followed, strict=True)]
+        time = WINDOW * TICK
+        gone = (*_within(change[:3], SLOW * time), *_within(change[3:], SLOW_TURN * time))
+        rest = [whole - part for whole, part in zip(change, gone, strict=True)]
+        later = (*_within(rest[:3], NOISY), *_within(rest[3:], NOISY_TURN))
+        self._followed = tuple([now - part for now, part in zip(mean, later, strict=True)])
+        return gone
+
+
+def _within(change: list[float], most: float) -> Vector:
+    """A change of three numbers, at most so large."""
+    x, y, z = change
+    share = most / max(math.sqrt(x * x + y * y + z * z), most, 1e-12)
+    return share * x, share * y, share * z
+
+
+def _less(a: Vector, b: Vector) -> Vector:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+class Zero:
+    """What of F_user is nobody's: from the activation sequence on, or from entry, to leaving.
+
+    Attributes:
+        used: the flange sensor is; it was valid in every tick since.
+        baseline: F_user in the beginning, and what the sensor drifted by, axes of F [N, N·m]; zeros without the sensor.
+        drifted: what the sensor drifted by since, axes of F [N, N·m].
+    """
+
+    __slots__ = ("_drift", "_felt", "_since", "_steps", "baseline", "drifted", "used")
+
+    def __init__(self) -> None:
+        self.used = False
+        self.baseline: Wrench = ZEROS
+        self.drifted: Wrench = ZEROS
+        self._drift, self._steps = Drift(), Steps()
+        self._since = 0  # tick of the beginning
+        self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt, self._since)
+
+    def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
+        """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
+        self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
+        self._drift, self._steps, self._since = Drift(estimate.tick), Steps(), estimate.tick
+        x, y, z = estimate.F_joints.tolist()
+        self._felt = (x, y, z)
+
+    def leave(self) -> None:
+        """The sensor is not used any more."""
+        self.used, self.baseline, self.drifted = False, ZEROS, ZEROS
+
+    def felt(self, estimate: Estimate) -> Wrench | None:
+        """F_user without what the sensor drifted by, axes of B [N, N·m]; None where the sensor is not used."""
+        if not self.used:
+            return None
+        wrench = tuple(estimate.F_user.tolist())
+        if self.drifted is ZEROS:
+            return wrench
+        x, y, z, a, b, c = self.drifted
+        R_BF = flat(estimate.R_BF)
+        drifted = (*turned(R_BF, (x, y, z)), *turned(R_BF, (a, b, c)))
+        return tuple([value - part for value, part in zip(wrench, drifted, strict=True)])
+
+    def slack(self, estimate: Estimate) -> Slack:
+        """Of what is told at the flange now."""
+        return self._drift.slack(estimate.tick)
+
+    def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
+        """One tick of free-drive with a valid sensor: what it drifts by is taken off.
+
+        One that steps, or has drifted far, is not used any more; that is returned.
+
+        Args:
+            estimate: of this tick.
+            hand: after its step.
+            mean: of F_user.
+            waits: nobody is known to move the arm.
+        """
+        x, y, z = estimate.F_joints.tolist()
+        fx, fy, fz = self._felt
+        self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
+        stepped = self._steps.step(estimate, hand)
+        if stepped is not None:
+            self.leave()
+            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)})
+        if not waits:
+            self._drift.pause()
+            # A sensor that has drifted far seems to be a hand as well, but moves nothing.
+            if self._drift.lately and any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
+                for taken in self._drift.give_back():
+                    self._take_off(tuple([-value for value in taken]), hand)
+        elif self._drift.due():
+            now = mean.mean()
+            if not self._drift.begun:
+                apart = [value - part for value, part in zip(in_flange(estimate, now), self.baseline, strict=True)]
+                meanwhile = self._drift.begin(tuple(apart), estimate.tick)
+                if meanwhile is None:
+                    return None
+                self._take_off(meanwhile, hand)
+            gone = self._drift.step(now, self._felt)
+            if gone is not None:
+                gone = in_flange(estimate, gone)
+                self._drift.keep(gone)
+                self._take_off(gone, hand)
+                x, y, z, a, b, c = self.drifted
+                far, turn = norm((x, y, z)), norm((a, b, c))
+                seconds = TICK * (estimate.tick - self._since)
+                if far >= FAR + SLOWLY * seconds or turn >= FAR_TURN + SLOWLY_TURN * seconds:
+                    self.leave()
+                    return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
+        return None
+
+    def _take_off(self, gone: Wrench, hand: Hand) -> None:
+        """So much, axes of F [N, N·m], is an offset of the sensor."""
+        hand.shift((gone[0], gone[1], gone[2]))
+        self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])
+        self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])

@@ -1,0 +1,186 @@
+"""Motion in free-drive that nobody causes (FD-19)."""
+
+import math
+
+from pendant.events.event import Values
+from pendant.guided.sensor_bias import SURE, Slack
+from pendant.guided.settings import Unexplained
+from pendant.guided.user_force import CARRIED, Hand
+from pendant.guided.work import Work
+from pendant.limits.parameters import Reference
+from pendant.settings.schema import ticks
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import ORIGIN, Vector, norm
+
+AWAY = 0.015
+"""An arm at rest that nobody touches goes no farther on its own [m], however slowly: friction all but holds a wrong payload."""
+
+UNFELT = 0.01
+"""Without the flange sensor no farther once it counts as moving [m]: a light hand is not felt then, but an arm that breaks away
+from its friction is as fast as a hand in 0.3 s."""
+
+HALF = 0.5
+"""From this share of what is allowed on nothing helps the arm: a hand then pushes, and an arm that nobody leads comes to rest."""
+
+
+class Way:
+    """From where an arm goes on its own, and the work that is done on it meanwhile.
+
+    Attributes:
+        work: since then; to be stepped while the arm moves.
+    """
+
+    __slots__ = ("_began", "work")
+
+    def __init__(self, since: Reference) -> None:
+        """
+        Args:
+            since: what held at entry; the way begins there.
+        """
+        self._began = since.position
+        self.work = Work(since.torques)
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._began, self.work.memory)
+
+    def begin(self, estimate: Estimate) -> None:
+        """It begins here."""
+        self._began = tuple(estimate.p_BF.tolist())
+        self.work.begin(estimate)
+
+    def length(self, estimate: Estimate) -> float:
+        """From there to where the flange is [m]."""
+        return math.dist(self._began, estimate.p_BF.tolist())
+
+
+class Alone:
+    """Counts for how long, and how far, the arm moves and nobody moves it.
+
+    Attributes:
+        led: somebody pays for the motion.
+        doubtful: half of what is allowed has gone by: nothing helps the motion on, so that who leads it pushes, and else it ends.
+
+    A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`).
+    """
+
+    __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
+
+    def __init__(self, on: Unexplained, since: Reference) -> None:
+        """
+        Args:
+            on: settings.
+            since: what held at entry.
+        """
+        self._on, self._allowed = on, ticks(on.time)
+        self._ticks = 0  # of the stretch
+        self._felt = False  # a hand, in it
+        self._doubted = 0  # ticks of the doubt
+        self._stretch = Way(since)
+        self._at_rest = True  # before; nobody let it go while it moved
+        self._whole = Way(since)  # since it has been at rest
+        self.led = self.doubtful = False
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        own = (self._ticks, self._felt, self._doubted, self._at_rest, self.doubtful, self.led)
+        return (*own, self._stretch.memory, self._whole.memory)
+
+    def step(
+        self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool, slack: Slack = SURE, torque: Vector = ORIGIN
+    ) -> Values | None:
+        """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
+
+        Args:
+            estimate: of this tick.
+            hand: after its step.
+            use_wrench: the flange sensor is used.
+            driven: a wall or another device moves the arm, or holds it.
+            slack: what may be the sensor's drift.
+            torque: of the hand at the flange, axes of B [N·m].
+        """
+        if driven:
+            self._ticks, self._at_rest = 0, False
+            self._end_doubt()
+            self.led = False
+            return None
+        x, y, z = hand.user
+        least = self._on.force + slack.force
+        felt = x * x + y * y + z * z >= least * least
+        # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
+        usual = norm(hand.usual)
+        by_link = use_wrench and usual < CARRIED + slack.force
+        wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        way = self._too_long(estimate, wrench, norm((vx, vy, vz)), felt, use_wrench, by_link)
+        if way is None:
+            return None
+        return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
+
+    def _too_long(
+        self, estimate: Estimate, wrench: tuple[Vector, Vector], speed: float, felt: bool, use_wrench: bool, by_link: bool
+    ) -> Way | None:
+        """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
+
+        Returns which way is too long.
+        """
+        stretch, whole = self._stretch, self._whole
+        moves = speed >= self._on.speed
+        if felt is not self._felt or not moves:
+            self._felt, self._ticks = felt, 0
+        if moves:
+            if self._ticks == 0:
+                stretch.begin(estimate)
+            self._ticks += 1
+            stretch.work.step(estimate, *wrench)
+        if felt:
+            self._at_rest = False
+            self.led = moves and by_link and stretch.work.settled
+            self._end_doubt()
+            return None
+        if not (moves or self._at_rest):
+            self._at_rest = True
+            whole.begin(estimate)
+        far = False
+        if self._at_rest:
+            whole.work.step(estimate, *wrench)
+            length = whole.length(estimate) if use_wrench else stretch.length(estimate) if moves else 0.0
+            paid = by_link and whole.work.paid
+            if length > (AWAY if use_wrench else UNFELT):
+                if not paid:
+                    return whole if use_wrench else stretch
+                self._at_rest = False
+            far = use_wrench and not paid and length > HALF * AWAY
+            self.led = paid and whole.work.settled
+        if moves:
+            self.led = by_link and stretch.work.settled
+        if self.led or not moves:
+            self._ticks, self.doubtful = 0, False
+        elif self._lasts(HALF, by_link):
+            self.doubtful = use_wrench
+        self.doubtful = self.doubtful or far
+        self._doubted = self._doubted + 1 if self.doubtful else 0
+        # Without help an arm that nobody leads may come to rest first.
+        waits = by_link and self._doubted < HALF * self._allowed
+        return stretch if moves and not (self.led or waits) and self._lasts(1.0, by_link) else None
+
+    def _lasts(self, share: float, by_link: bool) -> bool:
+        """Nobody has led the arm for this share of the time that it has."""
+        most = round(share * self._allowed)
+        return self._stretch.work.lasts(most) if by_link else self._ticks > most
+
+    def _end_doubt(self) -> None:
+        self.doubtful, self._doubted = False, 0
+
+
+NO_WRENCH = (ORIGIN, ORIGIN)
+
+
+def _beyond(value: Vector, size: float, slack: float) -> Vector:
+    """What of a value of this size is certain."""
+    share = max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
+    x, y, z = value
+    return share * x, share * y, share * z

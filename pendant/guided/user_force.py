@@ -1,0 +1,166 @@
+"""The user's force on the arm in free-drive, told from a wrong payload's and from a sensor's offset (FD-13, FD-19, VW-5).
+
+What the sensor and the joints felt when free-drive began is nobody's. Of what changed since, a part along gravity that stays may
+be a payload's; it stops counting as the user's with a time constant, as in `pendant.freedrive.manipulation`.
+"""
+
+import math
+
+from pendant.limits.residual import upward
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import ORIGIN, Vector, dot, flat, turned_back
+
+SETTLING = 1.5
+"""Time constant with which a change along gravity becomes payload-like [s]: a sensor that drifts by 2 N/s stays below 3 N."""
+
+LED, LED_SETTLING = 0.02, 4.0
+"""While the flange is faster than this [m/s] that takes longer [s]: a hand may lead the arm gently up or down for seconds."""
+
+SWING = 0.05
+"""Time constant that takes the arm's own swinging off what the flange sensor feels [s]: a hand's push lasts longer."""
+
+OFFSET = 4.0
+"""Largest offset of the flange sensor [N]; what is beyond along gravity is a payload's, which does not turn with the flange."""
+
+DOUBT = 0.5
+"""Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia, and is nobody's."""
+
+JOINTS_SWING = 0.1
+"""Time constant that takes an arm's own swinging off what the joints feel [s]."""
+
+FELT_BY_JOINTS = 10.0
+"""A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
+
+ON_A_LINK = 5.0
+"""And from here on [N] while the flange sensor feels no more than `CARRIED`: it would feel what falls."""
+
+CARRIED = 4.0
+"""Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
+
+STANDS_OUT = 3.0
+"""A step of the force is at least so many times as large as its fluctuation lately, root mean square: a heavy load that swings on
+the arm's springs makes some newtons."""
+
+LATELY = 0.1
+"""Time constant of the force and its fluctuation lately [s]."""
+
+_LATELY = 1.0 - math.exp(-TICK / LATELY)
+_SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
+
+
+class Hand:
+    """Follows the user's force from entry to leaving."""
+
+    __slots__ = (
+        "_baseline",
+        "_by_joints",
+        "_by_sensor",
+        "_doubt",
+        "_felt",
+        "_payload",
+        "_residual",
+        "_slow",
+        "_slow_joints",
+        "_spread",
+        "_up",
+        "change",
+        "payload",
+        "user",
+        "usual",
+    )
+
+    def __init__(self, estimate: Estimate, baseline: tuple[float, ...]) -> None:
+        """
+        Args:
+            estimate: of the tick of entry; its joint values are finite.
+            baseline: mean of F_user before it, axes of B [N, N·m]; zeros without a sensor.
+        """
+        self._up = upward(estimate.g_B.tolist())
+        force: Vector = (baseline[0], baseline[1], baseline[2])
+        self._residual = dot(force, self._up)
+        self._payload = self._residual - min(max(self._residual, -OFFSET), OFFSET)
+        self._doubt = DOUBT * abs(self._payload)
+        offset = _less(force, self._payload, self._up)
+        self._baseline = turned_back(flat(estimate.R_BF), offset)  # an offset of the sensor turns with the flange
+        self._felt: Vector = _triple(estimate.F_joints.tolist())
+        self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
+        self._spread = 0.0  # mean square of what the change lately was off its mean [N²]
+        self._by_sensor: Vector = ORIGIN
+        self._by_joints: Vector = ORIGIN
+        self.user: Vector = ORIGIN  # the user's force, axes of B [N]
+        self.change: Vector = ORIGIN  # of what the sensor feels, as measured, axes of B [N]
+        self.usual: Vector = ORIGIN  # of that the mean lately [N]
+        self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return tuple([getattr(self, name) for name in self.__slots__])
+
+    def shift(self, force: Vector) -> None:
+        """The sensor's zero has gone by `force`, axes of F [N], which is nobody's."""
+        x, y, z = force
+        ox, oy, oz = self._baseline
+        self._baseline = (ox + x, oy + y, oz + z)
+
+    @property
+    def by_joints(self) -> Vector:
+        """What the joints feel of it, however little, axes of B [N]."""
+        return self._by_joints
+
+    def stands_out(self, step: Vector) -> bool:
+        """Whether a step of the force at the flange [N] is larger than it fluctuates."""
+        return dot(step, step) >= STANDS_OUT * STANDS_OUT * self._spread
+
+    def step(self, estimate: Estimate, use_wrench: bool) -> None:
+        """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
+        ux, uy, uz = self._up
+        x, y, z, _, _, _ = estimate.v_F.tolist()
+        settle = _SLOWER if x * x + y * y + z * z > LED * LED else _SLOW
+        x, y, z = estimate.F_joints.tolist()
+        x0, y0, z0 = self._felt
+        x, y, z = x - x0, y - y0, z - z0
+        self._slow_joints = residual = self._slow_joints + settle * (x * ux + y * uy + z * uz - self._slow_joints)
+        bx, by, bz = self._by_joints
+        bx += _JOINTS * (x - residual * ux - bx)
+        by += _JOINTS * (y - residual * uy - by)
+        bz += _JOINTS * (z - residual * uz - bz)
+        self._by_joints = (bx, by, bz)
+        user, size = self._by_joints, math.hypot(bx, by, bz)
+        felt = size >= FELT_BY_JOINTS
+        if use_wrench:
+            (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
+            (ox, oy, oz), payload = self._baseline, self._payload
+            x, y, z, _, _, _ = estimate.F_user.tolist()
+            x -= payload * ux + xx * ox + xy * oy + xz * oz
+            y -= payload * uy + yx * ox + yy * oy + yz * oz
+            z -= payload * uz + zx * ox + zy * oy + zz * oz
+            self.change = (x, y, z)
+            bx, by, bz = self.usual
+            bx, by, bz = x - bx, y - by, z - bz
+            self._spread += _LATELY * (bx * bx + by * by + bz * bz - self._spread)
+            self.usual = (x - (1.0 - _LATELY) * bx, y - (1.0 - _LATELY) * by, z - (1.0 - _LATELY) * bz)
+            self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
+            residual = self._residual + slow
+            sx, sy, sz = self._by_sensor
+            sx += _SENSOR * (x - slow * ux - sx)
+            sy += _SENSOR * (y - slow * uy - sy)
+            sz += _SENSOR * (z - slow * uz - sz)
+            self._by_sensor = (sx, sy, sz)
+            by_sensor = math.hypot(sx, sy, sz)
+            felt = felt or (size >= ON_A_LINK and math.hypot(x, y, z) < CARRIED)
+            if not felt or by_sensor >= FELT_BY_JOINTS:
+                user, size, felt = self._by_sensor, by_sensor, True
+        self.user = user if felt and size >= self._doubt else ORIGIN
+        self.payload = (residual * ux, residual * uy, residual * uz)
+
+
+def _triple(values: list[float]) -> Vector:
+    x, y, z = values
+    return x, y, z
+
+
+def _less(a: Vector, along: float, up: Vector) -> Vector:
+    """`a` without `along` in the direction `up`."""
+    return a[0] - along * up[0], a[1] - along * up[1], a[2] - along * up[2]

@@ -1,0 +1,1 @@
+"""Parameters that limits bound, and what resists motion before a limit."""

@@ -1,0 +1,57 @@
+"""Which of the directions x y z and the turns rx ry rz of the tool are free in free-drive, and in which frame (FD-4)."""
+
+import math
+from typing import NamedTuple
+
+from pendant.limits.settings import Axes
+from pendant.tick.pose import Rotation, Vector
+
+AXES = ("x", "y", "z", "rx", "ry", "rz")
+
+PRESETS: dict[str, frozenset[str]] = {
+    "all": frozenset(AXES),
+    "plane": frozenset({"x", "y", "rz"}),
+    "translation": frozenset({"x", "y", "z"}),
+    "rotation": frozenset({"rx", "ry", "rz"}),
+}
+"""What is free, by the preset's name."""
+
+
+class AxisLocks(NamedTuple):
+    """What the control law keeps of the tool's pose, as it is when these locks begin. Equal locks go on, others begin anew."""
+
+    locked: tuple[bool, ...]  # of AXES
+    tool: bool  # the frame is the tool's when they begin, else `R_BU`
+    R_BU: Rotation  # the frame, in B
+    near: float  # smallest singular value below which motion further towards a singularity is resisted; 0: never [m]
+    too_near: float  # and below which with all of the resistance [m]
+
+
+def axis_locks(axes: Axes) -> AxisLocks | None:
+    """The locks that the settings ask for, None where everything is free."""
+    locked = tuple([not getattr(axes, axis) for axis in AXES])
+    if not (axes.on and any(locked)):
+        return None
+    near = axes.near if axes.resistance else 0.0
+    return AxisLocks(locked, axes.tool, from_rpy((axes.roll, axes.pitch, axes.yaw)), near, axes.too_near)
+
+
+def freeing(free: frozenset[str]) -> dict[str, float | bool | str]:
+    """The changes of settings, by dotted name, that free these axes and lock the others."""
+    return {f"axes.{axis}": axis in free for axis in AXES}
+
+
+def from_rpy(rpy: Vector) -> Rotation:
+    """The matrix of roll, pitch, yaw [rad] about the fixed axes x, y, z in this order."""
+    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(angle), math.sin(angle)) for angle in rpy)
+    return (
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    )

@@ -1,0 +1,235 @@
+"""The parameters that limits bound: how each is read from what the controller knows in one tick (FD-9, FD-13, FD-18)."""
+
+import math
+from collections.abc import Callable, Iterable
+from operator import sub, truediv
+from typing import NamedTuple
+
+import msgspec
+
+from pendant.limits.dynamic_limits import WHOLE, Shares
+from pendant.limits.residual import Split
+from pendant.settings.schema import Limit, Section, ticks
+from pendant.tick.estimate import Estimate
+from pendant.tick.limit_engine import Gauge, Monitored
+from pendant.tick.pose import Wrench
+
+ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Reference(NamedTuple):
+    """What held when a stage or a period began."""
+
+    position: tuple[float, ...]  # of the flange in B [m]
+    wrench: tuple[float, ...]  # F_user [N, N·m]
+    torques: tuple[float, ...]  # tau_ext [N·m]
+    angles: tuple[float, ...]  # q [rad]
+
+
+class View(msgspec.Struct, frozen=True, gc=False):
+    """What parameters are read from."""
+
+    estimate: Estimate
+    since: Reference
+    split: Split | None  # of the user's wrench; None: there is no flange sensor to go by (FD-3a)
+    joints: tuple[str, ...]
+    scale: tuple[float, ...]  # of the joint torque limits, for each joint
+    share: float  # of a joint's load torque by which its limit rises
+    shares: Shares = WHOLE  # of the limits that are left (FD-12b)
+    heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
+
+
+Reader = Callable[[View, Gauge], tuple[float, str]]
+
+
+def _flange_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
+    x, y, z = view.estimate.p_BF.tolist()
+    x0, y0, z0 = view.since.position
+    x, y, z = x - x0, y - y0, z - z0
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.way * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange"
+
+
+def _flange_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    x, y, z = view.estimate.v_F.tolist()[:3]
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange"
+
+
+def beyond_gravity(estimate: Estimate) -> float:
+    """What the flange's accelerometer feels beyond gravity [m/s²]."""
+    return math.hypot(*estimate.a_felt.tolist())
+
+
+def _flange_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+    x, y, z = view.estimate.a_felt.tolist()
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.linear * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange"
+
+
+def _tcp_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.tcp.tolist()[3:])
+    return view.estimate.v_tcp, "tcp"
+
+
+def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    if view.shares is not WHOLE:
+        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.elbow.tolist()[3:])
+    return view.estimate.v_elbow, "elbow"
+
+
+def _joint_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.shares.way
+    return _largest(list(map(sub, view.estimate.q.tolist(), view.since.angles)), view)
+
+
+def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.shares.turning
+    return _largest(view.estimate.qd.tolist(), view)
+
+
+def _joint_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base * view.shares.angular
+    return _largest(view.estimate.qdd.tolist(), view)
+
+
+def _largest(values: list[float], view: View) -> tuple[float, str]:
+    """The largest in size, and its joint."""
+    most, least = max(values), min(values)
+    if most >= -least:
+        return most, view.joints[values.index(most)]
+    return -least, view.joints[values.index(least)]
+
+
+def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+    """The motor that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
+    torques = view.estimate.tau_m.tolist()
+    _, part = _largest(list(map(truediv, torques, view.scale)), view)
+    joint = view.joints.index(part)
+    gauge.high = gauge.base * view.scale[joint]
+    return abs(torques[joint]), part
+
+
+def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+    """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
+    share, base, felt = view.share, gauge.base, view.estimate
+    nearest, size, part = -1.0, 0.0, 0
+    torques = zip(felt.tau_ext.tolist(), view.since.torques, view.scale, felt.tau_J.tolist(), strict=True)
+    for joint, (now, then, rated, load) in enumerate(torques):
+        change = now - then if now > then else then - now  # without a call, six times in every tick: as `abs`
+        limit = base * rated + (share * load if load > 0.0 else -share * load)
+        if change > nearest * limit:
+            nearest, size, part, gauge.high = change / limit, change, joint, limit
+    return size, view.joints[part]
+
+
+def _payload_force(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).payload_force, "flange"
+
+
+def _payload_torque(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).payload_torque, "flange"
+
+
+def _user_force(view: View, gauge: Gauge) -> tuple[float, str]:
+    gauge.high = gauge.base + view.heavier
+    return _of(view).user_force, "flange"
+
+
+def _user_torque(view: View, _: Gauge) -> tuple[float, str]:
+    return _of(view).user_torque, "flange"
+
+
+def _of(view: View) -> Split:
+    assert view.split is not None
+    return view.split
+
+
+class Parameter(NamedTuple):
+    """How a parameter is called and read, and what it needs."""
+
+    text: str
+    unit: str
+    read: Reader
+    wrench: bool = False  # needs the flange's force/torque sensor
+    acceleration: bool = False  # needs the flange's accelerometer
+    signed: bool = False  # its limit is a range around zero
+
+
+PARAMETERS: dict[str, Parameter] = {
+    "flange_displacement": Parameter("flange displacement", "m", _flange_displacement),
+    "flange_speed": Parameter("flange speed", "m/s", _flange_speed),
+    "flange_acceleration": Parameter("flange acceleration", "m/s²", _flange_acceleration, acceleration=True),
+    "tcp_speed": Parameter("tcp speed", "m/s", _tcp_speed),
+    "elbow_speed": Parameter("elbow speed", "m/s", _elbow_speed),
+    "joint_displacement": Parameter("joint displacement", "rad", _joint_displacement),
+    "joint_speed": Parameter("joint speed", "rad/s", _joint_speed),
+    "joint_acceleration": Parameter("joint acceleration", "rad/s²", _joint_acceleration),
+    "motor_torque": Parameter("motor torque", "N·m", _motor_torque),
+    "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
+    "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
+    "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),
+    "user_force": Parameter("user force", "N", _user_force, wrench=True),
+    "user_torque": Parameter("user torque", "N·m", _user_torque, wrench=True),
+}
+"""By the name of its limit in the settings."""
+
+
+class Monitor:
+    """All limits of one stage that are switched on."""
+
+    __slots__ = ("_gauges", "_needs")
+
+    def __init__(self, limits: Section, names: Iterable[str] = PARAMETERS, suffix: str = "") -> None:
+        """
+        Args:
+            limits: a section of `pendant.limits.settings.Limits`.
+            names: of the parameters that are looked at.
+            suffix: of what they are called.
+        """
+        self._gauges: list[tuple[Reader, Gauge]] = []  # how it is read
+        self._needs: list[tuple[bool, bool]] = []  # of each: the flange's force/torque sensor, its accelerometer
+        for name in names:
+            parameter, limit = PARAMETERS[name], getattr(limits, name, None)
+            if isinstance(limit, Limit) and limit.on:
+                stop = bool(getattr(limit, "stop", False))
+                low = -limit.max if parameter.signed else -math.inf
+                text, allowed = parameter.text + suffix, ticks(limit.time)
+                gauge = Gauge(text, parameter.unit, low=low, high=limit.max, allowed=allowed, stop=stop)
+                self._gauges.append((parameter.read, gauge))
+                self._needs.append((parameter.wrench, parameter.acceleration))
+
+    def step(self, view: View) -> list[Gauge]:
+        """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
+        beyond: list[Gauge] = []
+        gauges, way = self._gauges, view.shares.way
+        no_wrench, no_acceleration = view.split is None, not view.estimate.acceleration_valid
+        if no_wrench or no_acceleration:
+            needs = zip(gauges, self._needs, strict=True)
+            gauges = [each for each, (wrench, felt) in needs if not ((no_wrench and wrench) or (no_acceleration and felt))]
+        for read, gauge in gauges:
+            value, gauge.part = read(view, gauge)
+            if not gauge.beyond and gauge.low <= value <= gauge.high:  # as nearly always: without a call
+                gauge.value = value
+            elif gauge.judge(value, gauge.part, way):
+                beyond.append(gauge)
+        return beyond
+
+    def monitored(self) -> tuple[Monitored, ...]:
+        """The values of the last step against their limits; without those that could not be read."""
+        # Written out, for it is asked for in every tick of the sequence: as `Gauge.monitored`.
+        return tuple([Monitored(g.name, g.part, g.value, g.low, g.high, g.unit) for _, g in self._gauges if g.part])
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return tuple([gauge.memory for _, gauge in self._gauges])
+
+
+def reference(estimate: Estimate, wrench: Wrench | None) -> Reference:
+    """What is stored when a period begins, with this F_user, axes of B [N, N·m]; None is without it."""
+    return Reference(tuple(estimate.p_BF.tolist()), wrench or ZEROS, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist()))

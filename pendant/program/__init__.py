@@ -1,0 +1,1 @@
+"""Programs: their steps, and running them. Uses contact/."""

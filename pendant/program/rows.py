@@ -1,0 +1,103 @@
+"""Rows of the event table: mode and program, contacts, tool and payload, settings, and the loop."""
+
+from pendant.events.event import Kind
+from pendant.events.event_row import Effect, Row, Severity, denied, info
+
+
+def _touched(headline: str) -> Row:
+    """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
+    keys = (
+        "part",
+        "source",
+        "rule",
+        "force",
+        "fx",
+        "fy",
+        "fz",
+        "acceleration",
+        "ax",
+        "ay",
+        "az",
+        "ratio",
+        "steps",
+        "x",
+        "y",
+        "z",
+        "posture",
+        "action",
+    )
+    return Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        headline,
+        "{force:.1f} N more or less; rule {rule}, {steps} ticks after it began. Action: {action}.",
+        keys,
+    )
+
+
+PROGRAM: dict[Kind, Row] = {
+    # Mode and program
+    Kind.MODE_CHANGED: info("Mode {to}", "It was {from}.", ("from", "to")),
+    Kind.COMMAND_REFUSED: denied("Not possible in {mode}: {command}", "{reason}.", ("command", "mode", "reason")),
+    Kind.PROGRAM_LOADED: info("Program {name} loaded", "{steps} steps.", ("name", "steps")),
+    Kind.PROGRAM_REFUSED: denied("Program {name} refused", "{reason}.", ("name", "reason")),
+    Kind.PROGRAM_STARTED: info("Program {name} started", "", ("name",)),
+    Kind.PROGRAM_PAUSED: info("Program {name} paused", "At step {step}. Resume or stop it.", ("name", "step")),
+    Kind.PROGRAM_RESUMED: info("Program {name} resumed", "At step {step}.", ("name", "step")),
+    Kind.PROGRAM_STOPPED: info("Program {name} stopped", "At step {step}.", ("name", "step")),
+    Kind.PROGRAM_FINISHED: info("Program {name} finished", "", ("name",)),
+    Kind.PROGRAM_FAILED: denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
+    Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
+    # Change in contact (CD-13, CD-16)
+    Kind.CONTACT_GAINED: _touched("Contact gained: {part}"),
+    Kind.CONTACT_LOST: _touched("Contact lost: {part}"),
+    Kind.CONTACT_RESISTANCE: _touched("Resistance changed: {part}"),
+    Kind.CONTACT_CLAMPING: _touched("Clamping: {part}"),
+    # Tool and payload
+    Kind.TOOL_CHANGED: info(
+        "Tool {name}",
+        "It was {old}. Tool centre point {x:z.0f}, {y:z.0f}, {z:z.0f} mm, {mass:.2f} kg; no payload beyond it.",
+        ("name", "old", "mass", "x", "y", "z"),
+    ),
+    Kind.TOOLS_CHANGED: info("Table of tools: {change}", "{count} tools.", ("change", "count")),
+    Kind.TOOL_REFUSED: denied("Not changed: {what}", "{reason}.", ("what", "reason")),
+    Kind.PAYLOAD_CHANGED: info(
+        "Payload {mass:.2f} kg",
+        "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm; with tool {tool} {total:.2f} kg.",
+        ("mass", "x", "y", "z", "tool", "total"),
+    ),
+    Kind.POSTURE_MEASURED: info(
+        "Posture {number} measured",
+        "{angle:.0f}° from the nearest other, at least {limit:.1f}°. {missing} more needed.",
+        ("number", "angle", "limit", "missing"),
+    ),
+    Kind.POSTURE_REFUSED: denied("Posture refused", "{reason}.", ("reason",)),
+    Kind.PAYLOAD_FOUND: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Found: {mass:.2f} ± {mass_deviation:.2f} kg",
+        "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
+        ("mass", "mass_deviation", "x", "y", "z", "centre_deviation", "fit", "postures"),
+    ),
+    # The flange sensor's zero
+    Kind.SENSOR_ZEROED: info(
+        "Force sensor zeroed", "{force:.1f} N and {torque:.2f} N·m subtracted.", ("force", "torque", "x", "y", "z")
+    ),
+    Kind.ZERO_REFUSED: denied("Force sensor not zeroed", "{reason}.", ("reason",)),
+    Kind.ZERO_DUE: Row(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Zero the force sensor",
+        "{force:.1f} N, {torque:.2f} N·m that nothing explains. Zero it with nothing touching; check the payload.",
+        ("force", "torque"),
+    ),
+    # Settings
+    Kind.SETTING_CHANGED: info("{name}: {new}", "It was {old}.", ("name", "old", "new")),
+    Kind.SETTING_REFUSED: denied("{name}: {value} refused", "{reason}.", ("name", "value", "reason")),
+    # The loop that runs all of it
+    Kind.OVERRUN: denied(
+        "Simulation late {often}, by {late:.0f} ms at worst",
+        "The machine is busy; {lost:.1f} s were dropped.",
+        ("late", "lost", "often"),
+    ),
+}

@@ -1,0 +1,160 @@
+"""The robot mode and the safety mode: what events do to them, and the control law that follows from them (FD-1)."""
+
+from pendant.all_settings import Settings
+from pendant.event_table import TABLE
+from pendant.events.event import Event, Kind, Values
+from pendant.events.event_row import Effect
+from pendant.freedrive.state_machine import ASKED_FOR, FreeDrive
+from pendant.inputs import Command
+from pendant.limits.validity import Stillness
+from pendant.program.sequencer import Sequencer
+from pendant.program.steps import ProgramState
+from pendant.robot.stopping import Stopping
+from pendant.signals.enabling_device import Grip, enables
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law, Mode, Phase, Safety
+
+STOPPING = {
+    Effect.LEAVE_TO_STOP: Safety.NORMAL,
+    Effect.SAFEGUARD_STOP: Safety.SAFEGUARD_STOP,
+    Effect.PROTECTIVE_STOP: Safety.PROTECTIVE_STOP,
+    Effect.EMERGENCY_STOP: Safety.EMERGENCY_STOP,
+}
+
+DONE_GUIDING = ASKED_FOR | {Kind.LEFT_PERIOD, Kind.LEFT_RESTART}
+"""Endings of free-drive with which a program goes on; after any other one somebody must look first."""
+
+
+class Robot:
+    """What the parts of the supervisor share.
+
+    Attributes:
+        free: free-drive.
+        sequencer: of the program.
+        stopping: the stop that lasts, or is measured.
+        still: for how long the arm has been slow.
+        mode: robot mode.
+        safety: safety mode.
+        braking: since free-drive or a motion was ended, until static.
+        static: the arm stands, in this tick.
+        grip: of the enabling device in this tick, None where none is needed.
+    """
+
+    __slots__ = (
+        "_freed",
+        "_remembered",
+        "braking",
+        "free",
+        "grip",
+        "mode",
+        "safety",
+        "sequencer",
+        "static",
+        "still",
+        "stopping",
+    )
+
+    def __init__(self, free: FreeDrive, sequencer: Sequencer) -> None:
+        self.free = free
+        self.sequencer = sequencer
+        self.stopping = Stopping()
+        self.still = Stillness()
+        self.mode = Mode.TEACH
+        self.safety = Safety.NORMAL
+        self.braking = False
+        self.static = False
+        self.grip: Grip | None = None
+        self._remembered = Mode.TEACH  # where free-drive was entered from
+        self._freed = False  # the law was FREE in the last tick
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; what every tick finds anew is left out."""
+        modes = (self.mode, self.safety, self._remembered, self.braking, self._freed)
+        still = (self.still.count, self.still.joint, self.still.speed)
+        return (*modes, still, self.stopping.memory, self.sequencer.memory, self.free.memory)
+
+    @property
+    def enabled(self) -> bool:
+        """No enabling device forbids motion."""
+        return enables(self.grip)
+
+    @property
+    def program_name(self) -> str:
+        """Of the loaded program."""
+        program = self.sequencer.program
+        return program.name if program else ""
+
+    def happen(self, event: Event, settings: Settings, events: list[Event]) -> None:
+        """Something outside of free-drive happens that ends it, too."""
+        if self.free.phase is not Phase.OFF:
+            self.free.stop(event.kind, settings)
+        self.follow(event, events)
+
+    def follow(self, event: Event, events: list[Event]) -> None:
+        """Tell an event, and do what the table says of it."""
+        events.append(event)
+        effect, sequencer = TABLE[event.kind].effect, self.sequencer
+        if effect in (Effect.TRY, Effect.ENTER):
+            if sequencer.state is ProgramState.RUNNING and not sequencer.guiding:
+                self.pause_program(event.tick, events)
+            if effect is Effect.ENTER:
+                self._remembered = self.mode
+                self.mode = Mode.FREE_DRIVE
+        elif effect is Effect.LEAVE:
+            if self.mode is Mode.FREE_DRIVE:
+                self.mode = self._remembered
+            if sequencer.guiding and event.kind in DONE_GUIDING:
+                sequencer.let_go()
+            elif sequencer.guiding:
+                self.pause_program(event.tick, events)
+            if event.kind is Kind.LEFT_ENABLING:
+                self.begin_stop(event.kind)
+        elif effect in STOPPING:
+            self.mode = Mode.STOP
+            self.safety = max(self.safety, STOPPING[effect])
+            self.braking = True
+            sequencer.stop()
+            self.begin_stop(event.kind)
+
+    def begin_stop(self, kind: Kind) -> None:
+        """An event of `kind` stops the arm."""
+        self.stopping.begin(kind, TABLE[kind].category, self.static)
+
+    def reset(self, safety: Safety) -> None:
+        """Out of STOP, into `safety`. The arm stands, so that `law` ends the braking."""
+        self.mode = Mode.TEACH
+        self.safety = safety
+        self.stopping.end()
+
+    def pause_program(self, tick: int, events: list[Event]) -> None:
+        """The running program pauses, and the arm comes to rest."""
+        self.sequencer.pause()
+        self.braking = True
+        values: Values = {"name": self.program_name, "step": self.sequencer.index + 1}
+        events.append(Event(Kind.PROGRAM_PAUSED, tick, values))
+
+    def refuse(self, command: Command, estimate: Estimate, reason: str, events: list[Event]) -> None:
+        """Say why a command is not possible."""
+        values: Values = {"command": command, "mode": self.mode, "reason": reason}
+        events.append(Event(Kind.COMMAND_REFUSED, estimate.tick, values))
+
+    def law(self) -> Law:
+        """Of this tick, after everything that happens in it."""
+        free, mode = self.free, self.mode
+        if mode is _FREE_DRIVE or free.phase is Phase.SEQUENCE:
+            self._freed = True
+            return Law.HOLD if free.caught else _FREE
+        if self._freed:
+            self._freed, self.braking = False, True
+        if mode is Mode.STOP:
+            return Law.OFF if self.stopping.off else Law.BRAKE
+        if self.sequencer.move is not None:
+            self.braking = False
+            return Law.FOLLOW
+        if self.static:
+            self.braking = False
+        return Law.BRAKE if self.braking else Law.HOLD
+
+
+_FREE_DRIVE, _FREE = Mode.FREE_DRIVE, Law.FREE  # looked up in every tick

@@ -1,0 +1,63 @@
+"""Rows of the event table: safety inputs, sensors, stops and resets (FD-1)."""
+
+from pendant.events.event import Kind
+from pendant.events.event_row import EXCESS, Clears, Effect, Row, Severity, denied, info, protected
+
+SAFETY: dict[Kind, Row] = {
+    # Safety (FD-1)
+    Kind.RUN_SENSORS_LOST: protected(
+        "Protective stop: joint sensors not valid",
+        "The program needs {sensor}. Check it, then reset.",
+        ("sensor",),
+    ),
+    Kind.JOINT_SENSOR_LOST: denied(
+        "Lost: {sensor} of {joint}", "{left}. End the motion and check it; free-drive needs it.", ("sensor", "joint", "left")
+    ),
+    Kind.JOINT_SENSOR_BACK: info("Back: {sensor} of {joint}", "", ("sensor", "joint")),
+    Kind.EMERGENCY_STOP: Row(
+        Effect.EMERGENCY_STOP,
+        Severity.STOP,
+        "Emergency stop",
+        "It was {mode}. Make sure that nobody is in danger, then reset.",
+        ("mode",),
+        Clears.RESET,
+        cool_down=True,
+        category=1,
+    ),
+    Kind.SAFEGUARD_STOP: Row(
+        Effect.SAFEGUARD_STOP,
+        Severity.STOP,
+        "Safeguard stop",
+        "It was {mode}. Close the safeguard, then reset.",
+        ("mode",),
+        Clears.RESET,
+        cool_down=True,
+    ),
+    Kind.SAFEGUARD_CLOSED: info("Safeguard closed", "Reset to go on."),
+    Kind.REDUCED_ON: info(
+        "Reduced speed",
+        "Tool {tcp:.2f} m/s, elbow {elbow:.2f} m/s, joints {joint_speed:.2f} rad/s at most.",
+        ("tcp", "elbow", "joint_speed"),
+    ),
+    Kind.REDUCED_OFF: info("Reduced speed off"),
+    Kind.REDUCED_EXCEEDED: protected(
+        "Protective stop: {parameter} in REDUCED",
+        "{part}: {value:.2f} {unit}, limit {limit:.2f}. Move it more slowly, then reset.",
+        EXCESS,
+        category=0,
+    ),
+    Kind.STOPPED: info(
+        "Stopped in {time:.2f} s",
+        "Way of the tool {distance:.3f} m, stop category {category}.",
+        ("time", "distance", "category", "cause"),
+    ),
+    Kind.RESET: info("Reset to TEACH"),
+    Kind.RESET_REFUSED_SAFEGUARD: denied("Reset refused: safeguard open", "Close it, then reset."),
+    Kind.RESET_REFUSED_SIGNAL: denied("Reset refused: free-drive button held", "Let go of it, then reset."),
+    Kind.RESET_REFUSED_MOVING: denied(
+        "Reset refused: the arm moves",
+        "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Wait, then reset.",
+        ("joint", "value", "limit", "time"),
+    ),
+    Kind.RESET_REFUSED_SENSORS: denied("Reset refused: joint sensors not valid", "Check {sensor}, then reset.", ("sensor",)),
+}

@@ -1,0 +1,98 @@
+"""The safety inputs: emergency stop, safeguard, REDUCED, and the reset after a stop (FD-1)."""
+
+from pendant.all_settings import Settings
+from pendant.events.event import Event, Kind, Values
+from pendant.inputs import Command
+from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
+from pendant.robot.reduced import Reduced, SpeedLimits
+from pendant.robot.robot_mode import Robot
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Safety
+
+
+class SafetyInputs:
+    """Their levels, and what they do to the robot."""
+
+    __slots__ = ("_joints", "_reduced", "_robot", "_safeguard")
+
+    def __init__(self, robot: Robot, joints: tuple[str, ...]) -> None:
+        """
+        Args:
+            robot: that they act on.
+            joints: the names used in events, base to flange.
+        """
+        self._robot, self._joints = robot, joints
+        self._reduced = Reduced()
+        self._safeguard = False  # it is open
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare; the robot is compared elsewhere."""
+        return (self._reduced.memory, self._safeguard)
+
+    def speed_limits(self, settings: Settings) -> SpeedLimits | None:
+        """What holds in REDUCED, None outside of it."""
+        return self._reduced.limits(settings.reduced) if self._reduced.on else None
+
+    def step(
+        self, estimate: Estimate, commands: tuple[Command, ...], held: bool, settings: Settings, events: list[Event]
+    ) -> None:
+        """The commands of a tick; `held`: the free-drive button is."""
+        self._take_levels(estimate.tick, commands, settings, events)
+        stop = Command.EMERGENCY_STOP in commands
+        if stop and self._robot.safety is not Safety.EMERGENCY_STOP:
+            event = Event(Kind.EMERGENCY_STOP, estimate.tick, {"mode": self._robot.mode})
+            self._robot.happen(event, settings, events)
+        if Command.RESET in commands:
+            self._reset(estimate, stop, held, settings, events)
+
+    def watch(self, estimate: Estimate, settings: Settings, events: list[Event]) -> None:
+        """Every tick: what is too fast for REDUCED is stopped."""
+        if self._reduced.on and self._robot.mode is not Mode.STOP and motion_ok(estimate):
+            excess = self._reduced.step(estimate, settings.reduced, self._joints)
+            if excess is not None:
+                event = Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict()))
+                self._robot.happen(event, settings, events)
+
+    @property
+    def _resting(self) -> Safety:
+        """The safety mode where nothing has stopped the robot."""
+        return Safety.REDUCED if self._reduced.on else Safety.NORMAL
+
+    def _take_levels(self, tick: int, commands: tuple[Command, ...], settings: Settings, events: list[Event]) -> None:
+        """Safeguard and REDUCED: open and REDUCED win over their opposites in the same tick."""
+        robot = self._robot
+        if Command.SAFEGUARD_OPEN in commands:
+            if not self._safeguard:
+                self._safeguard = True
+                robot.happen(Event(Kind.SAFEGUARD_STOP, tick, {"mode": robot.mode}), settings, events)
+        elif Command.SAFEGUARD_CLOSED in commands and self._safeguard:
+            self._safeguard = False
+            events.append(Event(Kind.SAFEGUARD_CLOSED, tick))
+        reduced = settings.reduced
+        if Command.REDUCED_ON in commands:
+            if self._reduced.switch(True, reduced):
+                values: Values = {"tcp": reduced.tcp_speed, "elbow": reduced.elbow_speed, "joint_speed": reduced.joint_speed}
+                events.append(Event(Kind.REDUCED_ON, tick, values))
+        elif Command.REDUCED_OFF in commands and self._reduced.switch(False, reduced):
+            events.append(Event(Kind.REDUCED_OFF, tick))
+        if robot.safety <= Safety.REDUCED:
+            robot.safety = self._resting
+
+    def _reset(self, estimate: Estimate, stop: bool, held: bool, settings: Settings, events: list[Event]) -> None:
+        robot = self._robot
+        if stop:
+            robot.refuse(Command.RESET, estimate, "the emergency stop was pressed at the same time", events)
+        elif robot.mode is not Mode.STOP:
+            robot.refuse(Command.RESET, estimate, "nothing to reset", events)
+        elif held:
+            events.append(Event(Kind.RESET_REFUSED_SIGNAL, estimate.tick))
+        elif self._safeguard:
+            events.append(Event(Kind.RESET_REFUSED_SAFEGUARD, estimate.tick))
+        elif not joints_ok(estimate):
+            events.append(Event(Kind.RESET_REFUSED_SENSORS, estimate.tick, {"sensor": JOINTS_SENSED}))
+        elif not robot.static:
+            events.append(Event(Kind.RESET_REFUSED_MOVING, estimate.tick, robot.still.moves(self._joints, settings.static)))
+        else:
+            robot.reset(self._resting)
+            events.append(Event(Kind.RESET, estimate.tick))

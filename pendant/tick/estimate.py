@@ -1,0 +1,115 @@
+"""What the controller knows in one tick: measured or derived from measurement, never the truth."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.source_signal import Signals
+
+Array = NDArray[np.float64]
+
+
+def _no_joints() -> Array:
+    return np.zeros(0)
+
+
+def _nowhere() -> Array:
+    return np.zeros(6)
+
+
+GRAVITY = 9.81
+"""[m/s²]"""
+
+
+@dataclass(slots=True)
+class Estimate:
+    """The estimator's result for one tick, n joints. Arrays are owned by the estimator and valid until its next update.
+
+    Frames as in docs/conventions.md: W world, B base, F flange. Wrenches are (6,): force [N], then torque [N·m].
+    """
+
+    tick: int
+    joints_valid: bool  # both encoders and the motor currents are present, fresh and finite
+    wrench_valid: bool  # the flange force/torque sensor is present, fresh and finite
+    acceleration_valid: bool  # the flange accelerometer is present, fresh and finite
+    q: Array  # (n,) output angle [rad]
+    qd: Array  # (n,) output speed [rad/s]
+    qdd: Array  # (n,) output acceleration [rad/s²]
+    theta: Array  # (n,) motor angle referred to the output [rad]
+    theta_d: Array  # (n,) motor speed referred to the output [rad/s]
+    tau_m: Array  # (n,) motor torque referred to the output, from the current [N·m]
+    tau_J: Array  # (n,) transmission torque, fused from the ways in use (AF-3) [N·m]
+    tau_ext: Array  # (n,) external torque, from the joints alone: rigid model minus transmission torque [N·m]
+    w_sensor: Array  # (6,) wrench that the flange exerts on what it carries, in F at the flange origin
+    F_user: Array  # (6,) the user's wrench on the flange: -(w_sensor - w_expected), axes of B, at the flange origin
+    a_F: Array  # (3,) specific force at the flange accelerometer, in F [m/s²]
+    p_BF: Array  # (3,) flange position [m]
+    R_BF: Array  # (3, 3) flange orientation
+    v_F: Array  # (6,) flange velocity: linear [m/s], then angular [rad/s], axes of B, at the flange origin
+    v_tcp: float  # speed of the tool centre point [m/s]
+    v_elbow: float  # speed of the elbow [m/s]
+    move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
+    move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
+    g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
+    theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]
+    friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]
+    friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
+    tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
+    tau_ext_deviation: Array = field(default_factory=_no_joints)  # (n,) standard deviation of tau_ext at rest [N·m]
+    degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
+    lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
+    touched: bool = False  # the joints feel a contact, so that nothing is learned
+    signals: Signals = field(default_factory=Signals)  # for the contact detectors, as pendant.contact.contact_monitor.SOURCES
+    tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
+    elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
+    F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
+    a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
+    load_mass: float = 0.0  # configured: payload and tool [kg]
+    energy: float = 0.0  # kinetic, of links and rotors [J]
+    singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
+
+    def copy(self) -> "Estimate":
+        """The same values in arrays of their own, which no later update changes."""
+        return Estimate(
+            self.tick,
+            self.joints_valid,
+            self.wrench_valid,
+            self.acceleration_valid,
+            self.q.copy(),
+            self.qd.copy(),
+            self.qdd.copy(),
+            self.theta.copy(),
+            self.theta_d.copy(),
+            self.tau_m.copy(),
+            self.tau_J.copy(),
+            self.tau_ext.copy(),
+            self.w_sensor.copy(),
+            self.F_user.copy(),
+            self.a_F.copy(),
+            self.p_BF.copy(),
+            self.R_BF.copy(),
+            self.v_F.copy(),
+            self.v_tcp,
+            self.v_elbow,
+            self.move_done,
+            self.move_refused,
+            self.g_B.copy(),
+            self.theta_dd.copy(),
+            self.friction.copy(),
+            self.friction_deviation.copy(),
+            self.tau_ways.copy(),
+            self.tau_ext_deviation.copy(),
+            self.degraded,
+            self.lost,
+            self.touched,
+            self.signals,
+            self.tcp.copy(),
+            self.elbow.copy(),
+            self.F_joints.copy(),
+            self.a_felt.copy(),
+            self.load_mass,
+            self.energy,
+            self.singularity,
+        )

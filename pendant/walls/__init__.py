@@ -1,0 +1,1 @@
+"""Virtual walls and areas: shapes, anchors, resistance, containment. Uses limits/."""

@@ -1,0 +1,214 @@
+"""Walls and areas in the running robot: what they know of a tick, what they say and do in it (VW-6, VW-9)."""
+
+import math
+from collections.abc import Mapping
+
+import msgspec
+from msgspec.structs import replace
+
+from pendant.events.event import Values
+from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
+from pendant.walls.barrier import Around, Consequence, Part, Place, Reading, placed
+from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Reaction, Start, Wall
+from pendant.walls.enclosure import Enclosure, worst
+from pendant.walls.settings import Walls
+from pendant.walls.shapes import Sphere
+
+PARTS = ("flange", "tcp", "elbow")
+"""The points of the arm that a wall can watch."""
+
+TETHER = "tether"
+"""Name of the wall that is always there: a sphere round the flange that follows the user, and nobody else (VW-4)."""
+
+NOBODY = (ORIGIN, ORIGIN, False)
+"""The user's and the payload-like force where nothing is known of them, and nobody is known to lead the arm."""
+
+
+def tether(walls: Walls) -> Wall:
+    """The sphere round the flange, in the sizes of the settings."""
+    return Wall(
+        name=TETHER,
+        shape=Sphere(radius=walls.operation_radius),
+        policy=Policy.AVERAGE,
+        averaging_period=walls.averaging,
+        safety_period=walls.safety_period,
+        band=min(walls.band, 0.8 * walls.operation_radius),
+        activation_size=max(walls.activation_radius / walls.operation_radius, 0.05),
+        push_back=walls.push_back,
+        reaction=Reaction.STOP if walls.stop else Reaction.LEAVE if walls.leave else Reaction.STAY,
+    )
+
+
+class WallState(msgspec.Struct, frozen=True, gc=False):
+    """A wall or an area in one tick, everything in B; the law pushes the part with its force, pictures draw it (VW-7)."""
+
+    name: str
+    part: str  # "flange", "tcp", "elbow"
+    p: Vector  # of the part [m]
+    distance: float  # to the wall, negative inside [m]
+    outward: Vector  # direction towards the wall, of length 1
+    near: float  # 0 before the feedback band, 1 at the wall and beyond
+    exceeded: bool
+    force: Vector  # on the part [N]
+
+
+class Containment:
+    """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
+
+    __slots__ = ("R_FT", "_borders", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned")
+
+    def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
+        """
+        Args:
+            borders: walls and areas besides the tether; `pendant.walls.definitions.problem` has found nothing.
+            frames: poses X_BR of the frames and objects that they can lie in and that do not move in B.
+        """
+        self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
+        self._borders = borders
+        self._frames = {"base": HERE, **frames}
+        self._enclosure: Enclosure | None = None  # walls hold, or will
+        self._reading: tuple[Reading, ...] = ()
+        self._parts: tuple[str, ...] = ()
+        self._points: dict[str, Part] = {}  # where they were in the last step
+        self._turned: tuple[str, ...] = ()  # parts that are references
+        self._measured = False
+
+    @property
+    def memory(self) -> tuple[object, ...]:
+        """All of its state, to compare."""
+        return (self._reading, self.places())
+
+    def begin(self, start: Start, walls: Walls) -> None:
+        """The activation period or the sequence begins."""
+        if start is Start.ACTIVATION or self._enclosure is None:
+            self._enclosure = self._build(walls)
+        if self._enclosure is not None:
+            self._enclosure.begin(start)
+
+    def enter(self, walls: Walls) -> None:
+        """FREE_DRIVE begins."""
+        self._enclosure = self._build(walls)
+        if self._enclosure is not None:
+            self._enclosure.enter()
+
+    def leave(self) -> None:
+        """Nothing holds any more."""
+        self._enclosure = None
+        self._reading = ()
+
+    def step(self, estimate: Estimate, user: Vector, payload: Vector, led: bool) -> Reading | None:
+        """One tick; its joint values are finite. Returns what has the gravest consequence, if anything has one.
+
+        Args:
+            estimate: of this tick.
+            user: the user's force, axes of B [N].
+            payload: force of the payload-like residual, axes of B [N].
+            led: somebody pays for the arm's motion (`pendant.guided.work`).
+        """
+        if self._enclosure is None:
+            return None
+        parts = self._points
+        for name in self._parts:
+            parts[name] = _point(name, estimate)
+        references = self._frames
+        if self._turned:
+            R_BF = flat(estimate.R_BF)
+            turns = {"flange": R_BF, "tcp": product(R_BF, self.R_FT)}
+            references = {**references, **{name: Pose(_point(name, estimate).p, turns[name]) for name in self._turned}}
+        measures = _measures(estimate) if self._measured else {}
+        self._reading = self._enclosure.step(Around(parts, references, user, payload, measures, led))
+        return worst(self._reading)
+
+    def states(self) -> tuple[WallState, ...]:
+        """What the last step found, for the law and for pictures; without a wall that could not be told."""
+        states = [
+            WallState(r.border.name, r.border.part, r.p, r.distance, r.outward, r.near, r.exceeded, r.force)
+            for r in self._reading
+            if r.distance < math.inf
+        ]
+        return tuple(states)
+
+    def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
+        """Every border that holds, with where its shape lies."""
+        if self._enclosure is None:
+            return ()
+        pairs = zip([reading.border for reading in self._reading], self._enclosure.places(), strict=False)
+        return tuple([(border, place) for border, place in pairs if place is not None])
+
+    def every_place(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
+        """What holds, and every area that will in free-drive, each with where its shape lies.
+
+        Areas that do not hold yet and lie in a part of the arm are left out; one whose size follows the posture has its smallest.
+        """
+        hold = self.places()
+        if not walls.on:
+            return hold
+        names = {border.name for border, _ in hold}
+        areas = [border for border in self._borders if isinstance(border, Area) and border.reference in self._frames]
+        rest = [area for area in areas if area.name not in names]
+        return hold + tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in rest])
+
+    def _build(self, walls: Walls) -> Enclosure | None:
+        borders = self._borders if not walls.tether else (tether(walls), *self._borders)
+        borders = tuple([_switched(border, walls) for border in borders])
+        if not walls.on or not borders:
+            return None
+        self._parts = tuple({border.part for border in borders})
+        self._turned = tuple({border.reference for border in borders} & {"flange", "tcp"})
+        self._measured = any(
+            border.size is not None or (isinstance(border, Wall) and border.safety_dependence is not None) for border in borders
+        )
+        return Enclosure(borders)
+
+
+def _switched(border: AnyBorder, walls: Walls) -> AnyBorder:
+    """The border without what is switched off."""
+    if not walls.resistance:
+        border = replace(border, band=0.0)
+    if not walls.sizes and border.size is not None:
+        border = replace(border, size=replace(border.size, at_low=border.least, at_high=border.least))
+    if not walls.anew and isinstance(border, Wall):
+        border = replace(border, policy=Policy.FIXED)
+    return border
+
+
+def facts(reading: Reading) -> Values:
+    """What an event says of a wall: which, which part, where, how far out [mm], and the way back in."""
+    x, y, z = reading.outward
+    known = reading.distance < math.inf
+    way = f"{_word(-x, 'x')}{_word(-y, 'y')}{_word(-z, 'z')}".strip() if known else "unknown"
+    out = 1000.0 * reading.distance if known else 0.0
+    px, py, pz = reading.p
+    back = {"x": -x, "y": -y, "z": -z, "px": px, "py": py, "pz": pz}
+    return {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way} | back
+
+
+def caught(reading: Reading | None) -> bool:
+    """The arm is to keep its posture at the wall."""
+    return reading is not None and reading.consequence is Consequence.HOLD
+
+
+def _word(share: float, axis: str) -> str:
+    """An axis of B with its sign, if the way leads along it."""
+    return f" {'+' if share > 0.0 else '-'}{axis}" if abs(share) >= 0.4 else ""  # sin 24°: of three axes one at least is named
+
+
+def _point(name: str, estimate: Estimate) -> Part:
+    if name == "flange":
+        x, y, z = estimate.p_BF.tolist()
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+    else:
+        x, y, z, vx, vy, vz = (estimate.tcp if name == "tcp" else estimate.elbow).tolist()
+    return Part((x, y, z), (vx, vy, vz))
+
+
+def _measures(estimate: Estimate) -> dict[Measure, float]:
+    """What sizes depend on; a measure that is not in it gives the smallest size."""
+    x, y, z = estimate.p_BF.tolist()
+    gx, gy, gz = estimate.g_B.tolist()
+    return {
+        Measure.REACH: math.sqrt(x * x + y * y + z * z),
+        Measure.HEIGHT: -(x * gx + y * gy + z * gz) / GRAVITY,
+        Measure.PAYLOAD: estimate.load_mass,
+    }

@@ -1,0 +1,194 @@
+"""An arm's numbers: the only place that knows them. Parsed from a file of assets/robots/, each value with its source."""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+Positive = Annotated[float, Meta(gt=0)]
+NotNegative = Annotated[float, Meta(ge=0)]
+Count = Annotated[int, Meta(ge=1)]
+Status = Literal["official", "measured", "assumed"]
+
+
+class Sourced(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Where a group of values comes from. `assumed` names those of its values that are assumed although the rest is not."""
+
+    status: Status
+    source: Annotated[str, Meta(min_length=1)]
+    assumed: list[str] = []
+
+
+class Chain(Sourced, frozen=True):
+    """Kinematics, standard Denavit-Hartenberg (link i's frame sits behind joint i: Rz(q) Tz(d) Tx(a) Rx(alpha))."""
+
+    joints: list[str]  # names, base to flange
+    a: list[float]  # [m]
+    d: list[float]  # [m]
+    alpha: list[float]  # [rad]
+    elbow: int  # index of the joint whose origin is the elbow
+    home: list[float]  # default posture [rad]
+
+
+class Masses(Sourced, frozen=True):
+    """Link masses and centres."""
+
+    mass: list[Positive]  # [kg]
+    com: list[list[float]]  # centre of mass in the DH link frame [m]
+
+
+class Inertias(Sourced, frozen=True):
+    """Link inertia about the centre of mass: ixx iyy izz ixy ixz iyz [kg·m²], axes of the joint frame (z = joint axis, q = 0)."""
+
+    tensor: list[list[float]]
+
+
+class Limits(Sourced, frozen=True):
+    """Joint limits."""
+
+    position: list[Positive]  # ± [rad]
+    speed: list[Positive]  # [rad/s]
+    acceleration: list[Positive]  # [rad/s²]
+    torque: list[Positive]  # at the output [N·m]
+
+
+class Motors(Sourced, frozen=True):
+    """Motors, with the gear."""
+
+    gear: list[Positive]
+    torque_constant: list[Positive]  # motor side [N·m/A]
+    current: list[Positive]  # largest [A]
+    rotor_inertia: list[Positive]  # reflected to the output [kg·m²]
+    ripple: list[NotNegative]  # torque ripple amplitude at the output [N·m], at twice the wave generator's turn
+
+
+class Transmissions(Sourced, frozen=True):
+    """Transmission of each joint: tau_J(x) = stiffness·x + stiffening·x³ + damping·x' + hysteresis, x = theta - q."""
+
+    stiffness: list[Positive]  # [N·m/rad]
+    stiffening: list[NotNegative]  # [N·m/rad³]
+    damping: list[NotNegative]  # [N·m·s/rad]
+    hysteresis_stiffness: list[NotNegative]  # of a stick-slip element in parallel [N·m/rad]
+    hysteresis_yield: list[NotNegative]  # the deflection at which it slips [rad]
+
+
+class Frictions(Sourced, frozen=True):
+    """Joint friction, both sides together, without load at the reference temperature."""
+
+    speed: list[NotNegative]  # where the curve was measured [rad/s], rising
+    torque: list[list[Positive]]  # a row a joint, friction at those speeds [N·m]
+    breakaway: list[Positive]  # at rest [N·m]
+    output_share: NotNegative  # part of it that acts on the output side (bearings, seals)
+    load: list[NotNegative]  # rise with |tau_J| [N·m per N·m]
+    temperature: Positive  # reference [°C]
+    per_kelvin: float  # relative change a kelvin at the reference
+    presliding: list[Positive]  # bristle stiffness [N·m/rad]
+
+
+class Thermals(Sourced, frozen=True):
+    """Joint temperature, one mass a joint."""
+
+    capacity: list[Positive]  # [J/K]
+    resistance: list[Positive]  # to the room [K/W]
+    ambient: float  # [°C]
+
+
+class Encoders(Sourced, frozen=True):
+    """Both angle sensors of a joint."""
+
+    motor_counts: Count  # a turn of the motor
+    output_counts: Count  # a turn of the output
+    ripple: NotNegative  # largest error of the output encoder over a turn [rad]
+    noise_counts: NotNegative  # standard deviation, in counts
+
+
+class Channels(Sourced, frozen=True):
+    """A sensor with like channels: range, quantum and noise in the sensor's unit."""
+
+    range: Positive
+    quantum: Positive
+    noise: NotNegative
+
+
+class Drift(Sourced, frozen=True):
+    """How the zero of the flange sensor moves: from its cold error to its warm one, and about that in a slow walk.
+
+    `sim.sensing.sensor_drift` has the model, and the largest error and the fastest change that these numbers allow.
+    """
+
+    warm_up: Positive  # time constant [s]; a sensor's own is half to one and a half times as long, by the seed
+    force: NotNegative  # largest zero error of an axis when warm [N]; each is drawn evenly within ±
+    torque: NotNegative  # the same [N·m]
+    walk_force: NotNegative  # standard deviation of the walk [N]
+    walk_torque: NotNegative  # the same [N·m]
+    walk_time: Positive  # time in which the walk forgets where it was (correlation time) [s]
+
+
+class ForceTorque(Sourced, frozen=True):
+    """The flange sensor."""
+
+    force: Channels
+    torque: Channels
+    stiffness: Positive  # between its two faces [N/m]
+    stiffness_soft: Positive  # demonstration setting (CD-17) [N/m]
+    damping_ratio: NotNegative
+    plate_mass: Positive  # of the tool-side face [kg]
+    plate_length: NotNegative  # from the sensing plane to the tool-side face [m]
+    drift: Drift | None = None  # None: its zero stays where it is
+
+
+class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """All sensors; the flange sensor and the accelerometers are optional (FD-3a)."""
+
+    encoders: Encoders
+    current: Channels  # [A]
+    temperature: Channels  # [°C]
+    force_torque: ForceTorque | None = None
+    accelerometer: Channels | None = None  # [m/s²], at both faces of the flange sensor
+    gyro: Channels | None = None  # [rad/s], at both faces
+
+
+class Outline(Sourced, frozen=True):
+    """The housings, for pictures. Link k starts at the seam of joint k and ends at the seam of joint k + 1."""
+
+    seam: list[float]  # where link k meets its predecessor: z in the joint frame of link k [m]
+    housing_radius: list[Positive]  # of the housing of each joint [m]
+    tube_offset: list[float]  # z of a link's tube in its joint frame [m]; of use only where a is not 0
+    tube_radius: list[Positive]  # of a link's tube in its middle [m]; of use only where a is not 0
+    foot_radius: Positive  # of the base [m]
+    flange_radius: Positive  # of the tool flange [m]
+
+
+class Capsule(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A collision shape of a link: a segment with a radius, in the link's joint frame (z = joint axis, q = 0) [m]."""
+
+    link: int  # -1 the base, 0 the first link, ...
+    start: list[float]
+    end: list[float]
+    radius: Positive
+
+
+class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """An arm, as its file says. Lists run from base to flange; n joints."""
+
+    name: str
+    title: str
+    reach: Positive  # [m]
+    payload: Positive  # largest [kg]
+    rating: Sourced  # of reach and payload
+    chain: Chain
+    masses: Masses
+    inertias: Inertias
+    limits: Limits
+    motors: Motors
+    transmissions: Transmissions
+    frictions: Frictions
+    thermals: Thermals
+    sensors: Sensors
+    outline: Outline
+    shapes: list[Capsule]
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.chain.joints)

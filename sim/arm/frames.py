@@ -1,0 +1,95 @@
+"""Frames and tensors of a Denavit-Hartenberg chain. Pure numpy; transforms are (4, 4), quaternions wxyz."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sim.arm.arm_file import Arm
+
+Array = NDArray[np.float64]
+
+
+def rotation(axis: int, angle: float) -> Array:
+    """Rotation matrix (3, 3) about coordinate axis 0, 1 or 2 by `angle` [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[i, i] = matrix[j, j] = c
+    matrix[j, i], matrix[i, j] = s, -s
+    return matrix
+
+
+def rotation_from_rpy(rpy: ArrayLike) -> Array:
+    """Rotation matrix (3, 3) of roll, pitch, yaw [rad] about the fixed axes x, y, z in this order (URDF convention)."""
+    roll, pitch, yaw = np.asarray(rpy, dtype=float)
+    return rotation(2, yaw) @ rotation(1, pitch) @ rotation(0, roll)
+
+
+def quaternion_from_matrix(matrix: ArrayLike) -> Array:
+    """Unit quaternion wxyz (4,), w >= 0, of a rotation matrix (3, 3)."""
+    r = np.asarray(matrix, dtype=float)
+    # Each row is the quaternion times four times one of its components; the row of the largest component is well conditioned.
+    rows = np.array([
+        [1 + r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+        [r[2, 1] - r[1, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[0, 2] + r[2, 0]],
+        [r[0, 2] - r[2, 0], r[1, 0] + r[0, 1], 1 - r[0, 0] + r[1, 1] - r[2, 2], r[2, 1] + r[1, 2]],
+        [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[2, 1] + r[1, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]],
+    ])  # fmt: skip
+    quaternion = rows[int(np.argmax(np.diag(rows)))]
+    quaternion = quaternion / np.linalg.norm(quaternion)
+    return -quaternion if quaternion[0] < 0 else quaternion
+
+
+def matrix_from_quaternion(quaternion: ArrayLike) -> Array:
+    """Rotation matrix (3, 3) of a quaternion wxyz (4,) of any length but 0."""
+    q = np.asarray(quaternion, dtype=float)
+    w, x, y, z = q / np.linalg.norm(q)
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+
+
+def transform(matrix: ArrayLike, position: ArrayLike) -> Array:
+    """Transform (4, 4) of a rotation matrix (3, 3) and a position (3,) [m]."""
+    pose = np.eye(4)
+    pose[:3, :3] = matrix
+    pose[:3, 3] = position
+    return pose
+
+
+def link_transform(arm: Arm, k: int) -> Array:
+    """Link k's DH frame in its joint frame (4, 4): Tz(d) Tx(a) Rx(alpha).
+
+    The joint frame of link k has z along joint k's axis and turns with the link. The DH frame of link k is where the joint
+    frame of link k + 1 is while q_{k+1} = 0; that of the last link is the flange F.
+    """
+    return transform(rotation(0, arm.chain.alpha[k]), [arm.chain.a[k], 0.0, arm.chain.d[k]])
+
+
+def joint_frames(arm: Arm, q: ArrayLike) -> Array:
+    """Joint frames of all links and the flange in B at joint angles q (n,) [rad]: (n + 1, 4, 4)."""
+    frames = np.empty((arm.n + 1, 4, 4))
+    pose = np.eye(4)
+    for k, angle in enumerate(np.asarray(q, dtype=float)):
+        frames[k] = pose @ transform(rotation(2, angle), np.zeros(3))
+        pose = frames[k] @ link_transform(arm, k)
+    frames[arm.n] = pose
+    return frames
+
+
+def com_in_joint_frame(arm: Arm, k: int) -> Array:
+    """Centre of mass of link k in its joint frame (3,) [m]; the arm's file gives it in the DH frame."""
+    return (link_transform(arm, k) @ [*arm.masses.com[k], 1.0])[:3]
+
+
+def inertia_matrix(tensor: ArrayLike) -> Array:
+    """Symmetric matrix (3, 3) of ixx iyy izz ixy ixz iyz."""
+    xx, yy, zz, xy, xz, yz = np.asarray(tensor, dtype=float)
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def skew(vector: ArrayLike) -> Array:
+    """Matrix (3, 3) S with S @ u = vector x u."""
+    x, y, z = np.asarray(vector, dtype=float)
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

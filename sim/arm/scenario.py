@@ -1,0 +1,98 @@
+"""What to simulate: mounting, tool, true and configured payload, world, seed."""
+
+from typing import Literal
+
+import msgspec
+
+import pendant.equipment.tools
+from pendant.equipment.load import Load, Vector
+from pendant.walls.definitions import AnyBorder
+from sim.arm.arm_file import NotNegative, Positive
+
+__all__ = ["BARE", "AnyObject", "Load", "Scenario", "Tool", "Vector", "table"]
+
+
+class Tool(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A tool as it is: told to the controller, and with the shape of a capsule along z of F. Without an inertia a cylinder."""
+
+    length: NotNegative = 0.0  # of its shape; 0 for none [m]
+    radius: Positive = 0.03  # [m]
+
+
+BARE = Tool(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
+"""No tool: the tool centre point is the middle of the flange."""
+
+
+class WorldObject(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
+    """A thing the arm can touch. Pose in W."""
+
+    name: str
+    position: Vector  # [m]
+    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw [rad]
+    stiffness: Positive = 1e5  # true contact stiffness [N/m]
+    friction: NotNegative = 0.5  # Coulomb coefficient
+
+
+class Box(WorldObject, tag="box", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box (table, wall, block); `position` is its centre."""
+
+    size: Vector  # full lengths [m]
+
+
+class Plane(WorldObject, tag="plane", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A half-space (floor, wall); its surface passes through `position`, its z axis points out."""
+
+
+class Pad(WorldObject, tag="pad", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A soft pad: a box of its own, low stiffness."""
+
+    size: Vector
+    stiffness: Positive = 1e3
+
+
+class SnapFit(WorldObject, tag="snap-fit", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box whose resistance breaks at `force` and gives way by `travel` along its -z axis, then resists again."""
+
+    size: Vector
+    force: Positive = 30.0  # [N]
+    travel: Positive = 0.004  # [m]
+
+
+class TwoFrictions(WorldObject, tag="two-frictions", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box whose top has `friction` where its x < 0 and `friction_beyond` where its x > 0."""
+
+    size: Vector
+    friction_beyond: NotNegative = 1.0
+
+
+class Moving(WorldObject, tag="moving", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A box that moves to and fro: position + amplitude·sin(2 pi t / period)."""
+
+    size: Vector
+    amplitude: Vector  # [m]
+    period: Positive = 4.0  # [s]
+
+
+AnyObject = Box | Plane | Pad | SnapFit | TwoFrictions | Moving
+
+
+class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """All that a simulation starts from, besides the arm and the settings."""
+
+    mounting: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
+    posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
+    tool: Tool | None = None  # mounted, and the one in use at the start
+    tools: list[Tool] = []  # to choose from on the pendant, besides that one
+    payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
+    payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
+    world: list[AnyObject] = []
+    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether
+    soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
+    seed: int = 0
+    mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)
+
+
+def table(scenario: Scenario) -> list[Tool]:
+    """The table of tools: first the one in use at the start, which wins over another of its name."""
+    used = scenario.tool or next((tool for tool in scenario.tools if tool.name == BARE.name), BARE)
+    return [used, *(tool for tool in scenario.tools if tool.name != used.name)]

@@ -1,0 +1,119 @@
+"""Active damping: free-drive resists motion that comes near a limit on its speed, more and more (FD-12b)."""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.limits.soft_limits import Damping
+from pendant.robot.reduced import SpeedLimits
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+
+Array = NDArray[np.float64]
+
+STEEPEST_TCP, STEEPEST_ELBOW, STEEPEST_JOINT = 150.0, 75.0, 60.0
+"""Damping over the inertia of the rotors that it acts on, at most [1/s]. All three may act at once, and from 300 in all the delay
+of the measurement makes it chatter."""
+
+FALL = 0.15
+"""Time constant with which a limit falls [s], so that nobody is braked at a stroke; it rises at once."""
+
+FADE = 0.05
+"""Time constant with which the help for the hand follows the speed [s]: too slow to take part in any chatter."""
+
+
+class ActiveDamping:
+    """Torque against the motion of joints, tool and elbow. It only ever takes energy: it points against the motors' motion.
+
+    Where limits are low, damping as steep as the delay allows does not stop a push; so the help for the hand fades as well.
+
+    Attributes:
+        help: share of it that is left.
+
+    Args:
+        rated: torque of the joints (n,) [N·m].
+        rotor: their inertia referred to the output, as believed (n,) [kg·m²].
+        elbow: how many joints move the elbow.
+    """
+
+    def __init__(self, rated: Array, rotor: Array, elbow: int) -> None:
+        self._joints, self._elbow = np.stack([rated, rotor]), elbow
+        self._asked: tuple[Damping | None, SpeedLimits | None] = (None, None)
+        self._how = np.zeros(6)  # what is asked: limits of tcp, elbow, joints; onset, force, torque
+        self._limits = np.full(3, math.inf)  # of tcp, elbow, joints, as they have fallen
+        self.help = 1.0
+
+    def start(self) -> None:
+        """Free-drive begins: limits hold at once."""
+        self._limits[:] = math.inf
+        self.help = 1.0
+
+    def add(self, estimate: Estimate, damping: Damping, reduced: SpeedLimits | None, jacobian: Array, torque: Array) -> None:
+        """Add the resistance to `torque` (n,) [N·m].
+
+        Args:
+            estimate: this tick's.
+            damping: where it begins, and how strong it is.
+            reduced: limits that hold besides, in REDUCED.
+            jacobian: of the flange (6, n), linear first, axes of B.
+        """
+        if damping is not self._asked[0] or reduced is not self._asked[1]:
+            self._asked = (damping, reduced)
+            self._how[:] = damping
+            if reduced is not None:
+                self._how[:3] = np.minimum(self._how[:3], reduced)
+        points = (estimate.p_BF, estimate.tcp, estimate.elbow)
+        near = _resist(self._how, estimate.theta_d, jacobian, points, self._elbow, self._joints, self._limits, torque)
+        self.help += TICK / FADE * (1.0 - near - self.help)
+
+
+@numba.njit(cache=True)
+def _resist(how, speed, jacobian, points, moving, joints, limits, torque) -> float:
+    """How near the speed is to a limit: 0 at its onset, 1 at it."""
+    onset, force, share = how[3], how[4], how[5]
+    p_BF, tcp, elbow = points
+    rated, rotor = joints[0], joints[1]
+    for k in range(3):
+        falling = limits[k] + TICK / FALL * (how[k] - limits[k])
+        limits[k] = how[k] if math.isinf(limits[k]) or how[k] >= limits[k] else falling
+    near = 0.0
+    width = (1.0 - onset) * limits[2]
+    for i in range(speed.size):
+        over = abs(speed[i]) - onset * limits[2]
+        if over > 0.0:
+            torque[i] -= math.copysign(min(share * rated[i] / width, STEEPEST_JOINT * rotor[i]) * over, speed[i])
+            near = max(near, over / width)
+    n = speed.size
+    at_tcp = _resist_at(tcp, n, onset, limits[0], force, STEEPEST_TCP, speed, jacobian, p_BF, rotor, torque)
+    at_elbow = _resist_at(elbow, moving, onset, limits[1], force, STEEPEST_ELBOW, speed, jacobian, p_BF, rotor, torque)
+    return min(max(near, at_tcp, at_elbow), 1.0)
+
+
+@numba.njit(cache=True)
+def _resist_at(p, moving, onset, limit, force, steepest, speed, jacobian, p_BF, rotor, torque) -> float:
+    """A point that the first `moving` joints move is damped along its motion. Returns how near it is to its limit."""
+    x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
+    columns = np.empty((3, moving))
+    vx, vy, vz = 0.0, 0.0, 0.0
+    for i in range(moving):
+        wx, wy, wz = jacobian[3, i], jacobian[4, i], jacobian[5, i]
+        columns[0, i] = jacobian[0, i] + wy * z - wz * y
+        columns[1, i] = jacobian[1, i] + wz * x - wx * z
+        columns[2, i] = jacobian[2, i] + wx * y - wy * x
+        vx += columns[0, i] * speed[i]
+        vy += columns[1, i] * speed[i]
+        vz += columns[2, i] * speed[i]
+    fast = math.sqrt(vx * vx + vy * vy + vz * vz)
+    over, width = fast - onset * limit, (1.0 - onset) * limit
+    if not over > 0.0:
+        return 0.0
+    mobility = 0.0  # of the point along its motion, of the rotors alone [1/kg]
+    for i in range(moving):
+        columns[0, i] = (columns[0, i] * vx + columns[1, i] * vy + columns[2, i] * vz) / fast
+        mobility += columns[0, i] * columns[0, i] / rotor[i]
+    size = min(force / width, steepest / mobility) * over
+    for i in range(moving):
+        torque[i] -= columns[0, i] * size
+    return over / width

@@ -1,0 +1,146 @@
+"""The control law of each mode: what the decision asks for becomes motor currents."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.all_settings import JointControl
+from pendant.decision import Decision
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law
+from sim.arm.arm_file import Arm
+from sim.control.feed_forward import FeedForward
+from sim.control.feedback import Feedback
+from sim.control.free_drive_law import FreeDriveLaw
+from sim.control.motor_controller import MotorController
+from sim.control.torque_feedback import TorqueFeedback
+from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.estimation.transmission_torque import DEFLECTION
+from sim.motion.references import References
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.calibration import Calibration
+
+Array = NDArray[np.float64]
+
+
+class Controller:
+    """Turns estimates and decisions into motor currents, n joints (AF-5, AF-8).
+
+    Tracking (HOLD, BRAKE, FOLLOW) is feed-forward + torque feedback + feedback of state errors, each a module of its own, fed
+    by different references. A program's motion gets the friction estimate as feed-forward on top (AF-7). FREE is the
+    free-drive law, without any feedback of position. OFF is no current at all.
+
+    Args:
+        arm: the arm's numbers.
+        calibration: error of the constants that the controller uses.
+        dynamics: the controller's rigid model.
+        tcp: tool centre point in F (3,) [m].
+        R_FT: its orientation in F (3, 3).
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
+        self.references = References(arm, calibration, dynamics, tcp, R_FT)
+        self.feed_forward = FeedForward(arm, calibration, dynamics)
+        self.torque_feedback = TorqueFeedback(arm.n)
+        self.feedback = Feedback(arm, calibration, dynamics, tcp)
+        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp, R_FT)
+        self.motor = MotorController(arm, calibration)
+        self._dynamics = dynamics
+        self._law: Law | None = None
+        self._nothing = np.zeros(arm.n)
+        self._followed = False  # a motion was followed before the arm was told to brake
+        self._blind = False  # some joint had no motor angle in the last tick
+        self._fed_back = False  # the torque feedback was on in the last tick
+
+    def update(
+        self,
+        estimate: Estimate,
+        decision: Decision,
+        jacobian: Array,
+        friction: AdaptiveFriction,
+        stiffer: Array,
+        use: JointControl,
+    ) -> Array:
+        """Motor currents (n,) [A] for this tick.
+
+        Args:
+            estimate: this tick's estimate.
+            decision: this tick's decision.
+            jacobian: of the flange (6, n), linear first, axes of B.
+            friction: its estimate.
+            stiffer: error of the springs' believed stiffness (n,), as learned, relative to it.
+            use: which terms are on.
+        """
+        blind = not (estimate.joints_valid or estimate.degraded)
+        if self._blind and not blind:
+            self.references.skip()  # the arm is not where the reference went on to
+        self._blind = blind
+        law = decision.law
+        if law is _OFF:
+            # No power: the brakes hold. Whatever comes after it begins anew, as after free-drive.
+            self.references.skip()
+            torque = self._nothing
+        elif law is _FREE:
+            self.references.skip()
+            if self._law is not _FREE:
+                self.free_drive.start(estimate)
+            torque = self.free_drive.torque(estimate, decision, jacobian, friction, use.friction)
+        else:
+            torque = self._track(estimate, decision, friction, stiffer, use)
+        if blind:
+            self._let_blind_joints_rest(estimate, torque)
+        self._law = law
+        if law is not _BRAKE:
+            self._followed = law is _FOLLOW
+        return self.motor.current(torque, estimate.theta_d)
+
+    def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
+        """Without its motor angle a joint gets its static torque alone, and its friction brings it to rest: a loop closed over
+        the spring, or on an old measurement, would drive it. Where a joint has lost both angles, no posture is known, and all
+        joints keep the static torque of the last one.
+        """
+        lost = set(estimate.lost)
+        blind = _without("motor_encoder", estimate)
+        everywhere = not blind or any(("output_encoder", joint) in lost for joint in blind)
+        static = self._dynamics.gravity(estimate.q)
+        which = slice(None) if everywhere else blind
+        torque[which] = static[which]
+
+    def _track(
+        self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, stiffer: Array, use: JointControl
+    ) -> Array:
+        references = self.references
+        reference = references.step(estimate, decision)
+        helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
+        rubbing = friction if helped else None
+        torque = self.feed_forward.torque(reference, rubbing, use.feed_forward, stiffer, references.push, references.fresh)
+        desired = self.feed_forward.tau_J
+        # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
+        start = torque.copy() if references.fresh else None
+        if start is not None and self._law is _FREE:
+            start += self.free_drive.balancing
+        # The deflection alone: the fused torque is noisier, and the rigid model's share in it knows nothing of a push.
+        feeding_back = use.torque_feedback and use.from_deflection
+        if feeding_back:
+            measured = estimate.tau_ways[DEFLECTION]
+            bent = _without("output_encoder", estimate)
+            if bent:
+                # Nobody sees their springs bend: the motor's own torque, fed back, would drive them.
+                measured = measured.copy()
+                measured[bent] = desired[bent]
+            if references.fresh or not self._fed_back:
+                self.torque_feedback.start(measured, desired)
+            self.torque_feedback.add(measured, desired, torque)
+        self._fed_back = feeding_back
+        sticking = friction.breakaway if helped else self._nothing
+        # What stands in the way of a motion that is stopped must not be pushed on: to take that back would need seconds.
+        waits = decision.law is _BRAKE and self._followed and estimate.touched
+        self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
+        return torque
+
+
+def _without(sensor: str, estimate: Estimate) -> list[int]:
+    """Joints that have lost that sensor."""
+    return [joint for name, joint in estimate.lost if name == sensor]
+
+
+_OFF, _FREE, _BRAKE, _FOLLOW = Law.OFF, Law.FREE, Law.BRAKE, Law.FOLLOW  # looked up in every tick

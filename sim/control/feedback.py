@@ -1,0 +1,184 @@
+"""Feedback controller: corrections of state errors, each with its switch (AF-5)."""
+
+import math
+from collections import deque
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.all_settings import JointControl
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+from sim.motion.moves import Reference
+from sim.motion.references import DELAY
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.calibration import Calibration
+
+Array = NDArray[np.float64]
+
+BANDWIDTH = 12.0  # of the position loop round the rotor alone [Hz]
+DAMPING_RATIO = 1.25
+INTEGRAL_TIME = 0.1  # of the output-side integral, at least [s]
+"""With `torque_feedback.SUPPORT` these keep every mode above 6 Hz inside a circle of 0.993 a tick, for link inertias from
+bare wrists to a stretched arm with its payload, stiffness wrong by a fifth and two ticks of delay, sticking or sliding."""
+
+SLOWER = 10.8
+"""Of that integral, times a joint's own frequency [rad]. The integral of an angle that swings lags by a quarter of a turn: it
+drives the swing on, the more the slower it is. A heavy arm on soft springs swung by itself at 4 Hz."""
+
+PRESLIDING = 0.4e-3
+"""Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
+
+BACK = 0.02  # of the torque beyond the motor's limits, a tick: as fast as the integral itself
+DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
+# The optional terms are gentle: they show their effect without touching the loop's margins.
+OUTPUT_SPEED = 0.05  # of the motor-speed gain
+ACCELERATION = 0.1  # of the rotor's inertia
+MOTOR_TORQUE = 0.1
+TCP_STIFFNESS, TCP_DAMPING = 500.0, 20.0  # [N/m], [N·s/m]
+
+OPTIONAL = ("theta_acceleration", "q_speed", "q_acceleration", "motor_torque", "tcp_pose", "tcp_speed")
+"""Terms that are off as shipped."""
+
+
+class Feedback:
+    """Motor torque from the errors of theta, q, their speeds and accelerations, motor torque, and the tool centre point.
+
+    The integral acts on the output angle: where the arm shall be. It waits inside the dead band, and while it is told to. Where
+    the motor's limits are reached it goes back until no more is asked than they allow (AF-6; back-calculation: Fertik, Ross,
+    1967): an integral that merely waited would wind up in every tick in which the limit is just not reached, and not unwind in
+    the others.
+
+    At rest a joint's friction may hold anything up to its breakaway torque, and the integral grows against it. That part is let
+    go while the joint slides its first tenths of a milliradian, for there the friction that is fed forward takes its place.
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, bandwidth: float = BANDWIDTH) -> None:
+        spring = arm.transmissions
+        rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        omega = 2.0 * math.pi * bandwidth
+        stiffness = rotor * omega**2
+        compliance = 1.0 / ((np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness)
+        swing = np.sqrt(1.0 / (compliance * _heaviest(arm, dynamics)))
+        integral_gain = TICK * stiffness / np.maximum(INTEGRAL_TIME, SLOWER / swing)
+        damping = 2.0 * DAMPING_RATIO * rotor * omega
+        self._gains = np.stack([stiffness, damping, compliance, integral_gain])
+        self._rotor, self._damping = rotor, damping
+        self._dead = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
+        self._dynamics, self._tcp = dynamics, tcp
+        self._past: deque[tuple[Reference, Array]] = deque()
+        self._use: JointControl | None = None
+        self._on, self._optional = (True, True, True), False
+        self._memory = np.zeros((3, arm.n))  # integral, its part won at rest, last tick's load
+
+    def add(
+        self,
+        reference: Reference,
+        desired: Array,
+        estimate: Estimate,
+        use: JointControl,
+        excess: Array,
+        waits: bool,
+        torque: Array,
+        start: Array | None,
+        sticking: Array,
+        stiffer: Array,
+    ) -> None:
+        """Add all corrections to `torque` (n,) [N·m].
+
+        Args:
+            reference: of this tick.
+            desired: transmission torque (n,) [N·m] that it needs; it bends the spring.
+            estimate: of this tick.
+            use: which terms are on.
+            excess: (n,) [N·m] what was asked of the motor beyond what it gave, 0 where it gave all.
+            waits: whether the integral shall keep its value, but for what goes back.
+            torque: (n,) what the other controllers ask for.
+            start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
+                would do at once, so that taking over moves nothing by itself.
+            sticking: (n,) [N·m] the friction that is fed forward as soon as a joint moves, and that it may have at rest.
+            stiffer: (n,) error of the springs' believed stiffness, as learned, relative to it.
+        """
+        if use is not self._use:
+            self._use = use
+            self._on = (use.theta, use.theta_speed, use.q)
+            self._optional = any(getattr(use, name) for name in OPTIONAL)
+        past = self._past
+        if start is not None:
+            past.clear()
+            self._memory[2] = desired
+        past.append((reference, desired))
+        then, load = past.popleft() if len(past) > DELAY else past[0]
+        if self._optional:
+            self._add_optional(then, estimate, use, torque)
+        theta, theta_d, q = estimate.theta, estimate.theta_d, estimate.q
+        begin = torque if start is None else start
+        _correct(
+            then.q, then.qd, load, reference.qd, sticking, stiffer, theta, theta_d, q, self._gains, self._on, self._dead,
+            excess, waits, start is not None, begin, self._memory, torque,
+        )  # fmt: skip
+
+    def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
+        wanted = torque.copy()
+        if use.theta_acceleration:
+            torque += ACCELERATION * self._rotor * (then.qdd - estimate.theta_dd)
+        if use.q_speed:
+            torque += OUTPUT_SPEED * self._damping * (then.qd - estimate.qd)
+        if use.q_acceleration:
+            torque += ACCELERATION * self._rotor * (then.qdd - estimate.qdd)
+        if use.motor_torque:
+            torque += MOTOR_TORQUE * (wanted - estimate.tau_m)
+        if use.tcp_pose or use.tcp_speed:
+            self._add_tcp(then, estimate, use, torque)
+
+    def _add_tcp(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
+        p, R, jacobian = self._dynamics.update(then.q)
+        at_tcp = jacobian[:3] + np.cross(jacobian[3:].T, R @ self._tcp).T
+        force = np.zeros(3)
+        if use.tcp_pose:
+            force += TCP_STIFFNESS * (p + R @ self._tcp - estimate.p_BF - estimate.R_BF @ self._tcp)
+        if use.tcp_speed:
+            force += TCP_DAMPING * (at_tcp @ (then.qd - estimate.qd))
+        torque += at_tcp.T @ force
+
+
+def _heaviest(arm: Arm, dynamics: Dynamics) -> Array:
+    """Inertia (n,) that a joint moves at home with the largest payload, whatever is configured now [kg·m²]."""
+    home = np.array(arm.chain.home)
+    ways = dynamics.update(home)[2][:3].copy()
+    missing = max(arm.payload - dynamics.load.mass, 0.0)
+    return dynamics.mass(home).diagonal() + missing * np.sum(ways**2, axis=0)
+
+
+@numba.njit(cache=True)
+def _correct(
+    q_ref, qd_ref, load, qd_now, sticking, stiffer, theta, theta_d, q, gains, on, dead_band, excess, waits, fresh, begin, memory,
+    torque,
+) -> None:  # fmt: skip
+    with_theta, with_speed, with_integral = on
+    for i in range(torque.size):
+        total = torque[i]
+        compliance = gains[2, i] / (1.0 + stiffer[i])
+        if with_theta:
+            total += gains[0, i] * (q_ref[i] + compliance * load[i] - theta[i])
+        if with_speed:
+            bending = compliance * (load[i] - memory[2, i]) / TICK
+            total += gains[1, i] * (qd_ref[i] + bending - theta_d[i])
+        memory[2, i] = load[i]
+        if with_integral:
+            if fresh:
+                memory[0, i], memory[1, i] = begin[i] - total, 0.0
+            error = q_ref[i] - q[i]
+            step = -BACK * excess[i]
+            if not waits and excess[i] * error <= 0.0 and abs(error) > dead_band:
+                step += gains[3, i] * error
+            if qd_now[i] == 0.0:
+                memory[1, i] += step
+            else:
+                held = min(max(memory[1, i], -sticking[i]), sticking[i])
+                memory[0, i] += memory[1, i] - held + step
+                memory[1, i] = held * math.exp(-abs(qd_now[i]) * TICK / PRESLIDING)
+            total += memory[0, i] + memory[1, i]
+        torque[i] = total

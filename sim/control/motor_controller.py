@@ -1,0 +1,56 @@
+"""Motor controller: a wanted motor torque becomes a current within the limits of current, torque and speed (AF-6)."""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm.arm_file import Arm
+from sim.sensing.calibration import Calibration
+
+Array = NDArray[np.float64]
+
+OVERSPEED = 0.05
+"""Above its speed limit a motor is driven no further; the torque ends linearly over this share of the limit."""
+
+
+class MotorController:
+    """Currents of n motors.
+
+    Attributes:
+        command: motor torque that the last current gives, as believed (n,) [N·m].
+        excess: what was asked beyond the last command (n,) [N·m], 0 where nothing was cut: it lets nothing wind up behind it.
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration) -> None:
+        motors = arm.motors
+        per_torque = 1.0 / (np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant)
+        # The output's torque limit, with room for the friction that the motor has to overcome besides.
+        friction = np.array([row[-1] for row in arm.frictions.torque])
+        largest = np.minimum(np.array(motors.current) / per_torque, np.array(arm.limits.torque) + friction)
+        self._limits = np.stack([per_torque, largest, np.array(arm.limits.speed)])
+        self.command = np.zeros(arm.n)
+        self.excess = np.zeros(arm.n)
+        self._current = np.zeros(arm.n)
+
+    def current(self, torque: Array, speed: Array) -> Array:
+        """Motor currents (n,) [A] for a wanted motor torque (n,) [N·m] at motor speeds (n,) [rad/s]; good until the next call."""
+        _limit(torque, speed, self._limits, self.command, self.excess, self._current)
+        return self._current
+
+
+@numba.njit(cache=True)
+def _limit(torque, speed, limits, command, excess, current) -> None:
+    for i in range(torque.size):
+        per_torque, largest, fastest = limits[0, i], limits[1, i], limits[2, i]
+        low, high = -largest, largest
+        room = (fastest - abs(speed[i])) / (OVERSPEED * fastest) + 1.0
+        if room < 1.0:  # too fast: what drives on fades out, what brakes stays whole
+            fade = max(room, 0.0)
+            if speed[i] > 0.0:
+                high *= fade
+            else:
+                low *= fade
+        value = min(max(torque[i], low), high)
+        excess[i] = torque[i] - value
+        command[i] = value
+        current[i] = value * per_torque

@@ -1,0 +1,177 @@
+"""Adaptive friction module: friction of each joint, learned while the arm works, with its uncertainty (AF-2)."""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+
+Array = NDArray[np.float64]
+
+TERMS = 6
+"""Coulomb, saturating, viscous, load; then two that are no friction: error of the model's gain, bias of the model."""
+
+KNEE = 0.25  # speed of the saturating term's half [rad/s]
+SIGN_SPEED = 0.01  # the sign of the speed is blurred over this [rad/s]
+GATE = 0.03  # nothing is learned below this speed: a stuck joint says nothing of its sliding friction [rad/s]
+PRIOR = np.array([0.5, 0.5, 0.5, 1.0])  # relative standard deviation of the friction terms before anything is learned
+WALK = np.array([0.05, 0.05, 0.05, 0.02])  # relative random walk of the friction terms [1/sqrt(s)]: warmth and wear
+GAIN_PRIOR, GAIN_WALK = 0.05, 0.002  # of the model's gain error
+BIAS_PRIOR, BIAS_WALK = 0.015, 0.006  # of its bias, relative to the torque limit (prior) and per sqrt(s)
+NOISE = 0.006  # of one measurement, relative to the torque limit
+CORRELATED = 60.0  # ticks over which errors of the measurement stay alike, so that so many count as one
+MISFIT = 0.05  # relative error that the terms' shapes leave even when all is learned
+
+
+class AdaptiveFriction:
+    """A Kalman filter a joint over the terms of its friction, n joints.
+
+    Measured is what the motor spends beyond the rotor's inertia and the rigid model,
+        tau_m - J theta_dd - tau_dyn = f_in + f_out - tau_ext + (gain error) tau_dyn + bias,
+    with the model f = (c0 + c1 |v|/(|v| + knee) + c2 |v| + c3 |tau_J|) sign(v), all times the known fall with temperature.
+    Friction changes its sign with the speed, the model's errors do not: both directions tell them apart. Learning needs the
+    motor torque, a speed above the gate and no contact; without them the estimate stands and its uncertainty grows.
+    From one side alone output friction cannot be told from an external torque: its share of the whole is assumed as filed.
+    """
+
+    def __init__(self, arm: Arm, scale: float = 1.0) -> None:
+        """
+        Args:
+            arm: the arm's numbers; its friction curve is the prior.
+            scale: factor on the prior, for an arm whose friction is not what its file says.
+        """
+        n, filed = arm.n, arm.frictions
+        speed = np.linspace(0.02, max(filed.speed), 200)
+        basis = np.stack([np.ones_like(speed), speed / (speed + KNEE), speed], axis=1)
+        self.terms = np.zeros((n, TERMS))
+        for i in range(n):
+            curve = np.interp(np.sqrt(speed), np.sqrt(filed.speed), filed.torque[i])
+            self.terms[i, :3] = np.linalg.lstsq(basis, scale * curve, rcond=None)[0]
+        self.terms[:, 3] = scale * np.array(filed.load)
+        limit = np.array(arm.limits.torque)
+        size = np.abs(self.terms[:, :4])
+        size[:, :3] = np.maximum(size[:, :3], 0.05 * self.terms[:, :1])
+        deviation = np.column_stack([PRIOR * size, np.full(n, GAIN_PRIOR), BIAS_PRIOR * limit])
+        walk = np.column_stack([WALK * size, np.full(n, GAIN_WALK), BIAS_WALK * limit])
+        self.covariance = np.stack([np.diag(row**2) for row in deviation])
+        noise = np.tile((NOISE * limit) ** 2 * CORRELATED, (TERMS, 1)).T
+        self._spreads = np.stack([walk**2 * TICK, deviation**2, noise])
+        self.output_share = filed.output_share
+        self._heat = (filed.temperature, filed.per_kelvin)
+        self._outcome = np.zeros((3, n))
+        self.total, self.deviation, self.warmth = self._outcome
+        self.warmth[:] = 1.0
+
+    def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, temperature: Array, free: bool) -> None:
+        """One tick.
+
+        Args:
+            speed: of the motors (n,) [rad/s].
+            surplus: tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown.
+            tau_dyn: torque of the rigid model (n,) [N·m].
+            tau_J: transmission torque (n,) [N·m], for the load term.
+            temperature: measured (n,) [°C].
+            free: no contact, so that the surplus is friction.
+        """
+        # One kernel and few arrays: each array argument costs as much as the arithmetic of a joint.
+        _step(
+            speed,
+            surplus,
+            tau_dyn,
+            tau_J,
+            temperature,
+            free,
+            self._heat,
+            self._spreads,
+            self.terms,
+            self.covariance,
+            self._outcome,
+        )
+
+    @property
+    def breakaway(self) -> Array:
+        """What a standing joint may hold by friction (n,) [N·m]."""
+        return self.terms[:, 0] * self.warmth
+
+    def at(self, speed: Array, tau_J: Array) -> Array:
+        """Friction (n,) [N·m] of both sides, sliding at another speed and load, at the last temperature.
+
+        A speed of 0 counts as the slowest forwards.
+        """
+        total = np.empty_like(speed)
+        _slide(speed, tau_J, self.warmth, self.terms, total)
+        return total
+
+
+@numba.njit(cache=True)
+def _step(speed, surplus, tau_dyn, tau_J, temperature, free, heat, spreads, terms, covariance, outcome) -> None:
+    total, deviation, warmth = outcome[0], outcome[1], outcome[2]
+    reference, per_kelvin = heat
+    for i in range(speed.size):
+        warmth[i] = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
+    _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, spreads[0], spreads[1], spreads[2])
+    _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation)
+
+
+@numba.njit(cache=True)
+def _friction_terms(speed, tau_J, warmth, row) -> None:
+    sign = np.tanh(speed / SIGN_SPEED) * warmth
+    size = abs(speed)
+    row[0] = sign
+    row[1] = sign * size / (size + KNEE)
+    row[2] = sign * size
+    row[3] = sign * abs(tau_J) / warmth  # load friction is of the teeth, not of the grease
+
+
+@numba.njit(cache=True)
+def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk, ceiling, noise) -> None:
+    row, gain = np.empty(TERMS), np.empty(TERMS)
+    for i in range(speed.size):
+        P, w = covariance[i], terms[i]
+        for k in range(TERMS):
+            # What nobody measures may drift, but never beyond what was believed at first.
+            P[k, k] = min(P[k, k] + walk[i, k], max(ceiling[i, k], P[k, k]))
+        if not free or abs(speed[i]) < GATE or math.isnan(surplus[i]):
+            continue
+        _friction_terms(speed[i], tau_J[i], warmth[i], row)
+        row[4] = tau_dyn[i]
+        row[5] = 1.0
+        spread, predicted = noise[i, 0], 0.0
+        for k in range(TERMS):
+            gain[k] = 0.0
+            for m in range(TERMS):
+                gain[k] += P[k, m] * row[m]
+            spread += row[k] * gain[k]
+            predicted += row[k] * w[k]
+        error = surplus[i] - predicted
+        for k in range(TERMS):
+            w[k] += gain[k] * error / spread
+            for m in range(TERMS):
+                P[k, m] -= gain[k] * gain[m] / spread
+        for k in range(4):
+            w[k] = max(w[k], 0.0)  # friction never drives
+
+
+@numba.njit(cache=True)
+def _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation) -> None:
+    row = np.empty(TERMS)
+    for i in range(speed.size):
+        _friction_terms(speed[i], tau_J[i], warmth[i], row)
+        value, variance = 0.0, 0.0
+        for k in range(4):
+            value += row[k] * terms[i, k]
+            for m in range(4):
+                variance += row[k] * covariance[i, k, m] * row[m]
+        total[i] = value
+        deviation[i] = np.sqrt(max(variance, 0.0)) + MISFIT * abs(value)
+
+
+@numba.njit(cache=True)
+def _slide(speed, tau_J, warmth, terms, total) -> None:
+    for i in range(speed.size):
+        size, w = abs(speed[i]), terms[i]
+        value = warmth[i] * (w[0] + w[1] * size / (size + KNEE) + w[2] * size) + w[3] * abs(tau_J[i])
+        total[i] = value if speed[i] >= 0.0 else -value

@@ -1,0 +1,142 @@
+"""The user's wrench on the flange from its force/torque sensor, the force that the joints feel there, and the acceleration."""
+
+import math
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.arm.chain import Body
+from sim.arm.frames import skew
+from sim.rigid_body.dynamics import Dynamics
+from sim.rigid_body.newton_euler import cross
+from sim.sensing.sensors import Sample
+
+Array = NDArray[np.float64]
+
+TURN_BANDWIDTH = 60.0
+"""Of the angular acceleration, which is the gyro's difference [Hz]. The wrists of a guided arm swing at 40 to 60 Hz: what a load
+needs there and is not known of in time would seem a hand's, be helped, and make them swing more."""
+
+DAMPING = 0.1  # lever arm below which the joints feel no force [m]
+
+
+class FlangeForces:
+    """Both forces, each in its own way; written in place.
+
+    Attributes:
+        F_user: the user's wrench (6,) in axes of B at the flange origin: force [N], torque [N·m]; zeros while the sensor is out.
+        F_joints: the force (3,) in B that explains the joints' external torques best [N].
+        a_felt: what the accelerometer on the arm's side feels beyond gravity (3,), axes of B [m/s²].
+
+    Args:
+        dynamics: the controller's rigid model, whose recursion has been run in this tick.
+    """
+
+    def __init__(self, dynamics: Dynamics) -> None:
+        self._dynamics = dynamics
+        self.F_user, self.F_joints, self.a_felt = np.zeros(6), np.zeros(3), np.zeros(3)
+        self._turns = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
+        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        self.set_load(dynamics.load)
+
+    def set_load(self, load: Body) -> None:
+        """Take `load` (in F) as everything beyond the flange."""
+        turned = skew(load.com)
+        about_flange = load.inertia - load.mass * turned @ turned
+        self._mass, self._load = load.mass, np.vstack([load.com, about_flange])  # centre of mass, inertia about the flange (4, 3)
+
+    def update(self, sample: Sample, q: Array, motion: Array, tau_ext: Array) -> None:
+        """One tick.
+
+        Args:
+            sample: its measurements.
+            q: joint angles (n,) [rad].
+            motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
+            tau_ext: external torques of the joints (n,) [N·m].
+        """
+        rigid, turns, differentiated = self._dynamics.recursion, self._turns, sample.acceleration_valid
+        force = sample.acceleration_tool
+        if sample.wrench_valid and not differentiated:
+            # The model stands in; its values stay for the differentiation to go on from.
+            force, turns[1] = self._dynamics.specific_force(q, motion[1], motion[2])
+            turns[0] = rigid.R.T @ rigid.v_F[3:]
+        _update(
+            rigid.jacobian, tau_ext, rigid.R, sample.wrench, force, sample.gyro_tool, turns, self._mass, self._load,
+            self._smoothing, sample.wrench_valid, differentiated, sample.acceleration_flange, self._dynamics.gravity_B,
+            self.F_user, self.F_joints, self.a_felt,
+        )  # fmt: skip
+
+
+@numba.njit(cache=True)
+def _update(
+    jacobian, tau_ext, R, wrench, force, gyro, turns, mass, load, smoothing, wrench_valid, differentiated, specific, gravity,
+    F_user, F_joints, a_felt,
+) -> None:  # fmt: skip
+    _felt_by_joints(jacobian, tau_ext, F_joints)
+    for k in range(3):
+        a_felt[k] = R[k, 0] * specific[0] + R[k, 1] * specific[1] + R[k, 2] * specific[2] + gravity[k]
+    if differentiated:
+        _differentiate(gyro, turns[0], turns[1], smoothing)
+    if wrench_valid:
+        _user_wrench(wrench, force, turns[0], turns[1], mass, load[0], load[1:], R, F_user)
+    else:
+        F_user[:] = 0.0
+
+
+@numba.njit(cache=True)
+def _felt_by_joints(jacobian, tau_ext, out) -> None:
+    """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
+    a = np.zeros((3, 3))
+    b = np.zeros(3)
+    for j in range(3):
+        for i in range(tau_ext.size):
+            b[j] += jacobian[j, i] * tau_ext[i]
+            for k in range(3):
+                a[j, k] += jacobian[j, i] * jacobian[k, i]
+        a[j, j] += DAMPING * DAMPING
+    c0 = a[1, 1] * a[2, 2] - a[1, 2] * a[2, 1]
+    c1 = a[1, 2] * a[2, 0] - a[1, 0] * a[2, 2]
+    c2 = a[1, 0] * a[2, 1] - a[1, 1] * a[2, 0]
+    determinant = a[0, 0] * c0 + a[0, 1] * c1 + a[0, 2] * c2
+    d1 = a[0, 2] * a[2, 1] - a[0, 1] * a[2, 2]
+    d2 = a[0, 1] * a[2, 0] - a[0, 0] * a[2, 1]
+    e1 = a[0, 0] * a[2, 2] - a[0, 2] * a[2, 0]
+    e2 = a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0]
+    f12 = a[0, 2] * a[1, 0] - a[0, 0] * a[1, 2]
+    g = a[0, 1] * a[1, 2] - a[0, 2] * a[1, 1]
+    out[0] = (c0 * b[0] + d1 * b[1] + g * b[2]) / determinant
+    out[1] = (c1 * b[0] + e1 * b[1] + f12 * b[2]) / determinant
+    out[2] = (c2 * b[0] + d2 * b[1] + e2 * b[2]) / determinant
+
+
+@numba.njit(cache=True)
+def _differentiate(gyro, last, turn, smoothing) -> None:
+    for k in range(3):
+        turn[k] += smoothing * ((gyro[k] - last[k]) / TICK - turn[k])
+        last[k] = gyro[k]
+
+
+@numba.njit(cache=True)
+def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
+    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
+
+    The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
+    c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
+    """
+    tangential = cross(turn, com)
+    normal = cross(gyro, cross(gyro, com))
+    lever = cross(com, force)
+    spin, torque = np.empty(3), np.empty(3)
+    for k in range(3):
+        spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
+        torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
+    whirl = cross(gyro, spin)
+    rest = np.empty(6)
+    for k in range(3):
+        rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]
+        rest[3 + k] = mass * lever[k] + torque[k] + whirl[k] - measured[3 + k]
+    for k in range(3):
+        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
+        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]

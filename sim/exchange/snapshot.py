@@ -1,0 +1,42 @@
+"""What a picture or a log of one tick needs: copied values, safe to read from any thread."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.decision import Decision
+from pendant.tick.estimate import Estimate
+from pendant.walls.barrier import Place
+from pendant.walls.definitions import AnyBorder
+from sim.arm.scenario import Scenario
+
+
+def _nothing() -> NDArray[np.float64]:
+    return np.zeros(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """One tick, copied. Poses are (7,): position [m], then quaternion wxyz, in W."""
+
+    tick: int
+    decision: Decision
+    estimate: Estimate  # a copy of its own
+    truth_links: NDArray[np.float64]  # (n + 2, 7) base, links' joint frames, last: tool-side face of the flange sensor
+    truth_objects: NDArray[np.float64]  # (m, 7) world objects, in the scenario's order
+    truth_payload: NDArray[np.float64] | None  # (7,) pose of the payload's centre; falls and rests once dropped
+    truth_payload_mass: float  # of what is attached [kg]
+    configured_mass: float  # what the controller believes [kg]
+    touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
+    # each: part, point in W [m], force in W [N], torque in W [N·m]
+    wanted_q: NDArray[np.float64] = field(
+        default_factory=_nothing
+    )  # (n,) reference of the tracking laws [rad]; none in free-drive
+    truth_q: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) output angles [rad]
+    truth_friction: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of both sides, with the speed's sign [N·m]
+    truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
+    truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
+    scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks
+    reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]
+    places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B

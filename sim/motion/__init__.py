@@ -1,0 +1,1 @@
+"""References in joint and tool space. Uses arm/, rigid_body/, sensing/."""

@@ -1,0 +1,159 @@
+"""Reference generator: the posture, stop or move that the tracking laws follow, chosen by the decision."""
+
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.decision import Decision
+from pendant.haptics import Shake
+from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law
+from sim.arm.arm_file import Arm
+from sim.motion.force_move import ForceTrajectory
+from sim.motion.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, Strength, stop_time
+from sim.motion.pace import Pace
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.calibration import Calibration
+from sim.sensing.sensors import LATENCY
+
+Array = NDArray[np.float64]
+
+DELAY = LATENCY + 1
+"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
+
+SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
+STANDING = 0.02  # [rad/s]
+SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
+PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
+GONE = 0.01  # [N·m]
+
+
+class References:
+    """One reference a tick under HOLD, BRAKE and FOLLOW; free-drive has none, and what comes after it begins anew.
+
+    Attributes:
+        now: the last reference, None before the first.
+        fresh: in this tick it began anew, at the arm's own state.
+        driven: it comes from a program, which knows its speed ahead.
+        move_done: id of the last move finished.
+        refusal: why the move of this tick cannot be done, or "".
+        push: torque (n,) with which the joints push against the outside besides [N·m], None for none.
+    """
+
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
+        limits = arm.limits
+        self._dynamics, self._tcp, self._R_FT = dynamics, tcp, R_FT
+        self._pace = Pace(dynamics, tcp)
+        self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
+        self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
+        self._strength = Strength(dynamics, self._rotor, self._torque)
+        self._law: Law | None = None
+        self._motion: Motion | None = None
+        self._move: Move | None = None
+        self._settling = 0  # ticks for which a stop's reference still leans towards the arm
+        self._standing = np.zeros(arm.n)
+        self.now: Reference | None = None
+        self._past: deque[Reference] = deque(maxlen=DELAY)
+        self.fresh = True
+        self.driven = False
+        self.move_done = 0
+        self.refusal = ""
+        self.push: Array | None = None
+
+    def skip(self) -> None:
+        """A tick without a reference: free-drive."""
+        self._law = Law.FREE
+        self.refusal = ""
+        self._past.clear()
+
+    @property
+    def answered(self) -> Reference | None:
+        """The reference that the next tick's measurement answers to; None under free-drive."""
+        return self._past[0] if self._past else None
+
+    def wanted(self) -> Array:
+        """Angles (n,) of the last reference [rad]; empty under free-drive and before the first."""
+        if self.now is None or self._law is Law.FREE:
+            return np.zeros(0)
+        return self.now.q.copy()
+
+    def step(self, estimate: Estimate, decision: Decision) -> Reference:
+        """The reference of this tick."""
+        law = decision.law
+        self.refusal = ""
+        self.fresh = self.now is None or self._law is Law.FREE
+        if self.now is None or self._law is Law.FREE:
+            self._stop(estimate.q, estimate.qd)
+        elif law is not Law.FOLLOW and self._law is Law.FOLLOW:
+            self._stop(self.now.q, self.now.qd)
+        elif self._settling and self._motion is not None and self._motion.done:
+            self._motion = self._settle(estimate, self.now)
+        self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
+        begins = law is Law.FOLLOW and decision.move is not self._move
+        if begins:
+            self._begin(decision.move)
+        self._move = decision.move if law is Law.FOLLOW else None
+        assert self._motion is not None
+        if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
+            self._motion.feel(estimate)
+            self.refusal = self._motion.problem
+        motion = self._motion
+        if isinstance(motion, JointTrajectory | LinearTrajectory):
+            if begins:
+                self._pace.begin(motion, decision.speed_limits)
+            self.now = motion.step(self._pace.step(motion, decision.speed_limits))
+        else:
+            self.now = motion.step()
+        if isinstance(self._motion, ForceTrajectory):
+            self.push = self._motion.push
+        elif self.fresh:
+            self.push = None
+        elif self.push is not None and self.now.qd.any():  # on the next way the integral of the position takes it over
+            self.push = None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
+        answer = self.now if decision.shake is None else _shaken(self.now, decision.shake)
+        self._past.append(answer)
+        if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
+            self.move_done = self._move.id
+        self._law = law
+        return answer
+
+    def _stop(self, q: Array, qd: Array) -> None:
+        """Come to rest from this motion; one that stood already has nothing to settle."""
+        self._motion = Stop(q, qd, stop_time(self._dynamics, q, qd, self._rotor, self._torque))
+        self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
+
+    def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
+        """After a stop has run out, let its end lean towards where the arm swings about, for a while.
+
+        The arm then keeps the posture it came to, instead of creeping back to where the plan ended.
+        """
+        self._settling -= 1
+        return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing)
+
+    def _begin(self, move: Move | None) -> None:
+        assert self.now is not None
+        self._settling = 0
+        q = self.now.q
+        try:
+            if isinstance(move, JointMove):
+                self._motion = JointTrajectory(q, move, self._limits, self._strength)
+            elif isinstance(move, LinearMove):
+                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._R_FT, self._limits)
+            elif isinstance(move, ApplyForce):
+                self._motion = ForceTrajectory(q, move, self._dynamics, self._tcp, self._limits[2])
+            else:
+                self._motion = Stop(q, self._standing)
+        except MoveRefused as refusal:
+            self.refusal = str(refusal)
+            self._motion = Stop(q, self._standing)
+
+
+def _shaken(reference: Reference, shake: Shake) -> Reference:
+    """The reference with the last joint's part in haptic feedback (HF-1)."""
+    q, qd, qdd = (values.copy() for values in reference)
+    q[-1] += shake.angle
+    qd[-1] += shake.speed
+    qdd[-1] += shake.acceleration
+    return Reference(q, qd, qdd)

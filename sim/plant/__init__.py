@@ -1,0 +1,1 @@
+"""The truth: the arm in its world, in MuJoCo. Uses arm/."""

@@ -1,0 +1,89 @@
+"""The true payload: attached to the flange, dropped, falling. Everything here is truth."""
+
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm.chain import load_body
+from sim.arm.frames import quaternion_from_matrix
+from sim.arm.scenario import AnyObject, Load
+from sim.plant.objects import set_contact_stiffness
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81  # [m/s²]
+RADIUS = 0.05  # height of a payload's centre when it lies on the floor [m]
+
+
+class Payload:
+    """What hangs on the flange. Once dropped it is a picture.
+
+    Attributes:
+        load: mass, centre and inertia now.
+        falling: it has been dropped, and nothing was attached since.
+
+    Args:
+        model, data: MuJoCo's.
+        load: to start with.
+        world: objects, whose contact stiffness depends on the masses.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, load: Load, world: list[AnyObject]) -> None:
+        self.load = load
+        self._model, self._data, self._world = model, data, world
+        self._scratch = mujoco.MjData(model)
+        self._body = model.body("payload").id
+        self._fallen: Array | None = None  # pose (7,) in W
+        self._speed = np.zeros(3)  # of the fall, in W [m/s]
+
+    @property
+    def falling(self) -> bool:
+        """It has been dropped, and nothing was attached since."""
+        return self._fallen is not None
+
+    def attach(self, load: Load) -> None:
+        """Make `load` the true payload from now on; what was attached before is gone."""
+        self.load = load
+        self._fallen = None
+        body = load_body(load)
+        values, axes = np.linalg.eigh(body.inertia)
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] *= -1.0
+        model = self._model
+        model.body_mass[self._body] = body.mass
+        model.body_ipos[self._body] = body.com
+        model.body_inertia[self._body] = values
+        model.body_iquat[self._body] = quaternion_from_matrix(axes)
+        mujoco.mj_setConst(model, self._scratch)
+        set_contact_stiffness(model, self._world)
+
+    def drop(self, velocity: Callable[[Array], Array]) -> None:
+        """Let it fall.
+
+        Args:
+            velocity: tells the flange's velocity (3,) in W [m/s] at a point (3,) in W [m]: it leaves with that.
+        """
+        if self.load.mass == 0.0:
+            return
+        position, orientation = self._data.xipos[self._body].copy(), self._data.xquat[self._body].copy()
+        self._speed = velocity(position)
+        self.attach(Load(mass=0.0))
+        self._fallen = np.concatenate([position, orientation])
+
+    def fall(self, time: float) -> None:
+        """Go on falling for `time` [s], down to the floor."""
+        assert self._fallen is not None
+        if self._fallen[2] > RADIUS:
+            self._speed[2] -= GRAVITY * time
+            self._fallen[:3] += self._speed * time
+            self._fallen[2] = max(self._fallen[2], RADIUS)
+
+    def pose(self) -> Array | None:
+        """Pose (7,) in W of its centre, attached or fallen: position [m], quaternion wxyz; None without one."""
+        if self._fallen is not None:
+            return self._fallen.copy()
+        if self.load.mass == 0.0:
+            return None
+        return np.concatenate([self._data.xipos[self._body], self._data.xquat[self._body]])

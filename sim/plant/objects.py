@@ -1,0 +1,81 @@
+"""World objects in MuJoCo, each with its true stiffness in N/m."""
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.scenario import AnyObject, Moving, Plane, SnapFit
+
+DEPTH = 0.02
+"""Constraint impedance d of every contact. A small d makes the contact an explicit spring: its force is K·r within 2 % also in
+a transient; d = 0.9 is right statically and far too soft in an impact (facts/contact-and-joints.md 3.4)."""
+
+DAMPING_RATIO = 0.03  # of a contact against 1 kg: real surfaces ring little, and a perfect spring would ring for ever
+SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]
+SNAP_REST = 0.2  # share of its force that a snap-fit still resists with while it gives way
+SNAP_MASS = 0.2  # of the part that gives way [kg]
+HEAVY = 1e6  # mass of a moving object, that no arm pushes aside [kg]
+
+
+def add_object(spec: mujoco.MjSpec, item: AnyObject) -> None:
+    """Add the body and geom `object/<name>` of `item`."""
+    turn = quaternion_from_matrix(rotation_from_rpy(item.rpy))
+    body = spec.worldbody.add_body(name=f"object/{item.name}", pos=item.position, quat=turn)
+    geom = body.add_geom(name=f"object/{item.name}", contype=0, conaffinity=0)
+    if isinstance(item, Plane):
+        geom.type = mujoco.mjtGeom.mjGEOM_PLANE
+        geom.size = [0, 0, 0.05]
+        return
+    geom.type = mujoco.mjtGeom.mjGEOM_BOX
+    geom.size = np.array(item.size) / 2.0
+    if isinstance(item, SnapFit):
+        geom.mass = SNAP_MASS
+        slide = body.add_joint(name=f"snap/{item.name}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, -1])
+        slide.limited = mujoco.mjtLimited.mjLIMITED_TRUE
+        slide.range = [0.0, item.travel]
+        slide.frictionloss = item.force
+        # As default a stuck joint creeps by mm/s (facts 3.3); so it creeps by some µm/s.
+        slide.solimp_friction = [0.9999, 0.9999, 1e-3, 0.5, 2]
+        slide.solref_friction = [2.0 * spec.option.timestep, 1.0]
+        slide.solref_limit = [0.001, 1.0]  # as stiff as the step allows: at the end of its travel it is a wall
+        slide.solimp_limit = [0.99, 0.99, 1e-3, 0.5, 2]
+        body.gravcomp = 1.0
+    if isinstance(item, Moving):
+        geom.mass = HEAVY
+        body.gravcomp = 1.0
+        for axis, name in zip(np.eye(3), "xyz", strict=True):
+            body.add_joint(name=f"move/{item.name}/{name}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)
+
+
+def pair_geoms(spec: mujoco.MjSpec, first_link: str, world: Sequence[AnyObject]) -> None:
+    """Pair every shape of the arm that can move with every object; nothing else ever collides."""
+    fixed = ("foot", first_link)  # the first link only turns about its own axis: it comes near nothing that the foot does not
+    shapes = [geom for geom in spec.geoms if geom.name.startswith("shape/") and geom.parent.name not in fixed]
+    for item in world:
+        for shape in shapes:
+            pair = spec.add_pair(name=f"{shape.name} {item.name}", geomname1=shape.name, geomname2=f"object/{item.name}")
+            pair.condim = 3
+            pair.friction = [item.friction, item.friction, 0.0, 0.0, 0.0]
+            pair.solimp = [DEPTH, DEPTH, 1e-3, 0.5, 2]
+
+
+def set_contact_stiffness(model: mujoco.MjModel, world: Sequence[AnyObject]) -> None:
+    """Give each pair the stiffness of its object, for the inverse inertias that the compiled `model` holds.
+
+    With impedance d and inverse weight A, solref = (-K·A·(1-d), -c·A·(1-d)) makes a spring of K [N/m] with a damper of c
+    [N·s/m]: MuJoCo regularises by R = A(1-d)/d and aims at -(c·v + K·r)·R. To be called again when a payload changes A.
+    """
+    for k in range(model.npair):
+        item = world[_object_index(model, k, world)]
+        bodies = model.geom_bodyid[[model.pair_geom1[k], model.pair_geom2[k]]]
+        weight = model.body_invweight0[bodies, 0].sum()
+        damping = 2.0 * DAMPING_RATIO * item.stiffness**0.5
+        model.pair_solref[k] = -item.stiffness * weight * (1 - DEPTH), -damping * weight * (1 - DEPTH)
+
+
+def _object_index(model: mujoco.MjModel, pair: int, world: Sequence[AnyObject]) -> int:
+    geoms = (int(model.pair_geom1[pair]), int(model.pair_geom2[pair]))  # the compiler orders them by type
+    names = {model.geom(geom).name for geom in geoms}
+    return next(i for i, item in enumerate(world) if f"object/{item.name}" in names)

@@ -1,0 +1,277 @@
+"""The true arm in its world: MuJoCo state, advanced one control tick at a time. Everything here is truth."""
+
+import math
+from collections.abc import Sequence
+
+import mujoco
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario
+from sim.plant.applied_touches import Hands
+from sim.plant.attached_payload import Payload
+from sim.plant.joint_friction import Friction, input_side
+from sim.plant.model import SENSORS, Step, build
+from sim.plant.objects import set_contact_stiffness
+from sim.plant.touch import Touch
+from sim.plant.world import World
+
+Array = NDArray[np.float64]
+
+WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
+BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
+LUGRE_STIFFNESS, LUGRE_DAMPING = 5, 6  # where an actuator's dynamics parameters have the bristles'
+SIGN_SPEED = 0.01  # [rad/s]
+
+
+class Plant:
+    """The arm, n joints, with its load and its world.
+
+    Attributes (views into MuJoCo or arrays of its own, valid until the next `advance`):
+        q, qd, theta, theta_d: true joint and motor angles and speeds (n,).
+        flange: means over the last tick of what `sim.plant.model.SENSORS` lists (18,).
+        temperature: of the joints [°C] (n,).
+        tau_J: true transmission torque at the tick's end (n,).
+        friction_in: true friction torque limit of the input side in this tick (n,).
+    """
+
+    def __init__(self, arm: Arm, scenario: Scenario, step: Step | None = None) -> None:
+        self.arm, self.scenario, self.step = arm, scenario, step or Step()
+        self.model = build(arm, scenario, self.step).compile()
+        self.data = mujoco.MjData(self.model)
+        self.friction = Friction(arm)
+        model, data, joints = self.model, self.data, arm.chain.joints
+        self._at_q = np.array([model.joint(f"q/{name}").qposadr[0] for name in joints])
+        self._at_theta = np.array([model.joint(f"theta/{name}").qposadr[0] for name in joints])
+        self._springs = np.array([model.tendon(f"spring/{name}").id for name in joints])
+        self._slips = np.array([model.tendon(f"hysteresis/{name}").id for name in joints])
+        self._slip_state = model.tendon_plasticadr[self._slips]
+        self._dof_q = np.array([model.joint(f"q/{name}").dofadr[0] for name in joints])
+        self._dof_theta = np.array([model.joint(f"theta/{name}").dofadr[0] for name in joints])
+        values = arm.transmissions
+        springs = np.array([values.stiffness, values.stiffening, values.damping, values.hysteresis_stiffness])
+        self._brakes, self._braked = np.array(arm.limits.torque), False
+        self._held = np.zeros(arm.n)  # by the brakes, as they are
+        self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
+        self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
+        self._parts = {model.body(int(i)).name: int(i) for i in self._links}
+        self._parts["tool"] = self._parts["flange"]
+        self.world = World(model, data, scenario.world, self.step.tick)
+        self.payload = Payload(model, data, scenario.payload_true, scenario.world)
+        self._history = self._history_indices()
+        self.flange = np.zeros(3 * len(SENSORS))
+        self.temperature = np.full(arm.n, arm.frictions.temperature)
+        self.ambient = arm.thermals.ambient
+        self._heat = np.zeros(arm.n)
+        own = np.zeros((5, arm.n))
+        self.q, self.theta, self.qd, self.theta_d, self.tau_J = own
+        self.friction_in = np.zeros(arm.n)
+        at = (self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state)
+        self._addresses = np.stack(at)
+        self._bias = model.actuator_biasprm
+        # MuJoCo's own arrays: asking for one costs as much as a kernel.
+        state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
+        self._gathered = (*state, self._addresses, springs, own)
+        self._applied, self._measured = data.qfrc_applied, data.history
+        self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
+        self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
+        self.hands = Hands(model, data, self._parts)
+        self.tick = 0
+        self._place(np.array(scenario.posture if scenario.posture is not None else arm.chain.home))
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Names of the parts that can be touched."""
+        return tuple(self._parts)
+
+    def _place(self, posture: Array) -> None:
+        """Put the arm at rest in `posture` (n,), the springs loaded by gravity, the friction relaxed."""
+        set_contact_stiffness(self.model, self.scenario.world)
+        mujoco.mj_resetData(self.model, self.data)
+        data = self.data
+        data.qpos[self._at_q] = posture
+        data.qpos[self._at_theta] = posture
+        # A few rounds: gravity torque at the posture bends the springs, the sensor's too, which moves the load a little.
+        slides = [i for i in range(self.model.njnt) if self.model.joint(i).name.startswith("sensor/")]
+        for _ in range(4):
+            mujoco.mj_forward(self.model, data)
+            for i in slides:
+                at = self.model.jnt_qposadr[i]
+                data.qpos[at] = -data.qfrc_bias[self.model.jnt_dofadr[i]] / self.model.jnt_stiffness[i]
+            data.qpos[self._at_theta] = posture + self._deflection(data.qfrc_bias[self._dof_q])
+        mujoco.mj_forward(self.model, data)
+        # The hysteresis springs start relaxed: both ends of their slack range sit at the present deflection.
+        data.plastic[self._slip_state] = data.plastic[self._slip_state + 1] = data.ten_length[self._slips]
+        mujoco.mj_forward(self.model, data)
+        self._read()
+        self.flange[:] = self.data.sensordata[self._sensor_order()]
+
+    def _deflection(self, torque: Array) -> Array:
+        """Deflection (n,) of the main springs under `torque` (n,), by Newton's method."""
+        linear = np.array(self.arm.transmissions.stiffness)
+        cubic = np.array(self.arm.transmissions.stiffening)
+        x = torque / linear
+        for _ in range(6):
+            x -= (linear * x + cubic * x**3 - torque) / (linear + 3 * cubic * x**2)
+        return x
+
+    def _sensor_order(self) -> NDArray[np.intp]:
+        at = [self.model.sensor(name).adr[0] for name in SENSORS]
+        return np.array([a + k for a in at for k in range(3)])
+
+    def _history_indices(self) -> NDArray[np.intp]:
+        """Where MuJoCo keeps each substep's values: per sensor [user, cursor, times (k), values (k x 3)]. (k, 18)."""
+        k = self.step.substeps
+        rows = np.empty((k, 3 * len(SENSORS)), dtype=np.intp)
+        for j, name in enumerate(SENSORS):
+            start = self.model.sensor_historyadr[self.model.sensor(name).id] + 2 + k
+            rows[:, 3 * j : 3 * j + 3] = start + np.arange(3 * k).reshape(k, 3)
+        return rows
+
+    def advance(self, motor_torque: Array, touches: Sequence[Touch] = (), braked: bool = False) -> None:
+        """Advance by one control tick.
+
+        Args:
+            motor_torque: true motor torque referred to the output (n,) [N·m], constant over the tick.
+            touches: what hands do to parts during the tick.
+            braked: the brakes hold every joint, with what it is rated for.
+
+        Raises:
+            KeyError: a touch names a part that does not exist; `parts` has those that do.
+        """
+        self.hands.apply(touches)
+        if self.scenario.world:
+            self.world.advance()
+        if braked is not self._braked:
+            self._brake(braked)
+        state = (self.theta_d, self.tau_J, self.temperature, *self.friction.curves, self.friction_in)
+        _drive(*state, self._held, self._bias, self._rubs, self._applied, self._dof_theta, motor_torque)
+        mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
+        _finish(*self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
+        self.tick += 1
+        if self.tick % WARMTH_TICKS == 0:
+            self._warm()
+        if self.payload.falling:
+            self.payload.fall(self.step.tick)
+
+    def _brake(self, braked: bool) -> None:
+        """Close or open the brakes: closed, the rotors sit on far stiffer bristles, which take over the torque of the soft ones.
+
+        Opened, no more than the joints' own friction is left of it.
+        """
+        factor = BRAKE_STIFFNESS if braked else 1.0 / BRAKE_STIFFNESS
+        values, at = self.model.actuator_dynprm, self.model.actuator_actadr[self._rubs]
+        held = values[self._rubs, LUGRE_STIFFNESS] * self.data.act[at]
+        if not braked:
+            own = self.friction_in - self._held
+            held = np.clip(held, -own, own)
+        values[self._rubs, LUGRE_STIFFNESS] *= factor
+        values[self._rubs, LUGRE_DAMPING] *= math.sqrt(factor)
+        self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
+        self._braked = braked
+        self._held = self._brakes if braked else np.zeros_like(self._brakes)
+
+    def _warm(self) -> None:
+        """First-order warming of each joint by its own friction loss."""
+        thermals = self.arm.thermals
+        span = WARMTH_TICKS * self.step.tick
+        loss = self._heat / WARMTH_TICKS
+        outflow = (self.temperature - self.ambient) / np.array(thermals.resistance)
+        self.temperature = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
+        self._heat[:] = 0.0
+
+    def rest(self, seconds: int) -> None:
+        """Let time pass without physics: the clocks go on, and the joints cool as those do in which nothing rubs.
+
+        An object that moves by itself is next where it would be by then.
+        """
+        thermals = self.arm.thermals
+        cooled = np.exp(-seconds / (np.array(thermals.resistance) * np.array(thermals.capacity)))
+        self.temperature = self.ambient + (self.temperature - self.ambient) * cooled
+        self.data.time += seconds
+        self.tick += round(seconds / self.step.tick)
+
+    def drop(self) -> None:
+        """Let the payload fall: it leaves with the flange's velocity."""
+        self.payload.drop(lambda point: self.hands.velocity(self.flange_body, point))
+
+    def sliding_friction(self) -> Array:
+        """True friction (n,) of both sides at the present speeds, with their signs [N·m].
+
+        The sign of a speed is blurred over some mrad/s: a joint at rest slides neither way.
+        """
+        friction = self.friction
+        return _sliding(self.theta_d, self.qd, self.friction_in, friction.output_coulomb, friction.output_viscous)
+
+    def poses(self) -> Array:
+        """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
+        return _poses(*self.frames, self._links)
+
+    def object_poses(self) -> Array:
+        """Poses (m, 7) in W of the world objects."""
+        return _poses(*self.frames, self.world.bodies)
+
+    def _read(self) -> None:
+        """Gather the state at the tick's end, and the true transmission torque."""
+        _gather(*self._gathered)
+
+
+# Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
+
+
+@numba.njit(cache=True)
+def _gather(qpos, qvel, length, rate, plastic, at, springs, own) -> None:
+    q, theta, qd, theta_d, tau_J = own
+    for i in range(q.size):
+        stiffness, cubic, damping, slip_stiffness = springs[:, i]
+        q[i], theta[i] = qpos[at[0, i]], qpos[at[1, i]]
+        qd[i], theta_d[i] = qvel[at[2, i]], qvel[at[3, i]]
+        x = length[at[4, i]]
+        slip = slip_stiffness * (length[at[5, i]] - plastic[at[6, i]])
+        tau_J[i] = x * (stiffness + cubic * x * x) + damping * rate[at[4, i]] + slip
+
+
+@numba.njit(cache=True)
+def _poses(positions, orientations, bodies):
+    out = np.empty((bodies.size, 7))
+    for k in range(bodies.size):
+        for i in range(3):
+            out[k, i] = positions[bodies[k], i]
+        for i in range(4):
+            out[k, 3 + i] = orientations[bodies[k], i]
+    return out
+
+
+@numba.njit(cache=True)
+def _sliding(motor_speed, speed, inner, coulomb, viscous):
+    out = np.empty(speed.size)
+    for i in range(speed.size):
+        out[i] = (inner[i] + coulomb[i]) * np.tanh(motor_speed[i] / SIGN_SPEED) + viscous[i] * speed[i]
+    return out
+
+
+@numba.njit(cache=True)
+def _drive(
+    speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction, held, bias, rows, applied, at, torque
+) -> None:
+    """Friction of this tick, with what closed brakes hold, and the motors' torques."""
+    input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction)
+    for i in range(rows.size):
+        friction[i] += held[i]
+        bias[rows[i], 3] = bias[rows[i], 4] = friction[i]
+        applied[at[i]] = torque[i]
+
+
+@numba.njit(cache=True)
+def _finish(qpos, qvel, length, rate, plastic, at, springs, own, history, kept, flange, heat, friction) -> None:
+    """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
+    _gather(qpos, qvel, length, rate, plastic, at, springs, own)
+    for j in range(flange.size):
+        total = 0.0
+        for k in range(kept.shape[0]):
+            total += history[kept[k, j]]
+        flange[j] = total / kept.shape[0]
+    for i in range(heat.size):
+        heat[i] += abs(friction[i] * own[3, i])

@@ -1,0 +1,1 @@
+"""Rigid-body dynamics as the controller believes it. Uses arm/."""

@@ -1,0 +1,1 @@
+"""The paced loop: a simulation in a thread of its own. Uses arm/, exchange/."""

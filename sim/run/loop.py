@@ -1,0 +1,230 @@
+"""The paced loop: ticks a simulation in a thread of its own, in step with the clock, and never chases a debt."""
+
+import gc
+import os
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol
+
+from pendant.all_settings import Settings
+from pendant.decision import Decision
+from pendant.equipment.tools import Tool
+from pendant.events.event import Event
+from pendant.tick.modes import TICK, TICK_RATE
+from sim.arm.scenario import Scenario
+from sim.exchange.desk import Desk, Wishes
+from sim.exchange.snapshot import Snapshot
+from sim.run.lateness import Lateness
+from sim.simulation import Simulation
+
+SNAPSHOT_TICKS = 8
+"""A snapshot every 16 ms: one for each frame of a 60 Hz picture."""
+
+DEBT = 0.05
+"""Lateness up to which the loop catches up [s]; what is beyond is dropped, and told once a spell (sim.run.lateness)."""
+
+RATE_TICKS = TICK_RATE // 2  # the actual rate is a mean over this many ticks
+SWITCH_INTERVAL = 5e-4  # [s] Python's default of 5 ms would let a busy web thread hold up two ticks
+DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must leave the others some of the processor
+PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
+
+
+class Script(Protocol):
+    """What acts by itself: a session's time line."""
+
+    def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
+        """The wishes for `tick`, counted from 1; `snapshot` copies the tick before."""
+        ...
+
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in what the robot decided in `tick`."""
+        ...
+
+
+class Loop:
+    """Runs `make()`'s simulation in real time, or slower.
+
+    Args:
+        make: builds the simulation; called again by `reset`, so that a reset leads back to the scenario's very start.
+    """
+
+    def __init__(self, make: Callable[[], Simulation]) -> None:
+        self._make = make
+        self._write: Callable[[], Script] | None = None
+        self._script: Script | None = None
+        self.simulation = make()
+        self.desk = Desk()
+        self.watch: Callable[[Simulation, Decision], None] | None = None  # shown each tick done, on the loop's thread
+        self.speed = 1.0
+        self.paused = False
+        self.actual_rate = 0.0
+        self.lateness: deque[float] = deque(maxlen=60 * TICK_RATE)  # of each tick's start [s], for measurements
+        self.dropped = 0.0  # debt dropped so far [s]
+        self._spell = Lateness()
+        self._steps = threading.Semaphore(0)  # single steps asked for and not done yet
+        self._reset = False
+        self._stop = threading.Event()
+        self._events: list[Event] = []
+        self._snapshot: Snapshot | None = None
+        self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
+        self.failure: BaseException | None = None
+
+    @property
+    def seed(self) -> int:
+        """Seed of the running scenario."""
+        return self.simulation.scenario.seed
+
+    @property
+    def scenario(self) -> Scenario:
+        """What the running simulation started from."""
+        return self.simulation.scenario
+
+    @property
+    def settings(self) -> Settings:
+        """The pendant's settings as they are now."""
+        return self.simulation.settings
+
+    @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The pendant's table of tools as it is now."""
+        return self.simulation.tools
+
+    def start(self) -> None:
+        """Start the thread; returns once the first tick is done."""
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self._do_tick()
+        gc.collect()
+        gc.freeze()  # the model and the modules never become garbage: collections stay short
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop the thread and wait for it."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def latest(self) -> Snapshot:
+        """The newest snapshot.
+
+        Raises:
+            RuntimeError: the loop has not been started, or its thread died of an error.
+        """
+        if self.failure is not None:
+            raise RuntimeError(f"the simulation stopped: {self.failure}") from self.failure
+        if self._snapshot is None:
+            raise RuntimeError("the loop has not been started")
+        return self._snapshot
+
+    def events(self, since: int) -> list[Event]:
+        """Events from index `since` on, in order; a reset keeps those that were."""
+        return self._events[since:]
+
+    def step_once(self) -> None:
+        """While paused: do one tick. Otherwise nothing."""
+        if self.paused:
+            self._steps.release()
+
+    def reset(self) -> None:
+        """Go back to the scenario's start at the next tick."""
+        self._reset = True
+
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+        """Go over to another simulation at the next tick; a later `reset` leads back to its start.
+
+        Args:
+            make: builds it.
+            write: gives the script that is to act in it, beside whoever is at the desk; called anew at each start.
+        """
+        self._make, self._write = make, write
+        self._reset = True
+
+    def _start_over(self) -> None:
+        self._reset = False
+        self.simulation = self._make()
+        gc.collect()  # the one before holds megabytes that are not Python's, and would wait long to be found
+        self._script = self._write() if self._write is not None else None
+        self.desk.clear()
+        self._do_tick()
+
+    def _do_tick(self) -> None:
+        wishes = self.desk.take()
+        script, tick = self._script, self.simulation.tick_count + 1
+        if script is not None:
+            wishes = wishes.joined(script.wishes(tick, self.simulation.snapshot))
+        decision = self.simulation.tick(wishes)
+        if script is not None:
+            script.see(tick, decision)
+        if (watch := self.watch) is not None:
+            watch(self.simulation, decision)
+        if decision.events:
+            self._events.extend(decision.events)
+        if self.simulation.plant.tick % SNAPSHOT_TICKS == 1:
+            self._snapshot = self.simulation.snapshot()
+
+    def _stand(self) -> None:
+        """Paused: do a step that was asked for, else show where the arm stands, else wait."""
+        self.actual_rate = 0.0
+        if self._steps.acquire(blocking=False):
+            self._do_tick()
+        elif self._snapshot is None or self._snapshot.tick != self.simulation.plant.tick:
+            self._snapshot = self.simulation.snapshot()
+        else:
+            time.sleep(PAUSE_NAP)
+
+    def _run(self) -> None:
+        _ask_for_real_time()
+        try:
+            self._pace()
+        except BaseException as error:
+            self.failure = error
+            raise
+
+    def _pace(self) -> None:
+        due = time.perf_counter()
+        since, ticks, spell = due, 0, self._spell
+        while not self._stop.is_set():
+            if spell.times and spell.over(time.perf_counter()):
+                self._tell_spell()
+            if self._reset:
+                self._start_over()
+                due = time.perf_counter()
+            if self.paused:
+                self._stand()
+                due = since = time.perf_counter()
+                ticks = 0
+                continue
+            length = TICK / self.speed
+            now = time.perf_counter()
+            if now < due:
+                time.sleep(due - now)
+                now = time.perf_counter()
+            late = now - due
+            self.lateness.append(late)
+            due += length
+            if late > DEBT:
+                self.dropped += late
+                due = now + length
+                spell.drop(late, now)
+                time.sleep(DEBT_NAP)
+            self._do_tick()
+            ticks += 1
+            if ticks == RATE_TICKS:
+                now = time.perf_counter()
+                self.actual_rate = ticks * TICK / (now - since)
+                since, ticks = now, 0
+        if spell.times:
+            self._tell_spell()
+
+    def _tell_spell(self) -> None:
+        self._events.append(self._spell.tell(self.simulation.plant.tick))
+
+
+def _ask_for_real_time() -> None:
+    """Let this thread run before others as soon as its tick is due, where the system allows that; elsewhere it takes its turn."""
+    if hasattr(os, "sched_setscheduler"):
+        with suppress(PermissionError):
+            os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(1))

@@ -1,0 +1,125 @@
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import jsonschema
+import msgspec
+import pytest
+
+from app import cli
+from app.files.checked import BadInput, convert, load
+from app.runs.batch import Job, run_all
+from app.runs.junit import junit, write
+from app.runs.runner import Outcome
+from app.session.expectation_watch import Verdict
+from app.session.json_schema import KINDS, schema_of
+from app.session.session_file import Session, bundled, find, find_all
+
+SHORT: dict[str, Any] = {
+    "title": "short",
+    "duration": 0.1,
+    "expectations": [{"expect": "state", "mode": "TEACH", "at": 0.05}],
+}
+
+
+def session(**fields: Any) -> Session:
+    return convert({**SHORT, **fields}, Session, "s.yaml")
+
+
+def files(folder: Path, **sessions: dict[str, Any]) -> None:
+    for name, fields in sessions.items():
+        (folder / f"{name}.yaml").write_bytes(msgspec.yaml.encode({**SHORT, **fields}))
+
+
+def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["pendant", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+def test_jobs_run_in_processes_and_keep_their_places(tmp_path: Path) -> None:
+    jobs = [Job("s.yaml", session(duration=0.05 * (k + 1)), tmp_path / str(k)) for k in range(3)]
+    found = dict(run_all(jobs))
+    assert [found[k].seconds for k in range(3)] == pytest.approx([0.05, 0.1, 0.15])
+    for k in range(3):
+        kept = {path.name for path in (tmp_path / str(k)).iterdir()}
+        assert kept == {"events.jsonl", "log.mcap", "summary.json", "report.html"}
+
+
+def test_a_job_that_cannot_be_used_is_told(tmp_path: Path) -> None:
+    jobs = [Job("good.yaml", session(), tmp_path / "a"), Job("bad.yaml", session(robot="ur6"), tmp_path / "b")]
+    with pytest.raises(BadInput, match="ur6"):
+        dict(run_all(jobs))
+
+
+def test_a_folder_runs_as_a_whole(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
+    files(tmp_path, good={}, bad={"expectations": [{"expect": "state", "mode": "RUN", "at": 0.05}]})
+    out = tmp_path / "out"
+    assert pendant(monkeypatch, "run", str(tmp_path), "--out", str(out), "--junit", str(out / "junit.xml")) == 1
+    shown = capsys.readouterr().out
+    assert "1 sessions passed, 1 not" in shown
+    assert "expected mode RUN at 0.050 s" in shown
+    assert (out / "good" / "report.html").is_file()
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    assert (root.get("tests"), root.get("failures")) == ("2", "1")
+    assert [suite.get("name") for suite in root] == ["bad", "good"]
+
+
+def test_two_files_of_one_name_are_refused(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    files(tmp_path, good={})
+    path = str(tmp_path / "good.yaml")
+    assert pendant(monkeypatch, "run", path, path) == 2
+    assert "two files of the same name" in capsys.readouterr().err
+
+
+def test_what_a_name_means(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="no session in this folder"):
+        find_all(str(tmp_path))
+    files(tmp_path, b={}, a={})
+    assert [path.name for path in find_all(str(tmp_path))] == ["a.yaml", "b.yaml"]
+    assert find_all("hold") == [find("hold")]
+
+
+def test_junit_has_a_case_for_each_expectation(tmp_path: Path) -> None:
+    outcome = Outcome(verdicts=[Verdict(True, "a < b", "x"), Verdict(False, "c\x01d", "y & z")], took=0.5)
+    root = ElementTree.fromstring(junit({"one": outcome}))
+    cases = root.findall("./testsuite/testcase")
+    assert [case.get("name") for case in cases] == ["a < b", "c d"]
+    failures = [case.find("failure") for case in cases]
+    assert failures[0] is None
+    assert failures[1] is not None
+    assert failures[1].get("message") == "y & z"
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BadInput):
+        write(tmp_path / "file" / "junit.xml", {})
+
+
+def test_the_schema_accepts_every_bundled_session() -> None:
+    schema = jsonschema.Draft202012Validator(msgspec.json.decode(schema_of("session")))
+    for name in bundled("sessions"):
+        found = [error.message for error in schema.iter_errors(load(find(name), dict[str, object]))]
+        assert (name, found) == (name, [])
+
+
+@pytest.mark.parametrize(
+    "spoil", [{"duration": "long"}, {"duration": -1.0}, {"seed": 0.5}, {"colour": "red"}, {"timeline": [{}]}]
+)
+def test_the_schema_refuses_what_the_reader_refuses(spoil: dict[str, Any]) -> None:
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**SHORT, **spoil}, msgspec.json.decode(schema_of("session")))
+    with pytest.raises(BadInput):
+        session(**spoil)
+
+
+def test_the_command_prints_a_schema(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    for kind in KINDS:
+        assert pendant(monkeypatch, "schema", kind) == 0
+        jsonschema.Draft202012Validator.check_schema(msgspec.json.decode(capsys.readouterr().out))
+    assert pendant(monkeypatch, "schema", "poem") == 2
+    assert "one of session, configuration" in capsys.readouterr().err

@@ -1,0 +1,39 @@
+"""After the warm-up nothing is left to compile: no first use halts a page."""
+
+import subprocess
+import sys
+
+PROBE = """
+import importlib, pkgutil
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from numba.core.registry import CPUDispatcher
+
+import sim
+from app.files.checked import load
+from app.session.prepare import prepare
+from app.runs.runner import record
+from app.session.session_file import Session, find
+from app.runs.warm_up import warm_up
+
+
+def compiled():
+    modules = [importlib.import_module(each.name) for each in pkgutil.walk_packages(sim.__path__, "sim.")]
+    kernels = [each for module in modules for each in vars(module).values() if isinstance(each, CPUDispatcher)]
+    return {each.py_func.__qualname__: len(each.signatures) for each in kernels}
+
+
+warm_up()
+before = compiled()
+assert sum(before.values()) > 20, before
+for name in ("axis-locks", "program", "wall-resists", "felt", "touch-the-table"):
+    with TemporaryDirectory() as out:
+        record(load(find(name), Session), prepare(load(find(name), Session), name), Path(out))
+print(sorted(name for name, count in compiled().items() if count != before[name]))
+"""
+
+
+def test_sessions_of_every_kind_compile_nothing_more() -> None:
+    found = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"

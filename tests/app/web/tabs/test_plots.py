@@ -1,0 +1,96 @@
+"""Plots and the contact log."""
+
+import csv
+import io
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from app.web.server import Served
+from app.web.tabs.plots import SAMPLES, View
+from pendant.events.event import Kind
+from tests.app.web.fake_loop import FakeLoop
+from tests.app.web.raw_client import RawClient, until
+
+Join = Callable[[], RawClient]
+TOUCH = {
+    "part": "tool",
+    "source": "flange",
+    "rule": "instant",
+    "force": 12.0,
+    "fx": 1.0,
+    "fy": 0.0,
+    "fz": -11.9,
+    "acceleration": 2.0,
+    "ax": 0.0,
+    "ay": 1.2,
+    "az": 1.6,
+    "ratio": 3.0,
+    "steps": 4,
+    "x": 0.5,
+    "y": 0.1,
+    "z": 0.2,
+    "posture": "0.0000 -1.2000 1.5000 -1.8700 -1.5700 0.1000",
+    "action": "stop",
+}
+
+
+def test_a_sample_is_taken_twenty_times_a_second_and_memory_is_fixed(loop: FakeLoop, still: Served) -> None:
+    plots = still.docks.plots
+    force = plots.history.force
+    for _ in range(3 * SAMPLES):
+        loop.advance(0.05)
+        plots.show(loop.latest())
+        assert not plots.show(loop.latest())
+    assert plots.history.force is force
+    assert force.shape == (3, SAMPLES)
+    assert np.isfinite(force).all()
+
+
+def test_a_new_start_begins_empty(loop: FakeLoop, still: Served) -> None:
+    loop.advance(1.0)
+    still.docks.plots.show(loop.latest())
+    loop.tick = 1
+    still.docks.plots.show(loop.latest())
+    assert np.isnan(still.docks.plots.history.rate).sum() == SAMPLES - 1
+
+
+@pytest.mark.parametrize("view", list(View))
+def test_every_view_is_drawn(served: Served, join: Join, loop: FakeLoop, view: View) -> None:
+    client = join()
+    plots = served.docks.plots
+    client.set(plots.view._impl.uuid, value=list(View)[-1].value)
+    until(lambda: "Rate" in plots.upper.shown, "the last view")
+    client.set(plots.view._impl.uuid, value=view.value)
+    until(lambda: plots.view.value == view.value and "<svg" in plots.upper.shown, "drawn")
+    until(lambda: plots.joint.visible == (view in (View.FRICTION, View.TORQUE)), "the joint's choice")
+
+
+def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) -> None:
+    loop.tick = 1000
+    loop.note(Kind.CONTACT_GAINED, **TOUCH)
+    loop.tick = 1100
+    loop.note(Kind.CONTACT_LOST, **(TOUCH | {"force": 9.0}))
+    still.docks.show(loop.latest())
+    still.docks.plots.show(loop.latest())
+    contacts = still.docks.contacts
+    shown = contacts.table.shown
+    assert shown.index("lost") < shown.index("gained")
+    assert "12 N −z" in shown
+    assert "8 ms" in shown
+    assert still.docks.plots.upper.shown.count("0v") == 2
+    assert contacts.force.visible
+    assert contacts.label.text == "2: lost, 9 N, 2.0 m/s²"
+    contacts.choice.value = "1"
+    still.docks.show(loop.latest())
+    assert contacts.label.text == "1: gained, 12 N, 2.0 m/s²"
+    assert contacts.ghost.posture == (0.0, -1.2, 1.5, -1.87, -1.57, 0.1)
+    contacts.choice.value = "newest"
+    still.docks.show(loop.latest())
+    assert contacts.ghost.posture is None
+    rows = list(csv.DictReader(io.StringIO(contacts.file().decode())))
+    assert [(row["t"], row["kind"], row["delay_ms"]) for row in rows] == [
+        ("2.0", "contact_gained", "8"),
+        ("2.2", "contact_lost", "8"),
+    ]

@@ -1,0 +1,244 @@
+"""The free arm: what each of its watches tells, in which order, and what it knows of the others (FD-4, FD-18, FD-19, VW-6)."""
+
+from typing import Any
+
+import pytest
+
+from pendant.all_settings import Settings, apply
+from pendant.context import Surroundings
+from pendant.events.event import Event, Kind
+from pendant.guided.endings import CERTAIN
+from pendant.guided.free_arm import FreeArm
+from pendant.guided.hidden_drop import LASTS
+from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_steps import LATER
+from pendant.guided.user_force import Hand
+from pendant.limits.joint_zones import JointZones
+from pendant.limits.nearness import Nearness
+from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
+from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.modes import TICK, Mode
+from pendant.tick.pose import ORIGIN
+from pendant.walls.containment import Containment
+from pendant.walls.definitions import AnyBorder, Area, Reaction
+from pendant.walls.shapes import HalfSpace
+from tests.pendant.estimates import estimate
+from tests.pendant.telling import whole
+
+JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
+RATED, RANGES = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0), (3.0,) * 6
+TWO = [0.0, 0.0, 2.0 * GRAVITY]  # what 2 kg need at rest [N]
+ALONE = 0.02
+"""Shortest time that the arm may move alone [s]."""
+
+
+class Free:
+    """A free-drive that began at rest, stepped by hand."""
+
+    def __init__(self, *borders: AnyBorder, sensor: bool = True, payload: float = 0.0, **changes: float | bool) -> None:
+        off = {"walls.tether": False, "unexplained.time": ALONE}
+        self.settings = apply(Settings(), off | {name.replace("__", "."): value for name, value in changes.items()})
+        self.zero, self.mean, self.payload, self.tick = Zero(), WrenchMean(), payload, 0
+        self.zero.begin(estimate(), sensor, self.mean)
+        containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
+        self.arm = FreeArm(self.around(estimate()), self.settings, self.zero, containment, zones, JOINTS, RATED)
+
+    def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
+        value.tick = self.tick
+        ok = self.mean.step(value)
+        return Surroundings(value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload)
+
+    def see(self, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
+        self.tick += 1
+        return whole(self.arm.step(self.around(value, shaken), self.settings, waits), self.tick)
+
+    def during(self, ticks: int, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
+        return [event for _ in range(ticks) for event in self.see(value, waits, shaken)]
+
+
+def floor(reaction: Reaction = Reaction.STAY) -> Area:
+    return Area(name="floor", shape=HalfSpace(normal=(0.0, 0.0, -1.0)), position=(0.0, 0.0, -0.1), reaction=reaction)
+
+
+def below(depth: float, **motion: Any) -> Estimate:
+    """The flange beneath the floor [m]."""
+    return estimate(position=[0.2, -0.3, -0.1 - depth], **motion)
+
+
+def test_it_begins_free_and_untouched() -> None:
+    arm = Free().arm
+    assert (arm.caught, arm.suspect, arm.user) == (False, False, ORIGIN)
+    assert (arm.damping, arm.singularity) == (None, Nearness.OK)
+
+
+def test_a_tick_in_which_nothing_happens() -> None:
+    free = Free()
+    assert free.see(estimate()) == []
+    assert (free.arm.caught, free.arm.suspect, free.arm.user) == (False, False, ORIGIN)
+    assert free.arm.damping is not None
+    assert free.arm.damping[:3] == (1.5, 1.5, 3.0)
+
+
+def test_without_joint_values_it_cannot_go_on() -> None:
+    """FD-12."""
+    free = Free(floor())
+    assert free.see(below(0.01, joints_valid=False)) == [Event(Kind.SENSORS_LOST, 1, {"sensor": JOINTS_SENSED})]
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_the_flange_sensor_tells_the_users_force_while_it_is_used(sensor: bool) -> None:
+    free, value = Free(sensor=sensor), estimate(force=[5.0, 20.0, -3.0])
+    assert free.see(value) == []
+    expected = Hand(estimate(), (0.0,) * 6)
+    expected.step(value, sensor)
+    assert free.arm.user == expected.user
+    assert (free.arm.user != ORIGIN) is sensor
+
+
+def test_a_sensor_that_falls_silent_is_told_once_and_the_joints_go_on() -> None:
+    free = Free()
+    assert free.during(3, estimate(wrench_valid=False)) == [Event(Kind.WRENCH_LOST, 1)]
+    assert not free.zero.used
+
+
+@pytest.mark.parametrize(("watched", "sensor"), [(True, True), (False, True), (True, False)])
+def test_a_sensor_that_steps_is_told_while_it_is_used_and_watched(watched: bool, sensor: bool) -> None:
+    """FD-19."""
+    free = Free(sensor=sensor, unexplained__sensor=watched)
+    free.during(2, estimate())
+    step = [0.0, 0.0, 20.0]
+    events = free.see(estimate(force=step)) + free.during(LATER + 3, estimate(force=step, felt=[0.0, 0.0, -10.0]))
+    told = [Event(Kind.SENSOR_STEPPED, 3 + LATER, {"force": pytest.approx(20.0)})]
+    assert events == (told if watched and sensor else [])
+
+
+@pytest.mark.parametrize("waits", [True, False])
+def test_what_the_sensor_drifts_by_is_taken_off_while_nobody_moves_the_arm(waits: bool) -> None:
+    """FD-19: two means of 0.1 s, apart by less than a drift may be."""
+    free = Free()
+    free.during(49, estimate(), waits)
+    free.during(52, estimate(force=[0.1, -0.2, 0.05]), waits)
+    assert free.zero.baseline[:3] == pytest.approx((0.1, -0.2, 0.05) if waits else ORIGIN)
+
+
+def beneath(depth: float) -> dict[str, Any]:
+    """What an event says of the flange `below` the floor: the way back leads up."""
+    back = {"x": 0.0, "y": 0.0, "z": 1.0, "px": 0.2, "py": -0.3, "pz": -0.1 - depth}
+    return {"wall": "floor", "part": "flange", "distance": pytest.approx(1000.0 * depth), "way": "+z"} | back
+
+
+def test_a_wall_that_keeps_the_arm_is_told_each_time_it_is_reached() -> None:
+    """VW-6."""
+    free = Free(floor(), unexplained__motion=False)
+    for first in (3, 7):
+        assert free.during(2, below(-0.01)) == []
+        assert free.arm.caught is False
+        assert free.during(2, below(0.01)) == [Event(Kind.WALL_REACHED, first, beneath(0.01))]
+        assert free.arm.caught is True
+
+
+@pytest.mark.parametrize(("reaction", "kind"), [(Reaction.LEAVE, Kind.LEFT_WALL), (Reaction.STOP, Kind.STOPPED_WALL)])
+def test_a_wall_that_ends_free_drive_is_all_that_is_told(reaction: Reaction, kind: Kind) -> None:
+    """VW-6: of a tool that is too fast in the same tick nothing is told."""
+    free = Free(floor(reaction), unexplained__motion=False)
+    assert free.see(below(-0.01)) == []
+    assert free.see(below(0.01, v_tcp=9.0)) == [Event(kind, 2, beneath(0.01))]
+    assert free.arm.caught is False
+
+
+@pytest.mark.parametrize("locked", [True, False])
+def test_the_way_to_a_singularity_is_told_where_a_lock_may_have_to_give_way(locked: bool) -> None:
+    """FD-4; the word itself is known without a lock, too."""
+    free, ok, near, too_near = Free(axes__rz=not locked), Nearness.OK, Nearness.NEAR, Nearness.TOO_NEAR
+    for tick, (value, word, new) in enumerate(
+        [(0.05, ok, False), (0.03, near, True), (0.03, near, False), (0.005, too_near, True)], 1
+    ):
+        now = estimate()
+        now.singularity = value
+        event = Event(Kind.SINGULARITY, tick, {"status": word, "value": value, "limit": 0.04})
+        assert free.see(now) == ([event] if locked and new else [])
+        assert free.arm.singularity is word
+
+
+MOVING = {"speed": [0.0, 0.0, 0.03]}
+BENT = estimate(theta=[2.98] + [0.0] * 5, **MOVING)  # in the stiff zone before its limit
+BENT.theta_d[0] = 0.1
+AFTER = round(ALONE / TICK) + 1  # ticks
+
+
+def test_what_ends_it_is_told_with_its_numbers() -> None:
+    """FD-19."""
+    free = Free()
+    assert free.during(AFTER - 1, estimate(**MOVING)) == []
+    values = {"distance": 0.0, "time": pytest.approx(AFTER * TICK), "limit": 0.02}
+    assert free.see(estimate(**MOVING)) == [Event(Kind.STOPPED_MOTION, AFTER, values)]
+
+
+@pytest.mark.parametrize("by", ["haptics", "wall", "joint limit"])
+def test_what_moves_the_arm_in_place_of_a_hand_is_known_each_by_itself(by: str) -> None:
+    """FD-19: motion that nobody causes is not that of a shaker, of a wall or of a joint's spring."""
+    free = Free(floor())
+    free.see(estimate(theta=[2.9] + [0.0] * 5))
+    value = {"haptics": estimate(**MOVING), "wall": below(0.01, **MOVING), "joint limit": BENT}[by]
+    assert [event.kind for event in free.during(2 * AFTER, value, shaken=by == "haptics")] == [Kind.WALL_REACHED] * (by == "wall")
+
+
+@pytest.mark.parametrize(("share", "doubtful"), [(0.4, False), (0.7, True)])
+def test_half_of_the_time_that_nobody_leads_it_is_doubtful(share: float, doubtful: bool) -> None:
+    free = Free()
+    value = estimate(speed=0.05, qd=TURNS, friction=RUBS)
+    free.during(round(share * AFTER), value)
+    assert free.arm.doubtful is doubtful
+
+
+TURNS, RUBS = [0.0, 0.0, 0.4, 0.0, 0.0, 0.0], [0.0, 0.0, 8.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_the_tether_follows_who_pays_for_the_motion(on: bool) -> None:
+    """A hand on a link leads the arm with less force than is felt (VW-4, FD-19); where nobody asks for its work it is held."""
+    free = Free(walls__tether=True, unexplained__motion=on)
+    told = []
+    for tick in range(1, 400):
+        place = [0.2 * TICK * tick, 0.0, 0.0]
+        torques = [0.0, 0.0, 1.5, 0.0, 0.0, 0.0]
+        told += free.see(estimate(position=place, speed=0.2, qd=TURNS, friction=RUBS, tau_ext=torques))
+    assert free.arm.user == ORIGIN
+    assert [event.kind for event in told] == ([] if on else [Kind.WALL_REACHED])
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_a_payload_that_drops_is_missed_by_the_sensor(sensor: bool) -> None:
+    """FD-19."""
+    free = Free(sensor=sensor, payload=2.0)
+    assert free.during(20, estimate(needed=TWO, load_mass=2.0)) == []
+    assert free.arm.suspect is False
+    dropped = estimate(force=TWO, needed=TWO, load_mass=2.0)
+    assert free.see(dropped) == []
+    assert free.arm.suspect is sensor
+    told = [Event(Kind.STOPPED_PAYLOAD, 21 + CERTAIN, {"mass": pytest.approx(-2.0), "force": pytest.approx(TWO[2])})]
+    assert free.during(CERTAIN, dropped) == (told if sensor else [])
+
+
+@pytest.mark.parametrize("payload", [1.0, 0.0])
+def test_a_payload_that_drops_behind_a_hand_is_told_by_what_the_arm_carries(payload: float) -> None:
+    """FD-19: 1 kg of 2 drops as a hand lets go that bore the weight of both."""
+    free = Free(payload=payload)
+    free.see(estimate(needed=TWO, load_mass=2.0))
+    free.during(19, estimate(force=TWO, felt=TWO, needed=TWO, load_mass=2.0))
+    half = estimate(force=[0.0, 0.0, GRAVITY], felt=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
+    told = [Event(Kind.STOPPED_PAYLOAD, 21 + LASTS, {"mass": pytest.approx(-1.0), "force": pytest.approx(GRAVITY)})]
+    assert free.during(LASTS + 1, half) == (told if payload else [])
+
+
+@pytest.mark.parametrize("drift", [-3.5, 3.5])
+def test_a_drop_is_told_beyond_what_the_sensor_has_drifted_by(drift: float) -> None:
+    """FD-19: while nobody moves the arm, at 1.75 N/s along gravity; 1 kg of 2 drops."""
+    free = Free(payload=1.0)
+    for tick in range(1000):
+        assert free.see(estimate(force=[0.0, 0.0, 0.001 * tick * drift], needed=TWO, load_mass=2.0), waits=True) == []
+    assert free.zero.baseline[2] == pytest.approx(drift, abs=0.4)
+    dropped = estimate(force=[0.0, 0.0, drift + GRAVITY], felt=[0.0, 0.0, GRAVITY], needed=TWO, load_mass=2.0)
+    events = free.during(20, dropped)
+    assert [event.kind for event in events[:1]] == [Kind.STOPPED_PAYLOAD]
+    assert events[0].values["mass"] == pytest.approx(-1.0, abs=0.05)

@@ -1,0 +1,289 @@
+"""The flange sensor's zero: drifts and steps are taken off, hands are not (FD-19)."""
+
+import numpy as np
+import pytest
+
+from pendant.events.event import Kind
+from pendant.guided.sensor_bias import (
+    BEGINS,
+    FAR,
+    FAR_TURN,
+    FELT,
+    QUIET,
+    SLOW,
+    SLOW_TURN,
+    SLOWLY,
+    SLOWLY_TURN,
+    Drift,
+    Zero,
+)
+from pendant.guided.sensor_steps import ANSWER, LATER, MOVED
+from pendant.guided.user_force import Hand
+from pendant.inputs import NOTHING
+from pendant.limits.validity import WrenchMean
+from pendant.tick.modes import Phase
+from pendant.tick.pose import ORIGIN
+from tests.pendant.estimates import estimate
+from tests.pendant.freedrive.test_state_machine import Bench
+
+PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
+WINDOW = 0.1  # [s]
+TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
+
+
+@pytest.mark.parametrize(
+    ("change", "gone"),
+    [
+        ((0.1, -0.2, 0.05, 0.01, 0.0, -0.02), (0.1, -0.2, 0.05, 0.01, 0.0, -0.02)),
+        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, SLOW_TURN * WINDOW)),
+        ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOW * WINDOW, 0.0, 0.8 * SLOW * WINDOW, 0.0, 0.0, 0.0)),
+    ],
+)
+def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
+    drift = Drift()
+    start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
+    assert drift.step(start, ORIGIN) is None
+    assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN) == pytest.approx(gone)
+    drift.restart()
+    assert drift.step(start, ORIGIN) is None
+
+
+def test_a_mean_is_wanted_once_a_window() -> None:
+    drift = Drift()
+    wanted = [drift.due() for _ in range(151)]
+    assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
+    assert drift.memory != Drift().memory
+
+
+def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
+    bench = Bench(free_drive__period=30.0, **changes).in_period()
+    for tick in range(round(500 * seconds)):
+        bench.step(NOTHING, estimate(force=[start, 0.0, rate * 0.002 * tick]))
+    return bench
+
+
+def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
+    bench = drifting(1.5)
+    assert bench.last.phase is Phase.PERIOD
+    assert bench.last.baseline[2] == pytest.approx(3.0, abs=0.4)
+    assert bench.last.baseline[:2] == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_only_the_last_windows_are_given_back() -> None:
+    drift = Drift()
+    assert drift.give_back() == []
+    gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
+    for each in gone:
+        drift.keep(each)
+    assert drift.memory != Drift().memory
+    drift.restart()
+    assert drift.give_back() == gone[-BEGINS:]
+    assert drift.give_back() == []
+
+
+@pytest.mark.parametrize("torque", [0.0, 0.5])
+def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_not_used_any_more(torque: float) -> None:
+    """FD-13, FD-19: by 20 N, and by more of a torque than its limit; the arm is left to its period."""
+    bench = Bench(free_drive__period=10.0).in_period()
+    force = 1.0 if torque else 2.0
+    for tick in range(5000):
+        bench.step(NOTHING, estimate(force=[0.002 * force * tick, 0.0, 0.0], torque=[0.0, 0.0, 0.002 * torque * tick]))
+        left = bench.events != []
+        assert bench.last.gain == (0.0 if left else 1.0)
+        assert not left or bench.last.baseline == (0.0,) * 6
+    assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED, Kind.LEFT_PERIOD]
+    told = bench.events[0].values
+    expected = {"force": 2.0, "torque": FAR_TURN} if torque else {"force": FAR, "torque": 0.0}
+    assert told == {name: pytest.approx(value, abs=0.21) for name, value in expected.items()}
+    assert told["torque" if torque else "force"] >= (FAR_TURN if torque else FAR)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_drift_turns_with_the_flange(turned: bool) -> None:
+    R_BF = TURNED if turned else np.eye(3)
+    before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
+    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero.begin(before, True, mean)
+    for value in [before] * 50 + [after] * 51:
+        mean.step(value)
+        zero.step(value, hand, mean, True)
+    assert zero.felt(after) == pytest.approx((0.0,) * 6)
+    drifted = np.concatenate([R_BF @ zero.drifted[:3], R_BF @ zero.drifted[3:]])
+    after.R_BF = R_BF
+    after.F_user[:] = drifted + np.arange(1.0, 7.0)
+    assert zero.felt(after) == pytest.approx((1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
+    zero.leave()
+    assert zero.felt(after) is None
+
+
+def test_a_drift_is_followed_through_the_sensors_noise() -> None:
+    """2 N/s and 0.4 N·m/s with noise of their size upon the means: what of a mean is beyond the limits waits for the next."""
+    rng = np.random.default_rng(3)
+    rate = np.array([0.0, 0.16, -0.12, 0.04, 0.0, 0.0])
+    noise = np.array([0.15] * 3 + [0.015] * 3)
+    drift, gone = Drift(), np.zeros(6)
+    for window in range(300):
+        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN)
+        gone += taken or (0.0,) * 6
+    assert gone == pytest.approx(299 * rate, abs=1.0)
+
+
+@pytest.mark.parametrize(("size", "next_one"), [(0.3, 0.0), (0.5, 0.2), (0.8, 0.3), (1.1, 0.3), (20.0, 0.3)])
+def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
+    """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
+    drift = Drift()
+    drift.step((0.0,) * 6, ORIGIN)
+    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size), ORIGIN) for _ in range(4)]
+    force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
+    assert [step[1] for step in taken if step] == pytest.approx(force)
+    assert [-5.0 * step[5] for step in taken if step] == pytest.approx(force)
+
+
+@pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
+def test_pushes_leave_no_offset_behind(anew: bool) -> None:
+    """Each grows by 10 N/s for 0.3 s before the arm moves; 3 N/s would pass for drift. It is gone before the arm rests."""
+    bench = Bench(free_drive__period=30.0, free_drive__restart_at_manipulation=anew).in_period()
+    for _ in range(6):
+        for tick in range(300):
+            bench.step(NOTHING, estimate(force=[min(0.02 * tick, 6.0), 0.0, 0.0], qd=0.3 if tick > 150 else 0.0))
+        for tick in range(400):
+            bench.step(NOTHING, estimate(qd=0.3 if tick < 60 else 0.0))
+    assert bench.last.phase in (Phase.PERIOD, Phase.RESTART)
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
+
+
+def test_switched_off_nothing_is_taken_off() -> None:
+    assert drifting(3.0, unexplained__sensor=False).last.baseline == pytest.approx((0.0,) * 6)
+
+
+def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
+    bench = Bench().in_period()
+    for tick in range(1000):
+        bench.step(NOTHING, estimate(force=[20.0 + 0.002 * tick, 0.0, 0.0], qd=0.3))
+    assert bench.last.phase is Phase.GUIDED
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.5)
+
+
+def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
+    bench = Bench().in_period()
+    bench.run(50)
+    bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0]))
+    for _ in range(LATER):
+        bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0], felt=list(PUSHED)))
+    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.SENSOR_STEPPED]
+    assert bench.events[-1].values == {"force": pytest.approx(15.0, abs=SLOW * WINDOW)}
+    assert (bench.last.baseline, bench.last.gain) == ((0.0,) * 6, 0.0)
+
+
+def test_the_baseline_is_in_the_axes_of_the_flange() -> None:
+    """As it was held in the beginning, and as it is turned when the sensor drifts."""
+    zero, mean, start = Zero(), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
+    start.R_BF = TURNED
+    mean.step(start)
+    zero.begin(start, True, mean)
+    assert zero.baseline == pytest.approx((2.0, -1.0, 3.0, 0.2, -0.1, 0.3))
+    bench = Bench(free_drive__period=30.0).in_period()
+    for tick in range(600):
+        value = estimate(force=[0.004 * tick, 0.0, 0.0])
+        value.R_BF = TURNED
+        bench.step(NOTHING, value)
+    assert bench.last.baseline[:3] == pytest.approx((0.0, -2.4, 0.0), abs=0.3)
+
+
+@pytest.mark.parametrize(("speed", "given_back"), [(MOVED, False), (1.001 * MOVED, True), (-1.001 * MOVED, True)])
+def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(speed: float, given_back: bool) -> None:
+    force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
+    before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
+    after.R_BF = TURNED  # since entry
+    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero.begin(before, True, mean)
+    for value in [before] * 50 + [after] * 51:
+        mean.step(value)
+        assert zero.step(value, hand, mean, True) is None
+    gone = (-0.2, -0.1, 0.05, -0.02, -0.01, 0.03)  # axes of the flange, and of B at entry
+    assert zero.baseline == pytest.approx(gone)
+    hand.step(after, True)
+    assert hand.change == pytest.approx((0.0,) * 3)
+    assert zero.step(after, hand, mean, False) is None
+    hand.step(after, True)
+    assert zero.baseline == pytest.approx((0.0,) * 6 if given_back else gone)
+    assert hand.change == pytest.approx(force if given_back else (0.0,) * 3)
+
+
+def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
+    zero, mean = Zero(), WrenchMean()
+    mean.step(estimate(force=3.0))
+    zero.begin(estimate(), True, mean)
+    assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    zero.leave()
+    assert zero.memory == Zero().memory
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
+@pytest.mark.parametrize(("size", "asked"), [(0.99 * FELT, False), (1.01 * FELT, True), (3.0, True)])
+def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
+    drift = Drift()
+    force, felt = [0.0] * 6, [2.0, 3.0, 4.0]
+    drift.step(tuple(force), (2.0, 3.0, 4.0))
+    force[axis] += size
+    felt[axis] += answer * size
+    taken = drift.step(tuple(force), (felt[0], felt[1], felt[2]))
+    assert (taken is not None) is (follows or not asked)
+
+
+@pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
+def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
+    assert (Drift().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
+
+
+@pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
+def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
+    drift, tick = Drift(1000), 1000 + round(500 * seconds)
+    assert drift.slack(tick) == pytest.approx((SLOWLY * seconds, SLOWLY_TURN * seconds))
+    assert (drift.begin((QUIET + SLOWLY * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick) is None) is held
+    left = seconds if held else 0.0
+    assert drift.slack(tick) == pytest.approx((SLOWLY * left, SLOWLY_TURN * left))
+
+
+def test_what_the_sensor_drifted_by_while_the_arm_was_moved_goes_into_the_zero() -> None:
+    """As much as it can have drifted by in that time: 100 s, 1.33 N and 0.1 N·m."""
+    assert Drift().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
+    taken = Drift().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
+    assert taken == pytest.approx((0.0, 100 * SLOWLY, 0.0, 0.0, 0.0, -100 * SLOWLY_TURN))
+    assert Drift().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
+
+
+def test_a_sensor_that_drifts_while_a_hand_leads_the_arm_is_followed_when_it_goes() -> None:
+    bench = Bench(free_drive__period=30.0, free_drive__restart_period=30.0).in_period()
+    for tick in range(15000):
+        moves = tick % 3000 < 2000
+        drift = 0.01 * 0.002 * tick
+        hand = 20.0 * moves
+        bench.step(NOTHING, estimate(force=[hand + drift, 0.0, 0.0], felt=[hand, 0.0, 0.0], qd=0.3 if moves else 0.0))
+    assert bench.last.phase is Phase.RESTART
+    assert bench.last.baseline[0] == pytest.approx(0.3, abs=0.06)
+
+
+def test_a_hand_that_rests_on_the_arm_leaves_no_offset_behind() -> None:
+    """It holds the arm with 3 N where it came to rest, for 2 s, and becomes lighter; then it is gone."""
+    bench = Bench(free_drive__period=30.0).in_period()
+    for tick in range(200):
+        bench.step(NOTHING, estimate(force=[6.0, 0.0, 0.0], qd=0.3 if tick < 150 else 0.0))
+    for tick in range(1000):
+        bench.step(NOTHING, estimate(force=[3.0 - 0.002 * tick, 0.0, 0.0]))
+    for _ in range(400):
+        bench.step(NOTHING, estimate())
+    assert bench.last.phase is Phase.RESTART
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=1e-9)
+
+
+def test_a_hand_that_presses_on_an_arm_at_rest_is_felt_by_the_joints() -> None:
+    bench = Bench(free_drive__period=30.0).in_period()
+    for tick in range(1000):
+        force = min(0.004 * tick, 3.0)
+        bench.step(NOTHING, estimate(force=[force, 0.0, 0.0], felt=[force, 0.0, 0.0]))
+    assert bench.last.baseline[0] <= FELT
+    for _ in range(1000):
+        bench.step(NOTHING, estimate())
+    assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.15), "of the first newton, which nobody can tell"

@@ -1,0 +1,338 @@
+"""How far an arm goes on its own (FD-19); test_operation.py has for how long any arm does."""
+
+from collections.abc import Iterable
+
+import pytest
+
+from pendant.all_settings import Settings
+from pendant.events.event import Values
+from pendant.guided.sensor_bias import Slack
+from pendant.guided.unintended_motion import AWAY, UNFELT, Alone
+from pendant.guided.user_force import CARRIED, Hand
+from pendant.guided.work import ASKED, LEFT
+from pendant.limits.parameters import reference
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from tests.pendant.estimates import estimate
+
+ZEROS = (0.0,) * 6
+FRICTION = 8.0  # of the elbow while it turns [N·m]
+PAYS = ASKED * LEFT * FRICTION  # torque there that pays for its friction [N·m]
+HERE = [0.0, 0.1, 0.2]
+WAYS = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8)]
+MOVING = Settings().unexplained.speed
+STEP = 0.0001  # in a tick that creeps [m]
+
+
+def at(way: float, speed: float, to: tuple[float, float, float] = WAYS[0], turns: float = 0.0, felt: float = 0.0) -> Estimate:
+    """The flange so far from where it entered [m]; the elbow turns at 0.2 rad/s where `turns` is 1, and feels this [N·m]."""
+    third = [0.0, 0.0, 0.2 * turns, 0.0, 0.0, 0.0]
+    place = [a + way * b for a, b in zip(HERE, to, strict=True)]
+    rubs = [0.0, 0.0, FRICTION * turns, 0.0, 0.0, 0.0]
+    return estimate(position=place, speed=speed, qd=third, tau_ext=[0.0, 0.0, felt, 0.0, 0.0, 0.0], friction=rubs)
+
+
+class Bench:
+    """An arm that was at rest, moved by hand tick by tick."""
+
+    def __init__(self, sensor: bool = True) -> None:
+        start = at(0.0, 0.0)
+        self.alone, self.hand = Alone(Settings().unexplained, reference(start, None)), Hand(start, ZEROS)
+        self.sensor, self.ticks = sensor, 0
+
+    def see(self, value: Estimate, driven: bool = False) -> Values | None:
+        self.ticks += 1
+        self.hand.step(value, self.sensor)
+        return self.alone.step(value, self.hand, self.sensor, driven)
+
+    def until(self, values: Iterable[Estimate]) -> Values | None:
+        return next((told for value in values if (told := self.see(value)) is not None), None)
+
+    def held(self, value: Estimate) -> None:
+        """A hand at the flange for one tick, which the force tells as it is."""
+        self.hand.user = (0.0, 0.0, 40.0)
+        assert self.alone.step(value, self.hand, self.sensor, False) is None
+        self.hand.user = (0.0, 0.0, 0.0)
+
+
+def creep(ticks: int, speed: float = 0.019, begins: float = 0.0, turns: float = 0.0, felt: float = 0.0) -> list[Estimate]:
+    """It goes on slowly, `STEP` in each tick."""
+    return [at(begins + STEP * tick, speed, turns=turns, felt=felt) for tick in range(1, ticks + 1)]
+
+
+LEAST_CREPT = round(AWAY / STEP)  # ticks that are just allowed
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(("share", "stopped"), [(0.99, False), (1.01, True), (30.0, True)])
+@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
+def test_an_arm_that_nobody_touches_goes_so_far(
+    sensor: bool, most: float, share: float, stopped: bool, way: tuple[float, float, float]
+) -> None:
+    bench = Bench(sensor)
+    assert bench.see(at(0.0, 0.1)) is None
+    told = bench.see(at(share * most, 0.1, way))
+    assert told == ({"distance": pytest.approx(1000.0 * share * most), "time": 2 * TICK, "limit": MOVING} if stopped else None)
+
+
+@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
+def test_at_the_limit_it_may_be(sensor: bool, most: float) -> None:
+    assert Bench(sensor).until([at(0.0, 0.1), at(most, 0.1)]) is None
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.005, 0.019])
+def test_however_slowly_with_the_sensor(speed: float) -> None:
+    bench = Bench()
+    told = bench.until(creep(1000, speed))
+    assert bench.ticks in (LEAST_CREPT, LEAST_CREPT + 1)
+    assert told == {"distance": pytest.approx(1000.0 * AWAY, abs=0.11), "time": 0.0, "limit": MOVING}
+
+
+def test_without_it_a_light_hand_is_not_felt_and_the_way_begins_with_the_motion() -> None:
+    bench = Bench(sensor=False)
+    assert bench.until(creep(1000)) is None
+    assert bench.until([at(0.1, 0.1), at(0.1 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.until([at(0.2, 0.019), at(0.3, 0.1), at(0.3 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.see(at(0.3 + 1.01 * UNFELT, 0.1)) is not None
+
+
+def test_with_it_what_it_crept_before_it_moved_counts() -> None:
+    bench = Bench()
+    assert bench.until(creep(LEAST_CREPT - 20)) is None
+    assert bench.until([at(AWAY - 0.001, 0.1), at(AWAY + 0.001, 0.1)]) is not None
+    assert bench.ticks == LEAST_CREPT - 18
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+@pytest.mark.parametrize("driven", [True, False])
+def test_an_arm_that_a_hand_or_a_wall_has_let_go_while_it_moved_has_its_time_alone(driven: bool, sensor: bool) -> None:
+    """A hand that guides is light now and then; the arm comes to rest within its time, or is stopped."""
+    bench = Bench(sensor)
+    if driven:
+        assert bench.see(at(0.0, 0.1), driven) is None
+    else:
+        bench.held(at(0.0, 0.1))
+    assert bench.until([at(0.0, 0.1), at(0.5, 0.1)]) is None
+    bench.see(at(0.6, 0.0))
+    assert bench.until([at(0.6, 0.1), at(0.6 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.see(at(0.6 + 1.01 * AWAY, 0.1)) is not None
+
+
+def test_a_way_begins_where_the_arm_came_to_rest_after_a_hand() -> None:
+    bench = Bench()
+    assert bench.until(creep(LEAST_CREPT - 5)) is None
+    bench.held(at(AWAY, 0.019))
+    assert bench.until(creep(LEAST_CREPT - 5, begins=AWAY)) is None
+    assert bench.until(creep(20, begins=2 * AWAY)) is not None
+
+
+@pytest.mark.parametrize(("share", "pushed"), [(0.99, False), (1.01, True)])
+def test_a_hand_on_a_link_that_pays_for_the_friction_may_creep(share: float, pushed: bool) -> None:
+    bench = Bench()
+    told = bench.until(creep(6 * LEAST_CREPT, turns=1.0, felt=share * PAYS))
+    assert (told is None) is pushed
+
+
+def test_the_work_counts_from_where_the_arm_rested() -> None:
+    """All of it, also what was done while the arm was faster for a moment; not what was before a hand."""
+    bench = Bench()
+    assert bench.until(creep(50, turns=1.0, felt=2.0 * PAYS)) is None
+    assert bench.until(at(0.006, 0.1, turns=1.0, felt=2.0 * PAYS) for _ in range(100)) is None
+    assert bench.until(creep(100, begins=0.0095, turns=1.0)) is None, "150 of 250 ticks are paid twice"
+    bench = Bench()
+    assert bench.until(creep(100, turns=1.0, felt=9.0)) is None
+    bench.held(at(0.0, 0.019))
+    assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=0.9 * PAYS)) is not None
+
+
+def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
+    bench = Bench()
+    bench.hand.usual = (0.0, 0.0, -CARRIED)
+    told = (bench.alone.step(value, bench.hand, True, False) for value in creep(400, turns=1.0, felt=5.0))
+    assert any(values is not None for values in told)
+
+
+def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
+    """Then it may run on alone for its time; once at rest its way is measured from there."""
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    assert bench.until(at(0.001 * tick, 0.1, turns=1.0, felt=1.01 * PAYS) for tick in range(5000)) is None
+    bench.see(at(5.0, 0.1, turns=1.0, felt=1.01 * PAYS))
+    assert bench.until([at(5.1, 0.1, turns=1.0)] * 150) is None
+    told = bench.see(at(5.1, 0.1, turns=1.0))
+    assert told == {"distance": pytest.approx(0.0), "time": pytest.approx(0.302), "limit": MOVING}
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    assert bench.until(at(0.001, 0.1, turns=1.0, felt=5.0) for _ in range(151)) is None
+    assert bench.see(at(0.2, 0.0)) is None
+    assert bench.until(creep(LEAST_CREPT - 5, begins=0.2)) is None
+    assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
+
+
+@pytest.mark.parametrize(("sensor", "carried"), [(False, 0.0), (True, CARRIED)])
+def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(sensor: bool, carried: float) -> None:
+    bench = Bench(sensor)
+    bench.held(at(0.0, 0.1))
+    bench.hand.usual = (carried, 0.0, 0.0)
+    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, sensor, False) for _ in range(151)]
+    assert told[:150] == [None] * 150
+    assert told[150] is not None
+
+
+def test_its_memory_tells_all_of_it() -> None:
+    one, other = Bench(), Bench()
+    for value in (at(0.0, 0.1), at(0.001, 0.015, turns=1.0, felt=1.0)):
+        one.see(value)
+        assert one.alone.memory != other.alone.memory
+        other.see(value)
+        assert one.alone.memory == other.alone.memory
+
+
+def test_who_leads_a_link_is_known_and_half_of_the_time_without_is_doubtful() -> None:
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    assert (bench.alone.led, bench.alone.doubtful) == (False, False)
+    bench.see(at(0.0, 0.1, turns=1.0, felt=1.01 * PAYS))
+    assert (bench.alone.led, bench.alone.doubtful) == (True, False)
+    for tick in range(1, 152):
+        told = bench.see(at(0.0, 0.1, turns=1.0))
+        assert (bench.alone.led, bench.alone.doubtful, told is None) == (False, tick > 75, tick <= 150)
+    bench.see(at(0.0, 0.1, turns=1.0, felt=20.0))
+    assert bench.alone.doubtful, "until it is paid for"
+    bench.see(at(0.0, 0.0))
+    assert (bench.alone.led, bench.alone.doubtful) == (False, False)
+
+
+def test_a_hand_at_the_flange_ends_a_doubt() -> None:
+    bench = Bench()
+    assert bench.until(at(0.0, 0.1, turns=1.0) for _ in range(100)) is None
+    assert bench.alone.doubtful
+    bench.held(at(0.0, 0.1))
+    assert not bench.alone.doubtful
+
+
+def test_without_the_sensor_nothing_is_doubtful_it_is_stopped() -> None:
+    bench = Bench(sensor=False)
+    bench.held(at(0.0, 0.1))
+    assert bench.until(at(0.0, 0.1, turns=1.0) for _ in range(150)) is None
+    assert not bench.alone.doubtful
+
+
+@pytest.mark.parametrize(("force", "hand"), [(2.9, False), (3.1, True)])
+def test_a_force_that_may_be_drift_is_no_hand_unless_it_works(force: float, hand: bool) -> None:
+    """Two newtons may be the sensor's, and one is the least of a hand."""
+    bench = Bench()
+    value = at(0.0, 0.1, turns=1.0)
+    bench.hand.user = (0.0, force, 0.0)
+    told = [bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2)) for _ in range(151)]
+    assert (told[-1] is None) is hand
+
+
+@pytest.mark.parametrize(("slack", "told"), [(0.0, False), (2.0, True)])
+def test_a_light_hand_along_gravity_works_at_the_flange(slack: float, told: bool) -> None:
+    """What stays along gravity is no user's force; but it goes along with the arm, at 0.1 m/s."""
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    bench.hand.usual = (2.0, 0.0, 0.0)
+    value = at(0.0, 0.1, turns=1.0)
+    drifts = Slack(slack, 0.1 * slack)
+    assert any(bench.alone.step(value, bench.hand, True, False, drifts) is not None for _ in range(400)) is told
+
+
+@pytest.mark.parametrize(("turn", "told"), [(0.0, True), (2.0, False), (-2.0, True)])
+def test_so_does_its_torque(turn: float, told: bool) -> None:
+    """1 N·m at the end of a tool, with 0.2 N·m that may be drift."""
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    value = at(0.0, 0.1, turns=1.0)
+    value.v_F[3:] = [0.0, 0.0, turn]
+    torque, slack = (0.0, 0.0, 1.0), Slack(2.0, 0.2)
+    assert any(bench.alone.step(value, bench.hand, True, False, slack, torque) is not None for _ in range(400)) is told
+
+
+@pytest.mark.parametrize(("turn", "led"), [(0.199, False), (0.21, True)])
+def test_of_a_torque_what_may_be_drift_pays_for_nothing(turn: float, led: bool) -> None:
+    bench = Bench()
+    value = at(0.0, 0.1, turns=1.0)
+    value.v_F[3:] = [0.0, 0.0, 1000.0]
+    bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2), (0.0, 0.0, turn))
+    assert bench.alone.led is led
+
+
+@pytest.mark.parametrize("pays", [0.99, 1.01])
+def test_who_is_felt_leads_the_arm_where_the_motion_is_paid_for(pays: float) -> None:
+    bench = Bench()
+    bench.hand.user = (0.0, 0.0, 40.0)
+    bench.alone.step(at(0.0, 0.1, turns=1.0, felt=pays * PAYS), bench.hand, True, False)
+    assert bench.alone.led is (pays > 1.0)
+    bench.alone.step(at(0.0, 0.0, turns=1.0, felt=2.0 * PAYS), bench.hand, True, False)
+    assert not bench.alone.led, "it does not move"
+
+
+def test_what_was_paid_while_a_hand_was_felt_does_not_count_later() -> None:
+    bench = Bench()
+    bench.hand.user = (0.0, 0.0, 40.0)
+    for _ in range(1000):
+        bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, True, False)
+    bench.hand.user = (0.0, 0.0, 0.0)
+    assert bench.until([at(0.0, 0.1, turns=1.0)] * 150) is None, "nor what was owed"
+    assert bench.see(at(0.0, 0.1, turns=1.0)) is not None
+
+
+@pytest.mark.parametrize(("felt", "led"), [(0.99 * PAYS, False), (1.01 * PAYS, True)])
+def test_who_leads_it_slowly_is_known_from_where_it_rested(felt: float, led: bool) -> None:
+    bench = Bench()
+    assert bench.until(creep(20, turns=1.0, felt=felt)) is None
+    assert bench.alone.led is led
+    bench.alone.step(creep(21, turns=1.0, felt=felt)[-1], bench.hand, True, True)
+    assert not bench.alone.led, "a wall drives it"
+
+
+@pytest.mark.parametrize("carried", [0.0, CARRIED])
+def test_half_of_the_way_that_nobody_pays_for_is_doubtful(carried: float) -> None:
+    """The doubt stays while the arm rests there, for the way would go on; a hand that is felt ends it."""
+    bench = Bench()
+    bench.hand.usual = (carried, 0.0, 0.0)
+
+    def see(value: Estimate) -> bool:
+        assert bench.alone.step(value, bench.hand, True, False) is None
+        return bench.alone.doubtful
+
+    assert not see(at(0.99 * 0.5 * AWAY, 0.01, turns=1.0))
+    assert see(at(1.01 * 0.5 * AWAY, 0.01, turns=1.0))
+    assert see(at(1.01 * 0.5 * AWAY, 0.0))
+    bench.held(at(1.01 * 0.5 * AWAY, 0.0))
+    assert not see(at(1.01 * 0.5 * AWAY, 0.0))
+    assert not see(at(1.99 * 0.5 * AWAY, 0.0)), "from where it rested after the hand"
+
+
+def test_a_doubt_ends_when_the_way_is_paid_for() -> None:
+    bench = Bench()
+    bench.see(at(0.6 * AWAY, 0.01, turns=1.0))
+    assert bench.alone.doubtful
+    bench.see(at(0.6 * AWAY, 0.01, turns=1.0, felt=9.0))
+    assert not bench.alone.doubtful
+
+
+def test_without_help_an_arm_has_time_to_come_to_rest() -> None:
+    """A hand that pays now and then owes half of the time late: then the doubt lasts for as long before the arm is stopped."""
+    bench = Bench()
+    assert bench.until(at(0.001, 0.1, turns=1.0, felt=0.6 * PAYS) for _ in range(187)) is None
+    assert not bench.alone.doubtful
+    doubted = 0
+    for _ in range(2000):
+        told = bench.see(at(0.001, 0.1, turns=1.0))
+        doubted += bench.alone.doubtful
+        if told is not None:
+            break
+    assert doubted >= 75
+
+
+@pytest.mark.parametrize("ticks", [75, 76])
+def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> None:
+    bench = Bench()
+    bench.held(at(0.0, 0.1))
+    bench.hand.usual = (CARRIED, 0.0, 0.0)
+    for _ in range(ticks):
+        bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, True, False)
+    assert bench.alone.doubtful is (ticks > 75)

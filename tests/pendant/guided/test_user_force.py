@@ -1,0 +1,223 @@
+"""The user's force: apart from what was there before, from a payload, from noise; by the sensor or by the joints alone."""
+
+import math
+
+import numpy as np
+import pytest
+
+from pendant.guided.user_force import (
+    CARRIED,
+    DOUBT,
+    FELT_BY_JOINTS,
+    JOINTS_SWING,
+    LED,
+    LED_SETTLING,
+    OFFSET,
+    ON_A_LINK,
+    SETTLING,
+    STANDS_OUT,
+    SWING,
+    Hand,
+)
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import ORIGIN, Vector
+from tests.pendant.estimates import estimate
+
+ZEROS = (0.0,) * 6
+
+
+def after(hand: Hand, seconds: float, value: Estimate, use_wrench: bool = True) -> Vector:
+    for _ in range(round(seconds / TICK)):
+        hand.step(value, use_wrench)
+    return hand.user
+
+
+def test_what_the_sensor_felt_before_is_nobody_and_turns_with_the_flange() -> None:
+    baseline = (3.0, -1.0, 2.0, 0.0, 0.0, 0.0)
+    hand = Hand(estimate(), baseline)
+    assert after(hand, 1.0, estimate(force=[3.0, -1.0, 2.0])) == pytest.approx((0.0, 0.0, 0.0))
+    assert hand.payload == pytest.approx((0.0, 0.0, 2.0))
+    turned = estimate(force=[1.0, 3.0, 2.0])  # a quarter about z
+    turned.R_BF = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    assert after(hand, 1.0, turned) == pytest.approx((0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_what_is_too_much_for_an_offset_is_a_payloads_and_does_not_turn(sign: float) -> None:
+    hand = Hand(estimate(), (0.0, 0.0, sign * 30.0, 0.0, 0.0, 0.0))
+    tipped = estimate(force=[sign * OFFSET, 0.0, sign * (30.0 - OFFSET)])
+    tipped.R_BF = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # z of F along x of B
+    assert after(hand, 1.0, tipped) == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_a_push_across_gravity_stays_the_users() -> None:
+    hand = Hand(estimate(), ZEROS)
+    assert after(hand, SWING, estimate(force=20.0))[0] == pytest.approx(20.0 * (1.0 - math.exp(-1.0)), rel=1e-6)
+    assert hand.change == (20.0, 0.0, 0.0)
+    assert after(hand, 10.0, estimate(force=20.0)) == pytest.approx((20.0, 0.0, 0.0))
+
+
+def test_a_change_along_gravity_becomes_payload_like() -> None:
+    hand = Hand(estimate(), ZEROS)
+    down = estimate(force=[0.0, 0.0, -20.0])
+    assert after(hand, 0.1, down)[2] < -15.0
+    after(hand, SETTLING - 0.1, down)
+    assert hand.payload[2] == pytest.approx(-20.0 * (1.0 - math.exp(-1.0)), rel=1e-3)
+    assert after(hand, 12.0, down) == pytest.approx((0.0, 0.0, 0.0), abs=0.05)
+
+
+def test_while_the_arm_is_led_that_takes_longer() -> None:
+    down = {"force": [0.0, 0.0, -2.0]}
+    slow, led = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
+    after(slow, 2.0, estimate(speed=LED, **down))  # type: ignore[arg-type]
+    after(led, 2.0, estimate(speed=1.01 * LED, **down))  # type: ignore[arg-type]
+    assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
+    assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / LED_SETTLING)), rel=1e-3)
+
+
+def test_without_a_sensor_the_joints_tell_from_a_size_on() -> None:
+    hand = Hand(estimate(felt=[5.0, 0.0, 0.0]), ZEROS)
+    assert after(hand, 2.0, estimate(felt=[4.0 + FELT_BY_JOINTS, 0.0, 0.0], force=50.0), use_wrench=False) == (0.0, 0.0, 0.0)
+    assert after(hand, 2.0, estimate(felt=[25.0, 0.0, 0.0]), use_wrench=False) == pytest.approx((20.0, 0.0, 0.0), abs=1e-3)
+    hand = Hand(estimate(), ZEROS)
+    assert after(hand, JOINTS_SWING, estimate(felt=100.0), use_wrench=False)[0] == pytest.approx(100.0 * (1 - math.exp(-1)))
+
+
+def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
+    hand = Hand(estimate(), ZEROS)
+    assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=3.0)) == pytest.approx((0.0, 20.0, 0.0), abs=1e-3)
+    assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=16.0)) == pytest.approx((16.0, 0.0, 0.0), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force", "user"),
+    [
+        (1.001 * ON_A_LINK, 0.0, "joints"),
+        (0.999 * ON_A_LINK, 0.0, "sensor"),
+        (1.001 * ON_A_LINK, 0.999 * CARRIED, "joints"),
+        (1.001 * ON_A_LINK, CARRIED, "sensor"),
+        (1.001 * FELT_BY_JOINTS, CARRIED, "joints"),
+    ],
+)
+def test_a_gentle_push_on_a_link_counts_while_the_sensor_feels_nothing(felt: float, force: float, user: str) -> None:
+    """VW-5: the tether follows who leads the arm by its elbow; what falls from the flange, the sensor would feel."""
+    hand = Hand(estimate(), ZEROS)
+    found = after(hand, 2.0, estimate(felt=[0.0, felt, 0.0], force=force))
+    assert found == pytest.approx((0.0, felt, 0.0) if user == "joints" else (force, 0.0, 0.0), abs=1e-3)
+
+
+def test_without_a_sensor_a_gentle_push_on_a_link_does_not_count() -> None:
+    hand = Hand(estimate(), ZEROS)
+    assert after(hand, 2.0, estimate(felt=[0.0, 0.9 * FELT_BY_JOINTS, 0.0]), use_wrench=False) == (0.0, 0.0, 0.0)
+
+
+def test_a_payload_that_the_joints_feel_is_payload_like() -> None:
+    hand = Hand(estimate(), ZEROS)
+    after(hand, 20.0, estimate(felt=[0.0, 0.0, -18.0]), use_wrench=False)
+    assert hand.payload == pytest.approx((0.0, 0.0, -18.0), abs=1e-3)
+    assert hand.user == (0.0, 0.0, 0.0)
+
+
+def share(time: float) -> float:
+    """Of a change that a filter follows in one tick."""
+    return 1.0 - math.exp(-TICK / time)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force"), [(0.0, 3.0), (0.0, 40.0), (7.0, 3.9), (7.0, 6.0), (20.0, 3.9), (20.0, 6.0), (20.0, 60.0), (60.0, 8.0)]
+)
+@pytest.mark.parametrize("use_wrench", [True, False])
+@pytest.mark.parametrize("beforehand", [2.0, 30.0])
+def test_it_is_told_alike_however_base_flange_and_forces_lie(
+    felt: float, force: float, use_wrench: bool, beforehand: float
+) -> None:
+    """Against numpy: the base is tilted, the flange turns, the speed is now below `LED` and now above; 0.15 s."""
+    rng = np.random.default_rng(round(felt + force))
+
+    def unit() -> np.ndarray:
+        return rng.dirichlet([9.0] * 3) ** 0.5 * rng.choice([-1.0, 1.0], 3)  # no component is near 0
+
+    def attitude() -> np.ndarray:
+        return np.linalg.qr(rng.normal(size=(3, 3)))[0]
+
+    up, by_joints, by_sensor, slow, slow_joints = unit(), np.zeros(3), np.zeros(3), 0.0, 0.0
+    first = estimate(felt=(5.0 * unit()).tolist())
+    first.g_B, first.R_BF = -9.81 * up, attitude()
+    before = beforehand * up + 2.0 * unit()
+    hand = Hand(first, (*before.tolist(), 0.0, 0.0, 0.0))
+    assert (hand.user, hand.change, hand.payload) == (ORIGIN,) * 3
+    residual = before @ up
+    payload = residual - np.clip(residual, -OFFSET, OFFSET)
+    offset = first.R_BF.T @ (before - payload * up)
+    joints_feel, sensor_feels = felt * unit(), force * unit()
+    for tick in range(75):
+        now = estimate()
+        now.R_BF, now.v_F[:3] = attitude(), (0.9 if tick % 3 else 1.1) * LED * unit()
+        now.F_joints = first.F_joints + joints_feel
+        change = sensor_feels + 0.2 * unit()
+        now.F_user[:3] = change + payload * up + now.R_BF @ offset
+        settle = share(SETTLING if tick % 3 else LED_SETTLING)
+        slow_joints += settle * (joints_feel @ up - slow_joints)
+        by_joints += share(JOINTS_SWING) * (joints_feel - slow_joints * up - by_joints)
+        size, user, gone = np.linalg.norm(by_joints), by_joints, slow_joints
+        counts = size >= FELT_BY_JOINTS
+        if use_wrench:
+            slow += settle * (change @ up - slow)
+            by_sensor += share(SWING) * (change - slow * up - by_sensor)
+            counts = counts or (size >= ON_A_LINK and np.linalg.norm(change) < CARRIED)
+            if not counts or np.linalg.norm(by_sensor) >= FELT_BY_JOINTS:
+                user, counts = by_sensor, True
+            gone = residual + slow
+            change_seen = change
+        else:
+            change_seen = np.zeros(3)
+        counts = counts and np.linalg.norm(user) >= DOUBT * abs(payload)
+        hand.step(now, use_wrench)
+        assert hand.user == pytest.approx(user if counts else np.zeros(3))
+        assert hand.change == pytest.approx(change_seen)
+        assert hand.payload == pytest.approx(gone * up)
+
+
+@pytest.mark.parametrize(
+    ("felt", "force", "before", "user"),
+    [
+        (FELT_BY_JOINTS, CARRIED, 0.0, "joints"),
+        (ON_A_LINK, 0.0, 0.0, "joints"),
+        (2.0 * FELT_BY_JOINTS, FELT_BY_JOINTS / share(SWING), 0.0, "sensor"),
+        (0.0, DOUBT * 20.0 / share(SWING), OFFSET + 20.0, "sensor"),
+    ],
+)
+def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: float, user: str) -> None:
+    """In one tick, from rest, which lets the limits themselves be reached."""
+    hand = Hand(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0))
+    hand.step(estimate(felt=[0.0, felt / share(JOINTS_SWING), 0.0], force=[force, 0.0, before]), True)
+    assert hand.user == ((0.0, felt, 0.0) if user == "joints" else (share(SWING) * force, 0.0, 0.0))
+
+
+def test_equal_histories_are_equal() -> None:
+    one, two = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
+    assert one.memory == two.memory
+    one.step(estimate(force=1.0), True)
+    assert one.memory != two.memory
+
+
+def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
+    hand = Hand(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
+    assert after(hand, 1.0, estimate(force=[9.0, 0.0, -OFFSET - 20.0])) == (0.0, 0.0, 0.0)
+    assert after(hand, 1.0, estimate(force=[11.0, 0.0, -OFFSET - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_step_stands_out_when_it_is_larger_than_the_force_fluctuates(axis: int) -> None:
+    """A load that swings by 2 N, some ticks long; nothing is known of a sensor that was quiet."""
+    hand = Hand(estimate(), ZEROS)
+    assert hand.stands_out((0.1, 0.0, 0.0))
+    swings = [0.0] * 3
+    for tick in range(2000):
+        swings[axis] = 5.0 + 2.0 * math.sin(0.3 * tick)
+        hand.step(estimate(force=list(swings)), True)
+    step = [0.0] * 3
+    for share, stands_out in ((0.9, False), (1.1, True), (-1.1, True)):
+        step[axis] = share * STANDS_OUT * 2.0 / math.sqrt(2.0)
+        assert hand.stands_out((step[0], step[1], step[2])) is stands_out

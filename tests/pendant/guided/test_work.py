@@ -1,0 +1,145 @@
+"""The work on the free arm: a hand pays for the friction that the law leaves, a free arm pays with its speed (FD-19)."""
+
+import math
+
+import pytest
+
+from pendant.guided.work import ASKED, LEFT, Work
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import Vector
+from tests.pendant.estimates import estimate
+
+BEFORE = (0.0, -8.0, 0.0, 0.0, 0.0, 0.0)
+FRICTION = (0.0, 10.0, 0.0, 2.0, 0.0, 0.0)
+SPEED = 0.2  # of shoulder and wrist 1 [rad/s]
+PAYS = ASKED * LEFT * (FRICTION[1] + FRICTION[3])  # [N·m] on either, as both turn alike
+
+
+def moving(shoulder: float = 0.0, wrist: float = 0.0, way: float = 1.0, energy: float = 0.0, speed: float = SPEED) -> Estimate:
+    """Both turn; external torques beyond those at entry [N·m]."""
+    qd = [0.0, way * speed, 0.0, way * speed, 0.0, 0.0]
+    friction = [way * torque for torque in FRICTION]
+    felt = [0.0, BEFORE[1] + shoulder, 0.0, wrist, 0.0, 0.0]
+    return estimate(qd=qd, tau_ext=felt, friction=friction, energy=energy)
+
+
+def done(*values: tuple[int, Estimate]) -> Work:
+    work = Work(BEFORE)
+    work.begin(values[0][1])
+    for count, value in values:
+        for _ in range(count):
+            work.step(value)
+    return work
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("shoulder", "wrist"), [(1.0, 0.0), (0.0, 1.0), (3.0, -2.0)])
+@pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True)])
+def test_who_leads_the_arm_pays_for_what_the_law_leaves(
+    share: float, paid: bool, shoulder: float, wrist: float, way: float
+) -> None:
+    torque = way * share * PAYS
+    assert done((100, moving(shoulder * torque, wrist * torque, way))).paid is paid
+
+
+def test_half_of_the_friction_that_is_left_is_asked_for() -> None:
+    """The analytic case: 0.2 rad/s against 12 N·m for a second costs 2.4 J, of which a hand pays at least 0.18 J."""
+    work = done((500, moving()))
+    assert work.unpaid == pytest.approx(0.5 * 0.15 * 2.4)
+
+
+def test_a_torque_against_the_turn_pays_for_nothing_and_is_not_owed_twice() -> None:
+    work = done((100, moving(-5.0)))
+    assert not work.paid
+    assert work.unpaid == pytest.approx(100 * TICK * SPEED * PAYS)
+
+
+@pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True), (-1.01, False)])
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
+def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, share: float, paid: bool) -> None:
+    """0.05 m/s along it; the joints' noise hides what they feel of it."""
+    value = moving(-1.0)
+    value.v_F[:3] = [0.05 * part for part in way]
+    needed = PAYS * SPEED / 0.05
+    work = Work(BEFORE)
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, (share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+    assert work.paid is paid
+    assert work.settled is paid
+
+
+@pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True), (-1.01, False)])
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
+def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, share: float, paid: bool) -> None:
+    """A tool that is led at its end turns the flange, at 0.5 rad/s."""
+    value = moving(-1.0)
+    value.v_F[3:] = [0.5 * part for part in way]
+    needed = PAYS * SPEED / 0.5
+    work = Work(BEFORE)
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, torque=(share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+    assert (work.paid, work.settled) == (paid, paid)
+
+
+@pytest.mark.parametrize(("share", "lasts"), [(-1.0, True), (0.0, True), (0.9, True), (1.1, False)])
+def test_an_arm_that_slows_down_pays_with_its_speed(share: float, lasts: bool) -> None:
+    """Of what 101 ticks cost, which is a tick more than what may be owed. One that gets faster owes no less."""
+    cost = 100 * TICK * SPEED * PAYS
+    work = Work(BEFORE)
+    work.begin(moving(energy=1.0))
+    for tick in range(1, 202):
+        work.step(moving(energy=1.0 - share * cost * tick / 201))
+    assert work.lasts(100) is lasts
+    assert not work.settled
+
+
+@pytest.mark.parametrize("wrong", ["friction", "energy"])
+def test_what_is_not_a_number_pays_for_nothing(wrong: str) -> None:
+    value = moving(20.0)
+    if wrong == "friction":
+        value.friction[1] = math.nan
+    else:
+        value.energy = math.nan
+    work = done((101, value))
+    assert wrong == "energy" or work.lasts(100)
+    assert wrong == "energy" or not (work.settled or work.paid)
+
+
+def test_work_in_advance_does_not_count() -> None:
+    work = done((500, moving(20.0)), (100, moving()))
+    assert work.unpaid == pytest.approx(100 * TICK * SPEED * PAYS)
+    assert work.paid, "over the whole stretch it is"
+
+
+@pytest.mark.parametrize(("ticks", "lasts"), [(99, True), (100, False), (101, False)])
+def test_an_arm_that_nobody_pays_for_lasts_as_long_as_it_moves(ticks: int, lasts: bool) -> None:
+    assert done((100, moving())).lasts(ticks) is lasts
+
+
+def test_a_push_against_it_does_not_shorten_the_time() -> None:
+    assert not done((50, moving(-20.0))).lasts(50)
+    assert done((51, moving(-20.0))).lasts(50)
+
+
+def test_half_paid_it_lasts_twice_as_long() -> None:
+    assert not done((199, moving(0.5 * PAYS))).lasts(100)
+    assert done((201, moving(0.5 * PAYS))).lasts(100)
+
+
+def test_an_arm_that_does_not_move_is_not_paid_for() -> None:
+    assert not Work(BEFORE).paid
+    assert not done((10, moving(5.0, speed=0.0))).paid
+
+
+def test_a_stretch_begins_afresh() -> None:
+    value = moving(1.0, energy=0.5)
+    work = Work(BEFORE)
+    work.begin(value)
+    fresh = work.memory
+    work.step(value)
+    assert work.memory != fresh
+    work.begin(value)
+    assert work.memory == fresh

@@ -1,0 +1,249 @@
+"""Programs that go on until a contact, and contacts that the supervisor tells (CD-1, CD-15, CD-16)."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from pendant.contact.contact_change import ArmPose, Change, Contact
+from pendant.contact.contact_monitor import ContactMonitor
+from pendant.contact.settings import ContactUse
+from pendant.event_table import render
+from pendant.events.event import Kind
+from pendant.inputs import Command, Inputs
+from pendant.program.reaction import REACTION_SPEED, Until, goal
+from pendant.program.steps import AnyStep, JointMove, LinearMove, Program, ProgramState, SwitchTool, Wait, WaitForContact
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law, Mode
+from pendant.tick.pose import UNTURNED
+from tests.pendant.estimates import estimate
+from tests.pendant.freedrive.test_state_machine import Bench
+
+BEGUN = ArmPose((0.0,) * 6, (0.0, 0.0, 0.5), UNTURNED)
+POSE = ArmPose((0.2,) * 6, (0.0, 0.0, 0.3), UNTURNED)
+GAINED = Contact(0, Change.GAINED, "difference", "tool", "sensor", (2.0, 3.0, -6.0), (-1.0, -4.0, 8.0), -1.4, 3, POSE)
+DOWN = LinearMove(position=(0.0, 0.0, 0.1), quaternion=(1.0, 0.0, 0.0, 0.0))
+NEXT = JointMove(q=(0.5,) * 6)
+
+
+class Told(ContactMonitor):
+    """A monitor that finds what a test says, in the tick in which it is said."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.coming: Iterator[Contact] = iter(())
+        self.was_on = False
+        self.at = BEGUN
+
+    def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
+        self.was_on = on
+        return tuple(self.coming)
+
+    def now(self) -> ArmPose:
+        return self.at
+
+
+def running(*steps: AnyStep) -> tuple[Bench, Told]:
+    bench, told = Bench(), Told()
+    bench.supervisor._monitor = told
+    bench.run(60)
+    bench.step(Inputs(program=Program(steps=steps)))
+    bench.step(Inputs(commands=(Command.START_PROGRAM,)))
+    bench.step()
+    bench.events.clear()
+    return bench, told
+
+
+def done(bench: Bench) -> None:
+    """The law has finished the move that it was given."""
+    move = bench.last.move
+    assert move is not None
+    bench.step(value=estimate(move_done=move.id))
+
+
+def until(then: str) -> LinearMove:
+    return LinearMove(position=DOWN.position, quaternion=DOWN.quaternion, until=Until(then=then, distance=0.02))  # type: ignore[arg-type]
+
+
+def test_a_contact_is_told_with_its_numbers() -> None:
+    bench, told = Bench(), Told()
+    bench.supervisor._monitor = told
+    told.coming = iter((GAINED,))
+    decision = bench.step()
+    (event,) = decision.events
+    assert event.kind is Kind.CONTACT_GAINED
+    assert decision.contacts == (GAINED,)
+    assert event.values == {
+        "part": "tool", "source": "sensor", "rule": "difference", "force": 7.0, "fx": 2.0, "fy": 3.0, "fz": -6.0,
+        "acceleration": 9.0, "ax": -1.0, "ay": -4.0, "az": 8.0, "ratio": -1.4, "steps": 3,
+        "x": 0.0, "y": 0.0, "z": 0.3, "action": "none",
+        "posture": "0.2000 0.2000 0.2000 0.2000 0.2000 0.2000",
+    }  # fmt: skip
+    assert render(event)[0] == "Contact gained: tool"
+    assert bench.step().contacts == ()
+
+
+@pytest.mark.parametrize("change", list(Change))
+def test_every_change_has_its_event(change: Change) -> None:
+    bench, told = Bench(), Told()
+    bench.supervisor._monitor = told
+    told.coming = iter((GAINED._replace(change=change),))
+    assert bench.step().events[0].kind == f"contact_{change.value}"
+
+
+def test_detection_is_on_by_the_control_or_by_a_step() -> None:
+    bench, told = Bench(), Told()
+    bench.supervisor._monitor = told
+    bench.step()
+    assert not told.was_on
+    bench.step(Inputs(commands=(Command.DETECTION,)))
+    bench.step()
+    assert told.was_on
+    assert bench.supervisor.settings.contact.on
+    bench.step(Inputs(commands=(Command.DETECTION,)))
+    bench.step()
+    assert not told.was_on
+    bench, told = running(until("stop"), Wait(duration=1.0))
+    assert told.was_on
+    told.coming = iter((GAINED,))
+    bench.run(60)
+    assert not told.was_on
+
+
+def test_a_move_until_contact_brakes_rests_and_goes_on() -> None:
+    bench, told = running(until("stop"), NEXT)
+    bench.run(20, value=estimate(qd=0.3))
+    assert bench.last.law is Law.FOLLOW
+    told.coming = iter((GAINED,))
+    decision = bench.step(value=estimate(qd=0.3))
+    assert (decision.law, decision.mode, decision.program) == (Law.BRAKE, Mode.RUN, ProgramState.RUNNING)
+    assert bench.events[-1].values["action"] == "stop"
+    bench.run(49)
+    assert bench.last.law is Law.BRAKE
+    bench.step()
+    assert bench.last.law is Law.FOLLOW
+    assert isinstance(bench.last.move, JointMove)
+    assert bench.last.step == 2
+
+
+@pytest.mark.parametrize("then", ["retract", "contact_pose", "reverse", "turn"])
+def test_the_reaction_is_a_move_of_its_own(then: str) -> None:
+    bench, told = running(until(then), NEXT)
+    assert bench.last.move is not None
+    number = bench.last.move.id
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    told.at = POSE
+    bench.run(50)
+    move = bench.last.move
+    assert bench.last.step == 1
+    if then in ("contact_pose", "reverse"):
+        assert isinstance(move, JointMove)
+        assert move.q == (POSE.q if then == "contact_pose" else BEGUN.q)
+    else:
+        assert isinstance(move, LinearMove)
+        assert move.position == pytest.approx((0.0, 0.0, 0.32 if then == "retract" else 0.3))
+        assert move.speed == REACTION_SPEED
+    assert move.id == number + 1
+    assert (bench.last.mode, bench.last.program) == (Mode.RUN, ProgramState.RUNNING)
+    done(bench)
+    assert bench.last.step == 2
+
+
+def test_a_stop_at_the_end_of_a_program_finishes_it() -> None:
+    bench, told = running(until("stop"))
+    told.coming = iter((GAINED,))
+    bench.run(60)
+    assert bench.events[-1].kind is Kind.PROGRAM_FINISHED
+    assert bench.last.mode is Mode.TEACH
+
+
+def test_a_move_that_touches_nothing_fails() -> None:
+    bench, _ = running(until("stop"), NEXT)
+    done(bench)
+    assert bench.events[-1].kind is Kind.PROGRAM_FAILED
+    assert bench.events[-1].values["reason"] == "it ended without a contact"
+
+
+def test_waiting_for_a_contact_lasts_until_the_right_one() -> None:
+    bench, told = running(WaitForContact(until=Until(change="lost")), NEXT)
+    done(bench)
+    bench.run(500)
+    assert bench.last.step == 1
+    told.coming = iter((GAINED, GAINED._replace(change=Change.LOST)))
+    bench.run(60)
+    assert [event.values["action"] for event in bench.events] == ["none", "stop"]
+    assert bench.last.step == 2
+
+
+def test_the_tool_is_switched_by_steps() -> None:
+    bench, _ = running(SwitchTool(on=True), NEXT)
+    assert bench.last.tool_on
+    assert bench.last.step == 2
+    done(bench)
+    bench, _ = running(SwitchTool(on=True), SwitchTool(on=False), NEXT)
+    assert bench.last.tool_on
+    bench.step()
+    assert not bench.last.tool_on
+    assert bench.events[-1].values == {"state": "off"}
+
+
+def test_a_stop_while_it_brakes_ends_the_program() -> None:
+    bench, told = running(until("retract"))
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    bench.step(Inputs(commands=(Command.EMERGENCY_STOP,)))
+    bench.run(100)
+    assert bench.last.mode is Mode.STOP
+    assert bench.last.law is Law.OFF
+    assert bench.last.program is ProgramState.STOPPED
+
+
+def test_a_pause_while_it_brakes_begins_the_step_again() -> None:
+    bench, told = running(until("retract"))
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    bench.step(Inputs(commands=(Command.PAUSE_PROGRAM,)))
+    bench.run(100)
+    assert bench.last.move is None
+    bench.step(Inputs(commands=(Command.RESUME_PROGRAM,)))
+    assert isinstance(bench.last.move, LinearMove)
+    assert bench.last.move.until is not None
+
+
+def test_sensors_lost_while_it_brakes_are_a_protective_stop() -> None:
+    bench, told = running(until("retract"))
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    bench.step(value=estimate(joints_valid=False))
+    assert bench.last.mode is Mode.STOP
+
+
+def test_without_a_program_a_contact_changes_nothing() -> None:
+    bench, told = running(NEXT)
+    told.coming = iter((GAINED,))
+    bench.step()
+    assert bench.last.law is Law.FOLLOW
+    assert bench.events[-1].values["action"] == "none"
+
+
+def test_a_retreat_leads_back_along_the_way_with_the_tool_as_it_was() -> None:
+    """CD-15: 0.05 m of the 0.3 m from the contact back to where the move began."""
+    begun, there = BEGUN._replace(p_BT=(0.1, -0.3, 0.5)), POSE._replace(p_BT=(0.3, -0.1, 0.4))
+    back = goal(Until(then="retract", distance=0.05), GAINED._replace(pose=there), begun, BEGUN, ABOUT_Z)
+    assert back is not None
+    assert back.position == pytest.approx((0.3 - 0.1 / 3.0, -0.1 - 0.1 / 3.0, 0.4 + 0.05 / 3.0))
+    assert back.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))
+
+
+ABOUT_Z = (0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def test_the_tools_orientation_in_the_flange_is_kept_by_a_reaction() -> None:
+    """CD-15: a tool that is mounted turned stays so."""
+    bench, told = running(until("retract"), NEXT)
+    bench.supervisor._robot.sequencer.R_FT = ABOUT_Z
+    told.coming = iter((GAINED,))
+    bench.step(value=estimate(qd=0.3))
+    bench.run(50)
+    assert isinstance(bench.last.move, LinearMove)
+    assert bench.last.move.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))

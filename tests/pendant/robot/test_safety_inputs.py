@@ -1,0 +1,125 @@
+"""The levels of the safety inputs: each change is told once, and what is open keeps a reset off (FD-1)."""
+
+import math
+
+import pytest
+
+from pendant.events.event import Event, Kind
+from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.robot.reduced import SpeedLimits
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Phase, Safety
+from tests.pendant.estimates import estimate
+from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
+
+OPEN, CLOSED = Command.SAFEGUARD_OPEN, Command.SAFEGUARD_CLOSED
+ON, OFF = Command.REDUCED_ON, Command.REDUCED_OFF
+STOP, RESET = Command.EMERGENCY_STOP, Command.RESET
+
+
+def told(bench: Bench, *commands: Command) -> list[Kind]:
+    """What a tick with these commands tells."""
+    return [event.kind for event in bench.step(Inputs(commands=commands)).events]
+
+
+def resting() -> Bench:
+    bench = Bench()
+    bench.run(60)
+    return bench
+
+
+@pytest.mark.parametrize(
+    ("ticks", "kinds"),
+    [
+        ([(CLOSED,)], []),
+        ([(OPEN,), (OPEN,)], [Kind.SAFEGUARD_STOP]),
+        ([(OPEN,), (CLOSED,), (CLOSED,)], [Kind.SAFEGUARD_STOP, Kind.SAFEGUARD_CLOSED]),
+        ([(OPEN,), (CLOSED,), (OPEN,)], [Kind.SAFEGUARD_STOP, Kind.SAFEGUARD_CLOSED, Kind.SAFEGUARD_STOP]),
+        ([(OPEN,), (CLOSED, OPEN)], [Kind.SAFEGUARD_STOP]),
+        ([(OPEN,), (CLOSED, RESET)], [Kind.SAFEGUARD_STOP, Kind.SAFEGUARD_CLOSED, Kind.RESET]),
+        ([(OPEN,), (RESET,)], [Kind.SAFEGUARD_STOP, Kind.RESET_REFUSED_SAFEGUARD]),
+        ([(STOP, OPEN), (CLOSED,), (RESET,)], [Kind.SAFEGUARD_STOP, Kind.EMERGENCY_STOP, Kind.SAFEGUARD_CLOSED, Kind.RESET]),
+        ([(OFF,), (ON,), (ON,), (OFF, ON), (OFF,), (OFF,)], [Kind.REDUCED_ON, Kind.REDUCED_OFF]),
+    ],
+)
+def test_each_change_of_a_level_is_told_once(ticks: list[tuple[Command, ...]], kinds: list[Kind]) -> None:
+    bench = resting()
+    assert [kind for commands in ticks for kind in told(bench, *commands)] == kinds
+
+
+def test_a_safeguard_that_is_closed_is_as_before_it_was_opened() -> None:
+    bench = resting()
+    before = bench.supervisor._safety.memory
+    told(bench, OPEN)
+    assert bench.supervisor._safety.memory != before
+    bench.step(Inputs(commands=(CLOSED,)))
+    assert bench.last.events == (Event(Kind.SAFEGUARD_CLOSED, bench.tick, {}),)
+    assert bench.supervisor._safety.memory == before
+    assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.SAFEGUARD_STOP), "no reset by itself"
+
+
+def test_no_reset_while_the_button_is_held_or_the_arm_moves() -> None:
+    """FD-1: a released button is asked for, however the robot was stopped, and then an arm at rest."""
+    held = frozenset({Button.FREE_DRIVE})
+    for stop in (OPEN, STOP):
+        bench = resting()
+        told(bench, stop)
+        told(bench, CLOSED)
+        bench.step(Inputs(held=held, commands=(RESET,)))
+        assert Event(Kind.RESET_REFUSED_SIGNAL, bench.tick, {}) in bench.last.events
+        assert bench.last.mode is Mode.STOP
+        bench.step(LET_GO, estimate(qd=0.4))
+        bench.step(Inputs(commands=(RESET,)))
+        values = {"joint": "base", "value": 0.4, "limit": 0.01, "time": 0.1}
+        assert bench.last.events == (Event(Kind.RESET_REFUSED_MOVING, bench.tick, values),)
+        bench.run(60)
+        assert told(bench, RESET) == [Kind.RESET]
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize(("command", "kind"), [(OPEN, Kind.SAFEGUARD_STOP), (STOP, Kind.EMERGENCY_STOP)])
+def test_a_stop_ends_free_drive(command: Command, kind: Kind, held: bool) -> None:
+    bench = Bench(activation__period=0.0)
+    bench.run(60)
+    bench.step(HOLD)
+    if not held:
+        bench.step(LET_GO)
+    assert bench.last.mode is Mode.FREE_DRIVE
+    bench.step(Inputs(commands=(command,)))
+    assert bench.last.events[0] == Event(kind, bench.tick, {"mode": Mode.FREE_DRIVE})
+    assert (bench.last.mode, bench.last.phase) == (Mode.STOP, Phase.OFF)
+
+
+@pytest.mark.parametrize(("levels", "safety"), [((), Safety.NORMAL), ((ON,), Safety.REDUCED), ((ON, OFF), Safety.NORMAL)])
+def test_a_reset_leads_to_the_safety_mode_that_the_inputs_ask_for(levels: tuple[Command, ...], safety: Safety) -> None:
+    bench = resting()
+    told(bench, STOP)
+    for level in levels:
+        told(bench, level)
+        assert bench.last.safety is Safety.EMERGENCY_STOP
+    assert told(bench, RESET) == [Kind.RESET]
+    assert (bench.last.mode, bench.last.safety) == (Mode.TEACH, safety)
+
+
+def test_what_is_too_fast_for_reduced_is_stopped_once() -> None:
+    """FD-1: 0.5 s of grace are 250 ticks; what goes on in STOP is the stop's to brake."""
+    bench, fast = resting(), estimate(v_tcp=0.4)
+    bench.step(Inputs(commands=(ON,)))
+    assert bench.last.speed_limits == SpeedLimits(0.25, 0.25, 1.0)
+    bench.events.clear()
+    assert bench.run(249, NOTHING, fast).mode is Mode.TEACH
+    bench.run(20, NOTHING, fast)
+    values = {"parameter": "tcp speed", "part": "tcp", "value": 0.4, "limit": 0.25, "unit": "m/s"}
+    assert bench.events == [Event(Kind.REDUCED_EXCEEDED, 310, values)]
+    assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.PROTECTIVE_STOP)
+
+
+@pytest.mark.parametrize("value", [estimate(joints_valid=False, v_tcp=math.nan), estimate(qd=math.nan)])
+def test_where_no_joint_can_be_told_nothing_is_too_fast(value: Estimate) -> None:
+    """FD-12: what is lost is told by others."""
+    bench = resting()
+    told(bench, ON)
+    bench.run(300)
+    bench.step(NOTHING, value)
+    assert Kind.REDUCED_EXCEEDED not in [event.kind for event in bench.last.events]
+    assert bench.last.mode is Mode.TEACH

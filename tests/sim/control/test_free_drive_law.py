@@ -1,0 +1,204 @@
+"""Free-drive law: what the hand asks for, what is taken off it, and that nothing drives an arm that nobody touches."""
+
+import numpy as np
+from msgspec.structs import replace
+
+from pendant.all_settings import Settings, apply
+from pendant.tick.modes import Law, Mode, Phase
+from pendant.walls.containment import WallState
+from sim.arm.frames import joint_frames, rotation
+from sim.arm.scenario import Load, Scenario
+from sim.control.free_drive_law import APART, BRAKE, BRAKE_SPEED, COMPENSATED, DEAD_ZONE, FELT, HERE, INTENT, FreeDriveLaw
+from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.plant.touch import Pull
+from tests.sim.arms import UR5E
+from tests.sim.bench import CENTRE, Bench, push
+from tests.sim.laws import EXACT, N, decision, dynamics, estimate
+
+Q = np.array(UR5E.chain.home)
+MODEL = dynamics()
+P, R, JACOBIAN = (part.copy() for part in MODEL.update(Q))
+GRAVITY = MODEL.gravity(Q).copy()
+BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
+
+
+def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
+    module = FreeDriveLaw(UR5E, EXACT, dynamics(), np.zeros(3), np.eye(3))
+    module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
+    return module
+
+
+def asked(wrench: np.ndarray, with_friction: bool = False, gain: float = 1.0, **values: object) -> np.ndarray:
+    """Torque beyond gravity for the user's wrench."""
+    seen = estimate(**{"q": Q, "R_BF": R, "F_user": wrench, **values})
+    return law().torque(seen, decision(Law.FREE, gain=gain), JACOBIAN, AdaptiveFriction(UR5E), with_friction) - GRAVITY
+
+
+def test_without_a_hand_it_is_gravity_alone() -> None:
+    assert np.abs(asked(np.zeros(6), with_friction=True)).max() < 1e-12
+
+
+def test_the_wrench_is_amplified_through_the_jacobian_and_its_force_capped() -> None:
+    wrench = np.array([20.0, -10.0, 5.0, 0.5, 1.0, -0.3])
+    np.testing.assert_allclose(asked(wrench, gain=1.5), JACOBIAN.T @ (1.5 * wrench), atol=1e-9)
+    size = np.linalg.norm(4.0 * wrench[:3])
+    np.testing.assert_allclose(asked(4.0 * wrench), JACOBIAN.T @ (4.0 * wrench * (50.0 / size)), atol=1e-9)
+
+
+def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:
+    offset = np.array([3.0, 1.0, -2.0, 0.2, 0.1, -0.1])
+    module = law()
+    turn = rotation(2, 1.1)
+    turned = np.concatenate([turn @ offset[:3], turn @ offset[3:]])
+    seen = estimate(q=Q, R_BF=turn, F_user=turned)
+    torque = module.torque(seen, decision(Law.FREE, gain=1.0, baseline=tuple(offset)), JACOBIAN, AdaptiveFriction(UR5E), True)
+    np.testing.assert_allclose(torque, GRAVITY, atol=1e-9)
+
+
+def test_before_free_drive_is_entered_nothing_helps_the_hand() -> None:
+    seen = estimate(q=Q, R_BF=R, F_user=np.array([30.0, 0, 0, 0, 0, 0]), tau_ext=np.full(N, 50.0))
+    trying = decision(Law.FREE, phase=Phase.SEQUENCE)
+    np.testing.assert_allclose(law().torque(seen, trying, JACOBIAN, AdaptiveFriction(UR5E), True), GRAVITY, atol=1e-9)
+
+
+def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -> None:
+    wrench = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0])
+    plain = asked(wrench)
+    sliding = np.array([8.0, -9.0, 7.0, 2.0, -2.0, 2.0])
+    helped = asked(wrench, with_friction=True, friction=sliding)
+    ask = JACOBIAN.T @ wrench
+    full = np.abs(ask) > (INTENT + DEAD_ZONE) * BREAKAWAY
+    assert full.any()
+    expected = np.sign(ask) * COMPENSATED * np.maximum(np.abs(sliding), BREAKAWAY)
+    np.testing.assert_allclose((helped - plain)[full], expected[full])
+    none = np.abs(ask) < DEAD_ZONE * BREAKAWAY
+    assert np.abs((helped - plain)[none]).max(initial=0.0) < 1e-12
+
+
+def test_where_nobody_may_lead_the_arm_it_gets_no_help_with_its_friction_and_brakes() -> None:
+    """FD-19. The hand's own force is amplified on."""
+    wrench, speed = np.array([0.0, 40.0, 0.0, 0.0, 0.0, 0.0]), np.full(N, 0.2)
+    felt = JACOBIAN.T @ wrench  # by the joints, too: nothing is left that a link would feel
+    ways = np.tile(felt, (3, 1))
+    seen = estimate(q=Q, R_BF=R, F_user=wrench, friction=np.full(N, 7.0), theta_d=speed, tau_ext=felt, tau_ways=ways)
+    free = decision(Law.FREE, gain=1.0)
+    torques = [law().torque(seen, how, JACOBIAN, AdaptiveFriction(UR5E), True) for how in (free, replace(free, doubtful=True))]
+    expected = GRAVITY + JACOBIAN.T @ wrench - BRAKE * BREAKAWAY * np.tanh(speed / BRAKE_SPEED)
+    np.testing.assert_allclose(torques[1], expected)
+    assert np.abs(torques[0] - torques[1]).max() > 1.0
+
+
+def felt(torque: np.ndarray, away: float = 0.0, uncertain: float = 4.0, speed: float = 0.0) -> np.ndarray:
+    """Torque beyond gravity where the joints alone have felt `torque` for a moment, so far from the posture of entry [rad]."""
+    module, nothing = law(), np.zeros(N)
+    there = Q + np.array([0.0, 0.0, away, 0.0, 0.0, 0.0])
+    ways = np.stack([torque, nothing, nothing])
+    unsure, pace = np.full(N, uncertain), np.full(N, speed)
+    seen = estimate(q=there, R_BF=R, tau_ext=torque, tau_ways=ways, tau_ext_deviation=unsure, theta_d=pace)
+    for _ in range(60):
+        out = module.torque(seen, decision(Law.FREE, gain=1.0), JACOBIAN, AdaptiveFriction(UR5E), True)
+    return out - MODEL.gravity(there)
+
+
+def test_a_hand_on_a_link_counts_beyond_doubt_which_grows_with_the_way_from_entry() -> None:
+    """AF-7: at entry nobody touched the arm, so what the joints feel in that posture since is somebody."""
+    uncertain = 4.0
+    for away, doubt in ((0.0, HERE), (0.5 * APART, 0.5 * (1.0 + HERE)), (APART, 1.0), (2.0 * APART, 1.0)):
+        least = FELT * BREAKAWAY + doubt * uncertain
+        assert np.abs(felt(0.98 * least, away, uncertain)).max() < 1e-9, away
+        assert (felt(1.3 * least + 0.5 * BREAKAWAY, away, uncertain) > 0.8 * COMPENSATED * BREAKAWAY).all(), away
+
+
+def test_a_joint_of_which_nothing_is_asked_is_braked_unless_something_pushes_it_on() -> None:
+    least = FELT * BREAKAWAY + HERE * 4.0
+    speed = 2.0 * BRAKE_SPEED
+    full = BRAKE * BREAKAWAY * np.tanh(2.0)
+    np.testing.assert_allclose(felt(np.zeros(N), speed=speed), -full, rtol=1e-6)
+    np.testing.assert_allclose(felt(np.zeros(N), speed=-speed), full, rtol=1e-6)
+    np.testing.assert_allclose(felt(-0.5 * least, speed=speed), -full, rtol=1e-6)
+    eased = felt(0.5 * least, speed=speed)
+    assert (eased < -0.4 * full).all()
+    assert (eased > -0.7 * full).all()
+
+
+def test_who_leads_the_arm_by_its_elbow_leads_it_smoothly() -> None:
+    """AF-7: links that swing on their springs passed for a hand, and what was done for it kept the arm shaking at 30 Hz."""
+    load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
+    posture = [1.28, -0.96, 1.89, -1.99, 1.32, -2.17]
+    bench = Bench(Scenario(seed=9, posture=posture, payload_true=load, payload_configured=load))
+    bench.enter()
+    body = bench.plant.model.body("elbow").id
+    target = bench.plant.data.xpos[body].copy()
+    round_base = np.cross([0.0, 0.0, 1.0], target)
+    round_base /= np.linalg.norm(round_base)
+    speeds, forces = [], []
+    for k in range(500):
+        target += round_base * 0.1 * 0.002 * min(k / 100.0, 1.0)
+        bench.run(0.002, Pull("elbow", CENTRE, tuple(target), 300.0))
+        speeds.append(bench.plant.qd[0])
+        forces.append(np.array(bench.plant.hands.touched[0][2]) @ round_base)
+    late = np.array(speeds[300:])
+    smooth = np.convolve(late, np.ones(17) / 17.0, mode="same")[20:-20]  # over a period of that shaking
+    assert np.std(late[20:-20] - smooth) < 0.01
+    assert np.mean(forces[250:]) < 25.0
+    assert bench.mode is Mode.FREE_DRIVE
+
+
+def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None:
+    """By virtual work: the torque of a force at a point is the force's share along how each joint moves the point."""
+    force = np.array([3.0, -7.0, 5.0])
+    tcp = np.array([0.02, -0.01, 0.15, 1.0])
+
+    def points(q: np.ndarray) -> dict[str, np.ndarray]:
+        frames = joint_frames(UR5E, q)
+        return {"flange": frames[-1][:3, 3], "tcp": (frames[-1] @ tcp)[:3], "elbow": frames[UR5E.chain.elbow][:3, 3]}
+
+    seen = estimate(q=Q, R_BF=R, p_BF=P)
+    for part, place in points(Q).items():
+        state = WallState("wall", part, tuple(place.tolist()), 0.0, (1.0, 0.0, 0.0), 1.0, False, tuple(force.tolist()))
+        held = replace(decision(Law.FREE), walls=(state, replace(state, force=(0.0, 0.0, 0.0))))
+        torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True) - GRAVITY
+        for i in range(N):
+            step = np.zeros(N)
+            step[i] = 1e-6
+            moved = (points(Q + step)[part] - points(Q - step)[part]) / 2e-6
+            assert abs(torque[i] - force @ moved) < 1e-6, (part, i)
+
+
+def test_before_the_end_of_a_joints_range_its_zone_is_added() -> None:
+    zones = (0.0, -20.0, 0.0, 3.0, 0.0, 0.0)
+    seen = estimate(q=Q, R_BF=R)
+    held = replace(decision(Law.FREE), zones=zones)
+    torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True)
+    np.testing.assert_allclose(torque - GRAVITY, zones, atol=1e-9)
+
+
+def ranged(base: float) -> Bench:
+    """In free-drive with the base at this angle [rad], stretched enough that a push sideways is a large torque."""
+    settings = apply(Settings(), {"activation.period": 0.1, "free_drive.period": 30.0})
+    bench = Bench(Scenario(seed=4, posture=[base, -1.2, 1.5, -1.87, -1.57, 0.0]), settings=settings)
+    bench.enter()
+    return bench
+
+
+def test_a_push_of_50_newtons_into_the_end_of_a_range_is_held() -> None:
+    bench = ranged(5.9)
+    highest = 0.0
+    for _ in range(500):
+        sideways = bench.plant.q[0] - np.pi / 2.0
+        bench.run(0.004, push("flange", (50.0 * np.cos(sideways), 50.0 * np.sin(sideways), 0.0)))
+        highest = max(highest, float(bench.plant.q[0]))
+    assert bench.mode is Mode.FREE_DRIVE
+    assert 6.233 < highest < 2.0 * np.pi
+    bench.run(0.5)
+    assert bench.mode is Mode.FREE_DRIVE
+    assert highest - 0.1 < bench.plant.q[0], "let go, it comes out of the zone and no further than its width"
+
+
+def test_an_arm_freed_within_the_zone_stands_and_comes_out_freely() -> None:
+    bench = ranged(6.275)
+    start = bench.plant.q.copy()
+    bench.run(1.0)
+    assert np.abs(bench.plant.q - start).max() < 1e-3
+    bench.run(0.5, push("flange", (0.0, 15.0, 0.0)))
+    assert bench.plant.q[0] < 6.2

@@ -1,0 +1,114 @@
+"""Friction learned while the arm works, and what passes through the gears: against the truth of the plant."""
+
+import numpy as np
+import pytest
+
+from pendant.all_settings import Settings
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.program.steps import JointMove, Program
+from sim.arm.scenario import Scenario
+from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Push
+from sim.simulation import Simulation
+from tests.sim.arms import UR5E
+
+IDLE = Wishes(NOTHING, (), ())
+HOME = np.array(UR5E.chain.home)
+
+
+def running(wear: float, mismatch: str = "on", speed: float = 0.3) -> Simulation:
+    """A UR5e that moves to and fro by a program, its friction `wear` times what its file says."""
+    simulation = Simulation(UR5E, Scenario(seed=1003, mismatch=mismatch), Settings())
+    simulation.plant.friction.factor[:] = wear
+    steps = tuple(JointMove(q=tuple(HOME + sign * 0.35), speed=speed, acceleration=0.5) for sign in (1.0, -1.0) * 12)
+    simulation.tick(Wishes(Inputs(program=Program(steps=steps)), (), ()))
+    for _ in range(150):
+        simulation.tick(IDLE)
+    simulation.tick(Wishes(Inputs(commands=(Command.START_PROGRAM,)), (), ()))
+    return simulation
+
+
+def true_friction(simulation: Simulation) -> np.ndarray:
+    """Friction of both sides (n,), with the sign of the speed [N·m]."""
+    plant = simulation.plant
+    total = np.zeros(6)
+    for i, name in enumerate(UR5E.chain.joints):
+        inner, outer = plant.model.actuator(f"friction/theta/{name}").id, plant.model.actuator(f"friction/q/{name}").id
+        total[i] = -plant.data.actuator_force[inner] - plant.data.actuator_force[outer]
+        total[i] += plant.model.actuator_damping[outer] * plant.qd[i]
+    return total
+
+
+@pytest.mark.parametrize("wear", [0.6, 1.4])
+def test_friction_is_learned_within_seconds_and_within_its_own_uncertainty(wear: float) -> None:
+    simulation = running(wear)
+    for _ in range(3000):
+        simulation.tick(IDLE)
+    error, truth, inside = [], [], []
+    for _ in range(1500):
+        simulation.tick(IDLE)
+        friction, true = simulation.estimator.friction, true_friction(simulation)
+        moving = np.abs(simulation.plant.theta_d) > 0.05
+        error.append(np.where(moving, friction.total - true, np.nan))
+        truth.append(np.where(moving, true, np.nan))
+        inside.append(np.where(moving, np.abs(friction.total - true) <= friction.deviation, np.nan))
+    ratio = np.sqrt(np.nanmean(np.square(error), axis=0) / np.nanmean(np.square(truth), axis=0))
+    assert (ratio < 0.2).all(), ratio
+    assert np.nanmean(inside) >= 0.9
+
+
+def test_tracking_is_finer_with_the_estimate_than_without() -> None:
+    errors = []
+    for helped in (True, False):
+        simulation = running(1.2)
+        if not helped:
+            simulation.estimator.friction.at = lambda speed, tau_J: np.zeros(6)  # type: ignore[method-assign]
+        missed = []
+        for tick in range(3500):
+            simulation.tick(IDLE)
+            reference = simulation.controller.references.now
+            assert reference is not None
+            if tick >= 2000:
+                missed.append(simulation.plant.q - reference.q)
+        errors.append(np.sqrt(np.mean(np.square(missed))))
+    assert errors[0] < 0.5 * errors[1], errors
+    assert errors[0] < 0.0005, "rad, root mean square"
+
+
+def test_a_contact_is_never_learned_as_friction() -> None:
+    simulation = running(1.0, speed=0.06)
+    for _ in range(3000):
+        simulation.tick(IDLE)
+    friction, speed, load = simulation.estimator.friction, np.full(6, 0.2), np.zeros(6)
+    before = friction.at(speed, load)
+    for _ in range(2500):
+        simulation.tick(Wishes(NOTHING, (Push("wrist_1", (0.0, 0.0, 0.0), (0.0, 0.0, -50.0)),), ()))
+    assert simulation.estimator.transmission.contact
+    assert np.abs(friction.at(speed, load) / before - 1.0).max() < 0.05
+
+
+def test_nothing_is_learned_at_rest_and_friction_never_drives() -> None:
+    friction = AdaptiveFriction(UR5E)
+    before = friction.terms.copy()
+    loads, warm = np.full(6, 20.0), np.full(6, 44.0)
+    for _ in range(500):
+        friction.learn(np.full(6, 0.01), np.full(6, 30.0), loads, loads, warm, True)
+    assert np.array_equal(friction.terms, before)
+    for _ in range(5000):
+        friction.learn(np.full(6, 0.5), np.full(6, -50.0), np.zeros(6), loads, warm, True)
+    assert (friction.terms[:, :4] >= 0.0).all()
+    assert (friction.total >= 0.0).all()
+
+
+def test_the_prior_is_the_filed_curve_and_falls_with_temperature() -> None:
+    friction = AdaptiveFriction(UR5E)
+    still = np.zeros(6)
+    friction.learn(np.full(6, 0.5), still, still, still, np.full(6, 44.0), False)
+    filed = [row[1] for row in UR5E.frictions.torque]
+    assert np.allclose(friction.total, filed, rtol=0.06), "its terms follow a root of the speed to a few percent"
+    cold = friction.total.copy()
+    friction.learn(np.full(6, 0.5), still, still, still, np.full(6, 54.0), False)
+    assert np.allclose(friction.total / cold, 1.0 + 10.0 * UR5E.frictions.per_kelvin)
+    friction.learn(np.full(6, -0.5), still, still, still, np.full(6, 54.0), False)
+    assert (friction.total < 0.0).all()

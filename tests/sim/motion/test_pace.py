@@ -1,0 +1,108 @@
+"""In REDUCED a program runs slowly enough, along the same path (FD-1)."""
+
+import numpy as np
+import pytest
+
+from pendant.inputs import Command
+from pendant.program.steps import JointMove, LinearMove
+from pendant.robot.reduced import SpeedLimits
+from pendant.tick.modes import Mode, Safety
+from sim.arm.frames import quaternion_from_matrix
+from sim.motion.moves import JointTrajectory, LinearTrajectory
+from sim.motion.pace import RAMP, SHARE, Pace
+from tests.sim.arms import UR5E
+from tests.sim.bench import Bench
+from tests.sim.laws import dynamics
+
+HOME = np.array(UR5E.chain.home)
+MODEL = dynamics()
+TCP = np.array([0.0, 0.0, 0.1])
+LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.array(UR5E.limits.position))
+REDUCED = SpeedLimits(0.25, 0.25, 1.0)
+FAST = JointMove(id=1, q=tuple((np.add(HOME, [1.2, 0.2, -0.3, 0.3, 0.4, 1.5])).tolist()), speed=0.5, acceleration=0.5)
+
+
+def joint_move() -> JointTrajectory:
+    return JointTrajectory(HOME, FAST, LIMITS)
+
+
+def line() -> LinearTrajectory:
+    p, R, _ = MODEL.update(HOME)
+    place = p + R @ TCP + [0.0, 0.25, -0.1]
+    move = LinearMove(id=1, position=tuple(place.tolist()), quaternion=tuple(quaternion_from_matrix(R)), speed=1.0)
+    return LinearTrajectory(HOME, move, MODEL, TCP, np.eye(3), LIMITS)
+
+
+def speeds(before: np.ndarray, after: np.ndarray) -> tuple[float, float, float]:
+    """Of tool, elbow and fastest joint from one tick to the next, by the model's places."""
+    (p, R, elbow), (q, S, now) = MODEL.places(before), MODEL.places(after)
+    tcp = float(np.linalg.norm(q + S @ TCP - p - R @ TCP))
+    return tcp * 500.0, float(np.linalg.norm(now - elbow)) * 500.0, float(np.abs(after - before).max()) * 500.0
+
+
+@pytest.mark.parametrize("made", [joint_move, line])
+def test_a_move_keeps_below_every_limit_and_on_its_path(made: type) -> None:
+    full, motion, pace = made(), made(), Pace(MODEL, TCP)
+    path = []
+    while not full.done:
+        path.append(full.step().q)
+    pace.begin(motion, REDUCED)
+    assert pace.rate < 1.0
+    worst = np.zeros(3)
+    q, count = motion.step(pace.step(motion, REDUCED)).q, 1
+    while not motion.done:
+        now = motion.step(pace.step(motion, REDUCED)).q
+        worst = np.maximum(worst, speeds(q, now))
+        q, count = now, count + 1
+    shares = worst / REDUCED
+    assert 0.9 * SHARE < shares.max() < 1.1 * SHARE
+    np.testing.assert_allclose(q, path[-1], atol=2e-4)
+    assert count == pytest.approx(len(path) / pace.rate, abs=1.0 / pace.rate + 1.0)  # each ends within a tick
+
+
+def test_a_slow_move_is_left_alone() -> None:
+    motion = JointTrajectory(HOME, JointMove(id=1, q=tuple((HOME + 0.1).tolist()), speed=0.02, acceleration=0.1), LIMITS)
+    pace = Pace(MODEL, TCP)
+    pace.begin(motion, REDUCED)
+    assert pace.rate == 1.0
+
+
+def test_reduced_comes_and_goes_by_a_ramp_and_speeds_belong_to_the_way() -> None:
+    motion, pace = joint_move(), Pace(MODEL, TCP)
+    pace.begin(motion, None)
+    before = None
+    rates = []
+    for tick in range(500):
+        reference = motion.step(pace.step(motion, REDUCED if 200 <= tick < 350 else None))
+        rates.append(pace.rate)
+        if before is not None:
+            np.testing.assert_allclose(reference.q - before.q, (reference.qd + before.qd) / 1000.0, atol=2e-5)
+            np.testing.assert_allclose(reference.qd - before.qd, (reference.qdd + before.qdd) / 1000.0, atol=0.03)
+        before = reference
+    assert rates[199] == rates[-1] == 1.0
+    assert rates[349] < 0.6
+    assert float(np.abs(np.diff(rates)).max()) == pytest.approx(0.002 / RAMP)
+
+
+def test_a_program_in_reduced_is_not_stopped_and_is_as_fast_as_allowed() -> None:
+    bench = Bench()
+    bench.do(Command.REDUCED_ON)
+    bench.run(0.6)
+    bench.start_joint_move(np.add(HOME, [0.8, 0.0, 0.0, 0.0, 0.0, 0.0]), 0.5)
+    fastest = 0.0
+    for _ in range(700):
+        bench.tick()
+        fastest = max(fastest, bench.estimate.v_tcp)
+    assert bench.mode is Mode.RUN
+    assert 0.17 < fastest < 0.25
+
+
+def test_reduced_in_the_middle_of_a_fast_program_slows_it_down_in_time() -> None:
+    bench = Bench()
+    bench.start_joint_move(np.add(HOME, [1.5, 0.0, 0.0, 0.0, 0.0, 0.0]), 0.4)
+    bench.run(0.6)
+    assert bench.estimate.v_tcp > 0.4
+    decision = bench.do(Command.REDUCED_ON)
+    bench.run(1.2)
+    assert (bench.mode, decision.safety) == (Mode.RUN, Safety.REDUCED)
+    assert bench.estimate.v_tcp < 0.25
