@@ -66,7 +66,7 @@ class Alone:
     A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`).
     """
 
-    __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
+    __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_helped", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
 
     def __init__(self, on: Unexplained, since: Reference) -> None:
         """
@@ -81,12 +81,13 @@ class Alone:
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
         self._whole = Way(since)  # since it has been at rest
+        self._helped = 0.0  # so much of it was not doubtful [m]
         self.led = self.doubtful = False
 
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        own = (self._ticks, self._felt, self._doubted, self._at_rest, self.doubtful, self.led)
+        own = (self._ticks, self._felt, self._doubted, self._at_rest, self._helped, self.doubtful, self.led)
         return (*own, self._stretch.memory, self._whole.memory)
 
     def step(
@@ -142,18 +143,20 @@ class Alone:
             self._end_doubt()
             return None
         if not (moves or self._at_rest):
-            self._at_rest = True
+            self._at_rest, self._helped = True, 0.0
             whole.begin(estimate)
         far = False
         if self._at_rest:
             whole.work.step(estimate, *wrench)
             length = whole.length(estimate) if use_wrench else stretch.length(estimate) if moves else 0.0
             paid = by_link and whole.work.paid
-            if length > (AWAY if use_wrench else UNFELT):
-                if not paid:
-                    return whole if use_wrench else stretch
-                self._at_rest = False
+            most = max(AWAY, self._helped + HALF * AWAY) if use_wrench else UNFELT
+            if length > most and not paid:
+                return whole if use_wrench else stretch
+            self._at_rest = not (paid and length > AWAY)
             far = use_wrench and not paid and length > HALF * AWAY
+            if not far:
+                self._helped = length
             self.led = paid and whole.work.settled
         if moves:
             self.led = by_link and stretch.work.settled

@@ -328,6 +328,17 @@ def test_without_help_an_arm_has_time_to_come_to_rest() -> None:
     assert doubted >= 75
 
 
+def test_who_pays_late_or_no_more_has_half_of_the_way_without_help() -> None:
+    """Paid up to 12 mm, and no more from there on: the arm may brake for 7.5 mm from where the work was used up."""
+    bench = Bench()
+    for value in creep(120, turns=1.0, felt=1.001 * PAYS):
+        assert bench.see(value) is None
+        assert not bench.alone.doubtful
+    told = bench.until(creep(300, begins=0.012, turns=1.0))
+    assert told is not None
+    assert told["distance"] == pytest.approx(12.0 + 0.5 * 1000.0 * AWAY, abs=0.3)
+
+
 @pytest.mark.parametrize("ticks", [75, 76])
 def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> None:
     bench = Bench()
