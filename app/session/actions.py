@@ -171,13 +171,13 @@ class Hold(Effort, tag="hold", frozen=True, kw_only=True):
     cap: Annotated[float, Meta(gt=0, le=2000)] = 50.0  # [N]
 
 
-class Program(Action, tag="program", frozen=True, kw_only=True):
+class LoadProgram(Action, tag="program", frozen=True, kw_only=True):
     """The session's program is started, paused, resumed or stopped."""
 
     command: Literal["start", "pause", "resume", "stop"]
 
 
-class Settings(Action, tag="settings", frozen=True, kw_only=True):
+class ChangeSettings(Action, tag="settings", frozen=True, kw_only=True):
     """Settings are changed, by dotted name."""
 
     set: Annotated[dict[str, float | bool | str], Meta(min_length=1)]
@@ -189,7 +189,7 @@ class SelectTool(Action, tag="select_tool", frozen=True, kw_only=True):
     tool: str
 
 
-class Payload(Action, tag="payload", frozen=True, kw_only=True):
+class SetPayload(Action, tag="payload", frozen=True, kw_only=True):
     """The payload that the controller is to believe in, beyond the tool, is entered on the pendant."""
 
     load: Load
@@ -235,10 +235,10 @@ AnyAction = (
     | Bump
     | Lean
     | Hold
-    | Program
-    | Settings
+    | LoadProgram
+    | ChangeSettings
     | SelectTool
-    | Payload
+    | SetPayload
     | Axes
     | Laboratory
 )

@@ -1,9 +1,9 @@
 """Rows of the event table: activation and entry of free-drive (FD-7 to FD-12), and pushes (FD-6a)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, denied, info, protected, refused
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, denied, info, protected, refused
 
-ENTRY: dict[Kind, Row] = {
+ENTRY: dict[Kind, EventRow] = {
     # Activation and entry (FD-7, FD-8a, FD-12)
     Kind.ACTIVATION_STARTED: info(
         "Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)
@@ -36,7 +36,7 @@ ENTRY: dict[Kind, Row] = {
     Kind.PUSHED: info(
         "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
     ),
-    Kind.ENTERED: Row(
+    Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),
     Kind.REFUSED_MODE: refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
@@ -59,7 +59,7 @@ ENTRY: dict[Kind, Row] = {
         "None of {age:.1f} s ago to compare with. Leave the arm untouched for so long, then try again.",
         ("age",),
     ),
-    Kind.SEQUENCE_STARTED: Row(
+    Kind.SEQUENCE_STARTED: EventRow(
         Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
     ),
     Kind.ENTRY_PREVENTED: denied(
@@ -95,7 +95,7 @@ ENTRY: dict[Kind, Row] = {
     Kind.COMPENSATING: info(
         "Free-drive is refused: the arm is balanced", "Hands off. When it stands, within {period:.1f} s, it is held.", ("period",)
     ),
-    Kind.COMPENSATED: Row(
+    Kind.COMPENSATED: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "The arm is balanced, and held",
@@ -107,21 +107,21 @@ ENTRY: dict[Kind, Row] = {
         "It moved by {moved:.1f} mm within {time:.1f} s. Check the payload.",
         ("moved", "time"),
     ),
-    Kind.LOAD_FOUND: Row(
+    Kind.LOAD_FOUND: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "What the arm bears beyond its payload",
         "{mass:+.2f} kg at the flange, or a steady {force:.0f} N push {way}.",
         ("mass", "force", "way"),
     ),
-    Kind.RESIDUAL_GONE: Row(
+    Kind.RESIDUAL_GONE: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "It was a push: the force is gone",
         "{force:.0f} N at the refusal, {left:.0f} N now. Hands off while the arm is checked.",
         ("force", "left"),
     ),
-    Kind.RESIDUAL_STAYED: Row(
+    Kind.RESIDUAL_STAYED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The force has stayed: check the payload",
@@ -132,7 +132,7 @@ ENTRY: dict[Kind, Row] = {
             "{force:.0f} N, as of {mass:+.1f} kg or of the sensor's zero. Hands off? Zero it, or correct the payload.",
         ),
     ),
-    Kind.NOT_YET: Row(
+    Kind.NOT_YET: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Free-drive not yet",

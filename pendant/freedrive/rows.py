@@ -1,9 +1,9 @@
 """Rows of the event table: free-drive while it lasts, and its leaving (FD-8a, FD-12 to FD-23)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, info, left, refused, stopped
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, info, left, refused, stopped
 
-FREE_DRIVE: dict[Kind, Row] = {
+FREE_DRIVE: dict[Kind, EventRow] = {
     # While it lasts (FD-13, FD-15, FD-23)
     Kind.MANIPULATION: info(
         "The arm is guided",
@@ -13,41 +13,41 @@ FREE_DRIVE: dict[Kind, Row] = {
     Kind.WAYPOINT: info("Waypoint registered", "In free-drive this counts as guiding the arm."),
     Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.PERIOD_ANEW: info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
-    Kind.WALL_REACHED: Row(
+    Kind.WALL_REACHED: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "{part} held at {wall}",
         "{distance:.1f} mm out. Push it back, {way} of the base.",
         WALL,
     ),
-    Kind.SINGULARITY: Row(
+    Kind.SINGULARITY: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Singularity: {status}",
         "Value {value:.3f} m, near below {limit:.3f} m. Locked axes: turn back, or free them.",
         ("status", "value", "limit"),
     ),
-    Kind.WRENCH_LOST: Row(
+    Kind.WRENCH_LOST: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Flange force sensor not valid",
         "The arm is heavier to move: no help from the force sensor.",
     ),
-    Kind.SENSOR_STEPPED: Row(
+    Kind.SENSOR_STEPPED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor stepped",
         "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
         ("force",),
     ),
-    Kind.SENSOR_DRIFTED: Row(
+    Kind.SENSOR_DRIFTED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor drifts",
         "Gone by {force:.1f} N, {torque:.1f} N·m while nobody moved the arm: no help from it any more. Leave, and check it.",
         ("force", "torque"),
     ),
-    Kind.HOLD_SILENT: Row(
+    Kind.HOLD_SILENT: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Button counts as released",
@@ -91,8 +91,8 @@ FREE_DRIVE: dict[Kind, Row] = {
         "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
     ),
     Kind.STOPPED_WALL: stopped("Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL),
-    Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
-    Kind.SENSORS_LOST: Row(
+    Kind.DEACTIVATED: EventRow(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
+    Kind.SENSORS_LOST: EventRow(
         Effect.LEAVE_TO_STOP,
         Severity.STOP,
         "Stopped: joint sensors not valid",
@@ -111,7 +111,7 @@ FREE_DRIVE: dict[Kind, Row] = {
         ("grip",),
         Severity.WARNING,
     ),
-    Kind.RUN_ENABLING: Row(
+    Kind.RUN_ENABLING: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Program stopped: enabling device {grip}",

@@ -13,8 +13,8 @@ from pendant.events.event import Kind, Values
 from pendant.guided.hidden_drop import LEAST, HiddenDrop
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.unintended_motion import Alone
-from pendant.guided.user_force import Hand
-from pendant.limits.parameters import Monitor, Reference, View, reference
+from pendant.guided.user_force import UserForce
+from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
 from pendant.tick.estimate import GRAVITY, Estimate
@@ -60,7 +60,7 @@ class Ending(NamedTuple):
     values: Values
 
 
-class Operation:
+class EndingWatch:
     """Watches one free-drive, from entry to leaving.
 
     Attributes:
@@ -104,7 +104,7 @@ class Operation:
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
-        self._since: Reference = reference(estimate, None)
+        self._since: EntryValues = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
         self._alone = Alone(self._on, self._since)
@@ -141,7 +141,9 @@ class Operation:
         )
         return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool, slack: Slack = SURE) -> Ending | None:
+    def step(
+        self, estimate: Estimate, hand: UserForce, baseline: Wrench | None, driven: bool, slack: Slack = SURE
+    ) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
@@ -166,7 +168,7 @@ class Operation:
             soft.step(estimate)
         self.damping = soft.damping
         parts = None if baseline is None else Split(0.0, 0.0, norm(hand.change), 0.0)
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
+        beyond = self._monitor.step(Observed(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
@@ -175,7 +177,7 @@ class Operation:
         values = self._alone.step(estimate, hand, baseline is not None, driven, slack, torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
-    def _lost(self, estimate: Estimate, hand: Hand, baseline: Wrench) -> Ending | None:
+    def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench) -> Ending | None:
         """A payload-like step."""
         mass = estimate.load_mass
         weight = mass * GRAVITY

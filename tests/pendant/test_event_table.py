@@ -6,7 +6,7 @@ import pytest
 
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind, Values
-from pendant.events.event_row import LEAVING, Clears, Effect, Row, Severity
+from pendant.events.event_row import LEAVING, Clears, Effect, EventRow, Severity
 
 EXAMPLE: Values = {
     **dict.fromkeys(
@@ -184,11 +184,11 @@ LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az",
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 
-def texts(row: Row) -> tuple[str, ...]:
+def texts(row: EventRow) -> tuple[str, ...]:
     return (row.headline, row.guidance, *(row.variant[1:] if row.variant else ()))
 
 
-def fields(row: Row) -> set[str]:
+def fields(row: EventRow) -> set[str]:
     return {name for text in texts(row) for _, name, _, _ in string.Formatter().parse(text) if name}
 
 
