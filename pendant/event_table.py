@@ -1,4 +1,4 @@
-"""The one event table: effect on the mode, severity, texts, what clears it, who may override. Interfaces render from it."""
+"""The one event table: effect on the mode, severity, texts, what clears it. Interfaces render from it."""
 
 from pendant.events.event import Event, Kind
 from pendant.events.event_row import EventRow

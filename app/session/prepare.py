@@ -23,7 +23,7 @@ from pendant.walls.containment import PARTS, TETHER
 from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import AnyObject, Scenario, ToolModel, table
-from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature
+from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -182,7 +182,7 @@ def _check_features(features: dict[str, Literal["on", "off"]], where: str) -> No
         if match is None or not 0 <= int(match[2]) <= LAST_OF.get(match[1], -1):
             raise BadInput(where, "features", ident, "the id of a requirement, such as FD-9")
         if ident not in FEATURES:
-            raise _planned(where, f"features.{ident}", ident)
+            raise BadInput(where, f"features.{ident}", ABSENT, f"has no switch; these have: {', '.join(FEATURES)}")
 
 
 def _applied(settings: Settings, changes: dict[str, float | bool | str], where: str, field: str) -> Settings:
@@ -223,8 +223,6 @@ def _check_session(session: Session, prepared: Prepared, where: str) -> None:
 
 
 def _check_action(action: Action, field: str, session: Session, prepared: Prepared, parts: list[str], where: str) -> None:
-    if (ident := action.planned()) is not None:
-        raise _planned(where, field, ident)
     if action.at is not None and action.at >= session.duration:
         raise BadInput(where, f"{field}.at", action.at, f"below the duration, {session.duration:g} s")
     if isinstance(action, Effort):
@@ -240,15 +238,18 @@ def _check_action(action: Action, field: str, session: Session, prepared: Prepar
     elif isinstance(action, LoadProgram) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
     elif isinstance(action, Laboratory):
-        change = action.change
-        if isinstance(change, AttachPayload):
-            check_load(change.load, prepared.arm, where, f"{field}.change.load")
-        elif isinstance(change, SensorFault):
-            _check_channel(change, prepared.arm, where, f"{field}.change.channel")
-        elif isinstance(change, MoveObject):
-            _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.change.name")
-        elif isinstance(change, FrictionChange | Temperature) and change.joint is not None:
-            _one_of(change.joint, prepared.arm.chain.joints, where, f"{field}.change.joint")
+        _check_change(action.change, f"{field}.change", prepared, where)
+
+
+def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
+    if isinstance(change, AttachPayload):
+        check_load(change.load, prepared.arm, where, f"{field}.load")
+    elif isinstance(change, SensorFault):
+        _check_channel(change, prepared.arm, where, f"{field}.channel")
+    elif isinstance(change, MoveObject):
+        _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.name")
+    elif isinstance(change, FrictionChange | Temperature) and change.joint is not None:
+        _one_of(change.joint, prepared.arm.chain.joints, where, f"{field}.joint")
 
 
 def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> None:
@@ -258,8 +259,6 @@ def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> Non
 
 
 def _check_expectation(expectation: Expectation, field: str, session: Session, parts: list[str], where: str) -> None:
-    if (ident := expectation.planned()) is not None:
-        raise _planned(where, field, ident)
     for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
         moment = getattr(expectation, name, None)
         if expectation.after is None and moment is not None and moment > session.duration:
@@ -273,7 +272,3 @@ def _check_expectation(expectation: Expectation, field: str, session: Session, p
 def _one_of(value: str, allowed: list[str], where: str, field: str) -> None:
     if value not in allowed:
         raise BadInput(where, field, value, f"one of {', '.join(allowed)}" if allowed else "there is none in this session")
-
-
-def _planned(where: str, field: str, ident: str) -> BadInput:
-    return BadInput(where, field, ABSENT, f"{ident}: not available yet (planned)")

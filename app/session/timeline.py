@@ -167,7 +167,7 @@ class Timeline:
             case Laboratory():
                 now.changes.append(action.change)
             case _:
-                raise AssertionError(f"{type(action).__name__} is planned, and app.session.prepare.prepare refuses it")
+                raise AssertionError(f"{type(action).__name__} has no case here")
 
     def _let_go(self, button: Button, now: _Tick) -> None:
         self._held.discard(button)

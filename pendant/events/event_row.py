@@ -1,4 +1,4 @@
-"""A row of the event table: effect on the mode, severity, texts, what clears it, who may override."""
+"""A row of the event table: effect on the mode, severity, texts, and what clears it."""
 
 from enum import IntEnum, StrEnum
 from typing import NamedTuple
@@ -50,7 +50,6 @@ class EventRow(NamedTuple):
     guidance: str
     keys: tuple[str, ...] = ()  # the values that the event carries
     clears: Clears = Clears.NEXT
-    override: str = "nobody"  # who may override it
     cool_down: bool = False  # starts the cool-down (FD-12c)
     variant: tuple[str, str] | None = None  # a value of the event, and the guidance instead of the other where it is true
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
