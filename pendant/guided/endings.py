@@ -154,7 +154,8 @@ class EndingWatch:
             slack: what may be the sensor's drift.
         """
         if self._on.payload and baseline is not None:
-            lost = self._lost(estimate, hand, baseline)
+            # What may be the sensor's drift is no payload.
+            lost = self._lost(estimate, hand, baseline, LEAST + slack.force)
             if lost is not None:
                 return lost
         else:
@@ -177,8 +178,8 @@ class EndingWatch:
         values = self._alone.step(estimate, hand, baseline is not None, driven, slack, torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
-    def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench) -> Ending | None:
-        """A payload-like step."""
+    def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench, least: float) -> Ending | None:
+        """A payload-like step, of at least so much force [N]."""
         mass = estimate.load_mass
         weight = mass * GRAVITY
         if weight < LEAST:
@@ -201,13 +202,13 @@ class EndingWatch:
         if not self._stepped:
             # Of the force alone: a hand's, which stays, becomes another share of what a swinging load needs.
             jump = share - (bx * nx + by * ny + bz * nz) / max(square, 1e-9)
-            began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
+            began = abs(share) * weight >= least and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
             began = began and abs(share) >= STAYS * abs(jump) and (calm or abs(share) >= MUCH)
             began = began and hand.stands_out((mx - bx, my - by, mz - bz))
             self._stepped = int(began and self._like(share, across, square))
         elif self._stepped == 1:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._level = share
-            self._stepped = 2 if self._like(share, across, square) and abs(share) * weight >= LEAST else 0
+            self._stepped = 2 if self._like(share, across, square) and abs(share) * weight >= least else 0
         elif self._like(share, across, square) and STAYS <= share / self._level <= RISES:
             self._stepped += 1
         else:
