@@ -18,7 +18,6 @@ from app.files.library import load_arm
 from app.session import actions
 from app.session.session_file import Session
 from app.web.scene import surfaces
-from docs import modules
 from pendant.contact import contact_rules
 from pendant.contact import settings as contact_settings
 from pendant.contact.history import History
@@ -29,18 +28,19 @@ from pendant.tick.source_signal import Signal
 from pendant.walls import shapes, solids
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
+from tools import modules
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
 RECIPES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
 BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+NAMED = re.compile(r"(app|sim|pendant|assets|docs|tests|tools|benchmarks|examples)/[\w./-]*")
 SPAN = re.compile(r"`([^`\n]+)`")
 
 
 def named(page: Path) -> list[str]:
     """The files and folders of the repository that a page names; those of the user have no folder."""
-    spans = SPAN.findall(BLOCK.sub("", page.read_text()))
-    return [each for each in spans if re.fullmatch(r"(app|sim|pendant|assets|docs|tests|benchmarks|examples)/[\w./-]*", each)]
+    return [each for each in SPAN.findall(BLOCK.sub("", page.read_text())) if NAMED.fullmatch(each)]
 
 
 def blocks(name: str, kind: str = "python") -> list[str]:
@@ -167,7 +167,7 @@ def test_the_action_of_the_example_shakes() -> None:
 
 
 def test_the_list_of_modules_is_up_to_date() -> None:
-    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m docs.modules"
+    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m tools.modules"
 
 
 def test_a_module_that_says_nothing_of_itself_is_named(tmp_path: Path) -> None:
