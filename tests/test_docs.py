@@ -95,6 +95,22 @@ def test_what_a_recipe_names_in_the_code_is_in_its_files(page: Path) -> None:
     assert [name for name in names if name not in code and name not in example] == []
 
 
+def test_the_glossary_has_each_term_once_in_order_with_a_known_source_and_a_name_in_the_code() -> None:
+    lines = [line for line in (ROOT / "docs/reference/glossary.md").read_text().splitlines() if line.startswith("| ")]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    known = {source for row in rows if len(row) == 2 for source in row[0].split(", ")}
+    terms = [row for row in rows if len(row) == 4][1:]
+    assert len(terms) >= 45
+    assert [row[0] for row in terms] == sorted({row[0] for row in terms}, key=str.lower)
+    code = "".join(path.read_text() for top in ("pendant", "sim", "app") for path in (ROOT / top).rglob("*.py"))
+    words = set(re.findall(r"\w+", code))
+    for term, _, source, name in terms:
+        assert set(source.split(", ")) <= known, term
+        names = SPAN.findall(name)
+        assert names or "conventions" in name, term
+        assert {part for each in names for part in each.split(".")} <= words, term
+
+
 def test_the_parameter_of_the_example_is_read() -> None:
     reader, row, cell = blocks("monitored-parameter")
     names = within(parameters, reader)
