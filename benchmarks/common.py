@@ -119,7 +119,7 @@ class Report:
 
         Of no case there is no share, and its bar is neither held nor missed.
         """
-        self.row(what, hits / n if n else NO_CASE, "", at_most, at_least, n)
+        self.row(what, float(hits / n) if n else NO_CASE, "", at_most, at_least, n)
         if n and (at_most is None) != (at_least is None):
             self.rows[-1]["bound"] = bound(hits, n, upper=at_most is not None)
 

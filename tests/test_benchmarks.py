@@ -3,6 +3,7 @@
 import importlib
 import json
 import math
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,12 @@ def test_a_bench_says_what_it_measures_and_has_a_measure(name: str) -> None:
     assert module.__doc__
     assert callable(module.measure)
     assert (FOLDER / f"{name}.py").read_text().rstrip().endswith(f'if __name__ == "__main__":\n    main("{name}", measure)')
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.py")), ids=lambda path: path.stem)
+def test_no_row_has_a_count_in_its_name(path: Path) -> None:
+    """It would be another row at every seed base; what is counted goes into `n`."""
+    assert re.findall(r"report\.(?:row|share)\(\s*f\"[^\"]*\{(?:len\(|n\}|count\})", path.read_text()) == []
 
 
 def test_make_bench_runs_all_of_them() -> None:
@@ -166,7 +173,7 @@ def test_the_bench_of_the_tick_measures(tmp_path: Path) -> None:
     rows = {row["what"]: row["value"] for row in tried.rows}
     for scene in ("NORMAL", "RUN", "FREE_DRIVE guided"):
         assert rows[f"ur5e, {scene}: share of ticks in that mode"] == 1.0
-        assert rows[f"ur5e, {scene}: tick over bare physics, median of 9"] > 1.0
+        assert rows[f"ur5e, {scene}: tick over bare physics, median"] > 1.0
 
 
 def test_a_drag_is_followed_to_the_first_picture_of_a_tick_that_used_it() -> None:
@@ -189,4 +196,4 @@ def test_the_bench_of_the_recording_measures(tmp_path: Path) -> None:
     recording.measure(tried, ticks=50, turns=1)
     rows = {row["what"]: row["value"] for row in tried.rows}
     assert rows["its share of a tick"] > 0.0
-    assert all(rows[f"session {name} with recording, median of 1"] > 0.0 for name in recording.SESSIONS)
+    assert all(rows[f"session {name} with recording, median"] > 0.0 for name in recording.SESSIONS)
