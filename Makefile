@@ -3,7 +3,8 @@
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
-#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
+#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
+#                    their results are in out/bench, and python -m tools.results makes docs/results of them
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make clean       remove what the above made

@@ -1,0 +1,1 @@
+"""Generators of pages and pictures, and the mutation run."""
