@@ -3,7 +3,8 @@
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
-#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base
+#   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
+#                    their results are in out/bench, and python -m tools.results makes docs/results of them
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make clean       remove what the above made
@@ -95,11 +96,11 @@ wheel: $(VENV)/dev.stamp
 	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
 	@rm -rf build/wheel
 
-# All of them run, even when one misses a bar; the exit code tells.
+# All of them run, even when one misses a bar or the code changes under it; the exit code tells.
 bench bench-full: $(VENV)/dev.stamp
 	@failed=; for name in $(BENCHES); do \
 		$(BIN)/python -m benchmarks.$$name --seed $(SEED) $(if $(filter bench-full,$@),--full) || failed="$$failed $$name"; \
-	done; [ -z "$$failed" ] || { echo "missed a bar:$$failed" >&2; exit 1; }
+	done; [ -z "$$failed" ] || { echo "missed a bar, or gave no result:$$failed" >&2; exit 1; }
 
 # By itself, and with the machine to itself: it measures memory and pace.
 soak soak-quick: $(VENV)/dev.stamp

@@ -1,8 +1,10 @@
-"""What all benches share: sizes, seeds, the settings they ran with, a table, a JSON file, exit code."""
+"""What all benches share: sizes, seeds, the code and the settings they ran with, a table, a JSON file, exit code."""
 
 import argparse
+import hashlib
 import json
 import multiprocessing
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -12,14 +14,64 @@ from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.table import Table
+from scipy.special import betaincinv
 
 from pendant.all_settings import Settings, digest
 
 T = TypeVar("T")
 R = TypeVar("R")
 
+ROOT = Path(__file__).parent.parent
+CODE = ("app", "assets", "benchmarks", "pendant", "sim")
+"""Folders that a figure depends on."""
+
+CONFIDENCE = 0.95
+"""Of the bound of a share, one-sided."""
+
+NO_CASE = "no case"
+"""The value of a share of nothing."""
+
 BASES = (1000, 2000, 3000)
 """Seed bases that figures are reported at; tuning uses 0 to 9."""
+
+
+def code_digest(root: Path = ROOT) -> str:
+    """12 hex digits over names and bytes of all files of `CODE`; not of what Python or an editor leaves there."""
+    files = [path for folder in CODE for path in (root / folder).rglob("*") if path.is_file()]
+    found = hashlib.sha256()
+    for name in sorted(path.relative_to(root).as_posix() for path in files):
+        if not any(part.startswith((".", "__pycache__")) for part in name.split("/")):
+            content = (root / name).read_bytes()
+            found.update(f"{name}\0{len(content)}\0".encode() + content)
+    return found.hexdigest()[:12]
+
+
+def commit(root: Path = ROOT) -> str:
+    """The commit, with a `+` where files of `CODE` are not as they are in it; "unknown" without git."""
+    try:
+        name = _git(root, "rev-parse", "--short", "HEAD")
+        return name + "+" * bool(_git(root, "status", "--porcelain", "--", *CODE))
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def _git(root: Path, *arguments: str) -> str:
+    # Given the folder, git does not take the repository that an unpacked archive happens to lie in.
+    command = ["git", "--git-dir", str(root / ".git"), "--work-tree", str(root), *arguments]
+    return subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def bound(hits: int, n: int, upper: bool) -> float:
+    """One-sided Clopper-Pearson bound of a share at `CONFIDENCE`.
+
+    Args:
+        hits: cases that count.
+        n: all cases.
+        upper: the share is at most this, or else at least.
+    """
+    if upper:
+        return 1.0 if hits >= n else float(betaincinv(hits + 1, n - hits, CONFIDENCE))
+    return 0.0 if hits <= 0 else float(betaincinv(hits, n - hits + 1, 1.0 - CONFIDENCE))
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,17 +85,25 @@ class Options:
 
 @dataclass(slots=True)
 class Report:
-    """Rows of one bench: what, measured, bar, held or not. A row without a bar is information."""
+    """Rows of one bench: what, of how many cases, measured, bar, held or not. A row without a bar is information."""
 
     name: str
     options: Options
     rows: list[dict[str, Any]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    digest: str = field(default_factory=code_digest)
+    commit: str = field(default_factory=commit)
 
     def row(
-        self, what: str, value: float | str, unit: str = "", at_most: float | None = None, at_least: float | None = None
+        self,
+        what: str,
+        value: float | str,
+        unit: str = "",
+        at_most: float | None = None,
+        at_least: float | None = None,
+        n: int | None = None,
     ) -> None:
-        """Add a row."""
+        """Add a row; `what` is the same at every seed base, so how many cases there were goes into `n`."""
         held: bool | None = None
         if isinstance(value, float | int):
             if at_most is not None:
@@ -51,26 +111,47 @@ class Report:
             if at_least is not None:
                 held = (held is not False) and value >= at_least
         bar = " ".join(f"{sign} {limit:g}" for sign, limit in ((">=", at_least), ("<=", at_most)) if limit is not None)
-        self.rows.append({"what": what, "value": value, "unit": unit, "bar": bar, "held": held})
+        limits = {"at_most": at_most, "at_least": at_least, "bar": bar}
+        self.rows.append({"what": what, "n": n, "value": value, "unit": unit, "bound": None, **limits, "held": held})
+
+    def share(self, what: str, hits: int, n: int, at_most: float | None = None, at_least: float | None = None) -> None:
+        """Add the row of a share: `hits` of `n` cases, with its confidence bound towards the bar.
+
+        Of no case there is no share, and its bar is neither held nor missed.
+        """
+        self.row(what, float(hits / n) if n else NO_CASE, "", at_most, at_least, n)
+        if n and (at_most is None) != (at_least is None):
+            self.rows[-1]["bound"] = bound(hits, n, upper=at_most is not None)
 
     def finish(self) -> int:
-        """Print the table, write the JSON file; 1 if a bar was missed."""
+        """Print the table, write the JSON file; 1 if a bar was missed, 2 without a file if the code changed meanwhile."""
+        after = code_digest()
+        if after != self.digest:
+            sys.stderr.write(f"{self.name}: the code changed while it was measured ({self.digest}, now {after}): no result\n")
+            return 2
         size = "full" if self.options.full else "quick"
-        table = Table(title=f"{self.name} ({size}, seed base {self.options.seed}, settings {digest(Settings())})")
-        for column in ("figure", "measured", "unit", "bar", "held"):
+        document = {"bench": self.name, "size": size, "seed": self.options.seed}
+        document |= {"digest": self.digest, "commit": self.commit, "settings": digest(Settings())}
+        keys = f"seed base {self.options.seed}, code {self.digest}, commit {self.commit}, settings {document['settings']}"
+        table = Table(title=f"{self.name} ({size}, {keys})")
+        for column in ("figure", "n", "measured", "unit", f"{100.0 * CONFIDENCE:g} % bound", "bar", "held"):
             table.add_column(column)
         for row in self.rows:
-            value = f"{row['value']:.4g}" if isinstance(row["value"], float) else str(row["value"])
+            n = "" if row["n"] is None else str(row["n"])
             held = {True: "yes", False: "NO", None: ""}[row["held"]]
-            table.add_row(row["what"], value, row["unit"], row["bar"], held)
+            table.add_row(row["what"], n, shown(row["value"]), row["unit"], shown(row["bound"]), row["bar"], held)
         Console(width=140).print(table)
         for note in self.notes:
             print(note)
         self.options.out.mkdir(parents=True, exist_ok=True)
-        path = self.options.out / f"{self.name}-{size}-{self.options.seed}.json"
-        document = {"bench": self.name, "size": size, "seed": self.options.seed, "settings": digest(Settings())}
+        path = self.options.out / f"{self.name}-{size}-{self.options.seed}-{self.digest}.json"
         path.write_text(json.dumps({**document, "rows": self.rows, "notes": self.notes}, indent=1) + "\n", encoding="utf-8")
         return 1 if any(row["held"] is False for row in self.rows) else 0
+
+
+def shown(value: float | str | None) -> str:
+    """A value as a table has it."""
+    return f"{value:.4g}" if isinstance(value, float) else "" if value is None else str(value)
 
 
 def main(name: str, measure: Callable[[Report], None]) -> None:

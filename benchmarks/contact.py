@@ -72,30 +72,32 @@ def _delays(report: Report, outcomes: list[Outcome]) -> None:
             mine = [o for o in outcomes if (o.case.stiffness, o.case.speed) == (stiffness, speed)]
             where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s"
             delays = [o.delay for o in mine]
-            report.row(f"{where}: delay p50 (n = {len(mine)})", percentile(delays, 0.5), "ms")
-            report.row(f"{where}: delay p95", percentile(delays, 0.95), "ms", at_most=bar)
-            report.row(f"{where}: delay max", max(delays), "ms")
+            report.row(f"{where}: delay p50", percentile(delays, 0.5), "ms", n=len(mine))
+            report.row(f"{where}: delay p95", percentile(delays, 0.95), "ms", at_most=bar, n=len(mine))
+            report.row(f"{where}: delay max", max(delays), "ms", n=len(mine))
             missed = sum(math.isinf(value) for value in delays)
-            report.row(f"{where}: missed", missed, "", at_most=0 if bar else None)
+            report.share(f"{where}: missed", missed, len(mine), at_most=0.0 if bar else None)
             report.row(
                 f"{where}: force at detection, median",
                 float(np.nanmedian([o.force for o in mine])),
                 "N",
                 at_most=FORCE_BARS.get((stiffness, speed)),
+                n=len(mine),
             )
             for name in RULES:
                 value = percentile([o.rules[name.value] for o in mine], 0.5)
-                report.row(f"{where}: rule {name} alone, p50", value, "ms")
+                report.row(f"{where}: rule {name} alone, p50", value, "ms", n=len(mine))
             for key in ("payload", "angle", "reach"):
                 groups: dict[float | str, list[float]] = defaultdict(list)
                 for o in mine:
                     groups[o.reach if key == "reach" else getattr(o.case, key)].append(o.delay)
                 text = ", ".join(f"{value}: {percentile(group, 0.5):.1f}" for value, group in sorted(groups.items(), key=str))
-                report.row(f"{where}: p50 by {key}", text, "ms")
+                report.row(f"{where}: p50 by {key}", text, "ms", n=len(mine))
     barred = [o for o in outcomes if BARS[o.case.stiffness][o.case.speed] is not None]
-    report.row("right kind", sum(o.kind_right for o in barred) / len(barred), "", at_least=0.98)
+    report.share("right kind", sum(o.kind_right for o in barred), len(barred), at_least=0.98)
     hard = [o.pose / (1000.0 * o.case.speed * TICK) for o in outcomes if o.case.stiffness == HARD and o.case.speed >= 0.02]
-    report.row("pose at contact, hard, 20 mm/s and up: p95 in ticks of travel", percentile(hard, 0.95), "", at_most=POSE_TICKS)
+    what = "pose at contact, hard, 20 mm/s and up: p95 in ticks of travel"
+    report.row(what, percentile(hard, 0.95), "", at_most=POSE_TICKS, n=len(hard))
 
 
 def _baselines(report: Report, outcomes: list[Outcome], thresholds: dict[str, np.ndarray], seconds: float) -> None:
@@ -120,15 +122,18 @@ def _baselines(report: Report, outcomes: list[Outcome], thresholds: dict[str, np
                         best, best_name = percentile(delays, 0.5), name
                         missed = sum(math.isinf(value) for value in delays) / len(delays)
                 where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s"
-                report.row(f"{where}: {family}, best p50 ({best_name}; missed {100 * missed:.0f} %)", best, "ms")
+                report.row(f"{where}: {family}, best p50", best, "ms", n=len(mine))
+                report.notes.append(f"{where}: {best_name}, missed {100 * missed:.0f} %")
                 bar = 0.5 if family == "momentum observer" else 1.0
                 share = own / best if math.isfinite(best) else 0.0
-                report.row(f"{where}: own p50 over it", share, "", at_most=bar if seconds >= HOUR else None)
+                at_most = bar if seconds >= HOUR else None
+                report.row(f"{where}: own p50 over that of {family}", share, "", at_most=at_most, n=len(mine))
 
 
 def _silence(report: Report, runs: list[tuple[Free, list[str], dict[str, np.ndarray]]], seconds: float) -> None:
     alarms = [f"seed {case.seed}: {event}" for case, events, _ in runs for event in events]
-    report.row(f"false alarms in {len(runs) * seconds / 3600:.3f} h of free motion, all sources", len(alarms), "", at_most=0)
+    report.row("false alarms in free motion, all sources", len(alarms), "", at_most=0, n=len(runs))
+    report.notes.append(f"{len(runs) * seconds / 3600:.3f} h of free motion")
     report.notes += alarms[:20]
 
 
@@ -140,13 +145,14 @@ def _reactions(report: Report, cases: list[Approach]) -> None:
             mine = [s for s in stops if (s.case.stiffness, s.case.speed) == (stiffness, speed)]
             where = f"{stiffness:g} N/m at {1000 * speed:g} mm/s, stop"
             peak = max(s.peak for s in mine)
-            against = "within" if peak <= HAND_TRANSIENT else "beyond"
-            report.row(f"{where}: peak force, worst ({against} {HAND_TRANSIENT:g} N, hand, transient)", peak, "N")
-            report.row(f"{where}: impulse in 0.5 s, worst", max(s.impulse for s in mine), "N·s")
+            report.row(f"{where}: peak force, worst", peak, "N", n=len(mine))
+            if peak > HAND_TRANSIENT:
+                report.notes.append(f"{where}: beyond {HAND_TRANSIENT:g} N (hand, transient)")
+            report.row(f"{where}: impulse in 0.5 s, worst", max(s.impulse for s in mine), "N·s", n=len(mine))
     back = spread(react, [case._replace(react="contact_pose") for case in cases if case.stiffness == HARD])
     where = "hard contacts: back to the contact pose"
-    report.row(f"{where}, 0.5 s after the program's end, worst", max(s.early for s in back), "mm")
-    report.row(f"{where}, at rest ({REST:g} s), worst", max(s.end for s in back), "mm", at_most=0.5)
+    report.row(f"{where}, 0.5 s after the program's end, worst", max(s.early for s in back), "mm", n=len(back))
+    report.row(f"{where}, at rest ({REST:g} s), worst", max(s.end for s in back), "mm", at_most=0.5, n=len(back))
 
 
 def _links(report: Report, cases: list[Approach]) -> None:
@@ -157,10 +163,11 @@ def _links(report: Report, cases: list[Approach]) -> None:
             for speed in (0.25, 0.1):
                 mine = [r for r in results if (r[0].angle, r[0].stiffness, r[0].speed) == (part, stiffness, speed)]
                 where = f"{name}, {stiffness:g} N/m at {1000 * speed:g} mm/s"
-                report.row(f"{where}: delay p50", percentile([r[1] for r in mine], 0.5), "ms")
-                report.row(f"{where}: force at detection, median", float(np.nanmedian([r[2] for r in mine])), "N")
-                report.row(f"{where}: missed", sum(math.isinf(r[1]) for r in mine), "", at_most=0)
-    report.row("links: seen by the joints first", sum(r[3] for r in results) / len(results), "")
+                report.row(f"{where}: delay p50", percentile([r[1] for r in mine], 0.5), "ms", n=len(mine))
+                force = float(np.nanmedian([r[2] for r in mine]))
+                report.row(f"{where}: force at detection, median", force, "N", n=len(mine))
+                report.share(f"{where}: missed", sum(math.isinf(r[1]) for r in mine), len(mine), at_most=0.0)
+    report.share("links: seen by the joints first", sum(r[3] for r in results), len(results))
 
 
 if __name__ == "__main__":

@@ -76,10 +76,9 @@ def measure(report: Report, kills: int = KILLS) -> None:
             cut += not log.whole
             lost.append(done - len(log.ticks) * TICK)
             opened += opens(path)
-    report.row("processes killed while they recorded", kills)
-    report.row("logs without their end", cut, at_least=kills)
-    report.row("logs that replay opens", opened, at_least=kills)
-    report.row("simulated time that a log has lost, largest", max(0.0, *lost), "s", at_most=LOST)
+    report.share("logs without their end, of processes killed while they recorded", cut, kills, at_least=1.0)
+    report.share("logs that replay opens", opened, kills, at_least=1.0)
+    report.row("simulated time that a log has lost, largest", max(0.0, *lost), "s", at_most=LOST, n=kills)
 
 
 if __name__ == "__main__":

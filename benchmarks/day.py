@@ -218,23 +218,22 @@ def measure(report: Report) -> None:
     (simulated, *_), (rested, *_), *all_uses = spread(measure_robot, plan)
     uses = [each for some in all_uses for each in some]
     n = len(uses)
-    report.row(
-        f"{hour:.0f} s without physics and with: zero of the sensor, apart", _apart(rested.bias, simulated.bias), "N", at_most=0.0
-    )
+    report.row("without physics and with: zero of the sensor, apart", _apart(rested.bias, simulated.bias), "N", at_most=0.0)
     hot = _apart(rested.temperature, simulated.temperature)
-    report.row(f"{hour:.0f} s without physics and with: temperatures, apart", hot, "K", at_most=0.5)
+    report.row("without physics and with: temperatures, apart", hot, "K", at_most=0.5)
     same = rested.entered == simulated.entered and rested.refused == simulated.refused
-    report.row(f"{hour:.0f} s without physics and with: the use the same", float(same), "", at_least=1.0)
-    report.row(f"{n} uses: entered without a payload", sum(u.entered[0] for u in uses) / n, "", at_least=1.0)
-    report.row(f"{n} uses: entered with 2 kg as told", sum(u.entered[1] for u in uses) / n, "", at_least=1.0)
-    report.row(f"{n} uses: refused with 2 kg that nobody told of", sum(u.refused for u in uses) / n, "", at_least=1.0)
+    report.row("without physics and with: the use the same", float(same), "", at_least=1.0)
+    report.notes.append(f"without physics and with: {hour:.0f} s")
+    report.share("entered without a payload", sum(u.entered[0] for u in uses), n, at_least=1.0)
+    report.share("entered with 2 kg as told", sum(u.entered[1] for u in uses), n, at_least=1.0)
+    report.share("refused with 2 kg that nobody told of", sum(u.refused for u in uses), n, at_least=1.0)
     off = max((u.off if not math.isnan(u.off) else math.inf for u in uses), default=math.inf)
-    report.row("mass said, off what the sensor tells, largest", off, "kg", at_most=0.3)
-    report.row("changes in contact told in free motion", sum(u.contacts for u in uses), "", at_most=0.0)
+    report.row("mass said, off what the sensor tells, largest", off, "kg", at_most=0.3, n=n)
+    report.row("changes in contact told in free motion", sum(u.contacts for u in uses), "", at_most=0.0, n=n)
     odd = Counter(kind for u in uses for kind in u.odd)
-    report.row("warnings and stops that nobody could act on", sum(odd.values()), "", at_most=0.0)
-    report.row("uses before which the sensor was zeroed", sum(u.zeroed > 0 for u in uses), "")
-    report.row("zero of the sensor off by, largest of an axis", max(max(map(abs, u.bias[:3])) for u in uses), "N")
+    report.row("warnings and stops that nobody could act on", sum(odd.values()), "", at_most=0.0, n=n)
+    report.share("uses before which the sensor was zeroed", sum(u.zeroed > 0 for u in uses), n)
+    report.row("zero of the sensor off by, largest of an axis", max(max(map(abs, u.bias[:3])) for u in uses), "N", n=n)
     report.notes += [f"robot {u.robot}, hour {u.hour}: {text}" for u in uses for text in u.refusals]
     report.notes += [f"robot {u.robot}, hour {u.hour}: {', '.join(u.odd)}" for u in uses if u.odd]
 

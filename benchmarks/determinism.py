@@ -48,8 +48,8 @@ def measure(report: Report) -> None:
         ("again in real time", names if report.options.full else list(REALTIME), True),
     ):
         wrong, size = differing(chosen, realtime)
-        report.row(f"{len(chosen)} bundled sessions {what}: different events", len(wrong), "sessions", at_most=0)
-        report.row(f"{len(chosen)} bundled sessions {what}: events compared", size / 1000, "kB")
+        report.row(f"bundled sessions {what}: different events", len(wrong), "sessions", at_most=0, n=len(chosen))
+        report.row(f"bundled sessions {what}: events compared", size / 1000, "kB", n=len(chosen))
         report.notes += [f"{what}: different events of {name}" for name in wrong]
 
 

@@ -91,10 +91,9 @@ def measure(report: Report) -> None:
     results = [result for result in spread(measure_fault, faults) if result.entered]
     for kind in ("ramp", "step", "outage"):
         some = [result for result in results if result.fault.kind == kind]
-        report.row(f"{len(some)} of {kind}: way of the flange, largest", max(r.way for r in some), "mm", at_most=30.0)
+        report.row(f"{kind}: way of the flange, largest", max(r.way for r in some), "mm", at_most=30.0, n=len(some))
     far = [result for result in results if result.way > MOVED]
-    share = sum(result.named for result in far) / len(far) if far else 1.0
-    report.row(f"{len(far)} that moved by more than {MOVED:g} mm: cause named", share, "", at_least=1.0)
+    report.share(f"moved by more than {MOVED:g} mm: cause named", sum(result.named for result in far), len(far), at_least=1.0)
     for r in sorted(results, key=lambda r: -r.way)[:4]:
         report.notes.append(
             f"{r.fault.kind} of {r.fault.size:.0f} N, {r.fault.case.true:.1f} kg: {r.way:.1f} mm; {', '.join(r.kinds)}"

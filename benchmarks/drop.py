@@ -137,18 +137,18 @@ def measure(report: Report) -> None:
     falls = [fall for fall in spread(measure_drop, drops) if fall.entered]
     heavy = [fall for fall in falls if fall.drop.case.true >= 2.0]
     light = [fall for fall in falls if fall.drop.case.true < 2.0]
-    report.row(f"{len(heavy)} drops of 2 kg or more: STOP after, longest", max(f.delay for f in heavy), "ms", at_most=20.0)
-    report.row(f"{len(heavy)} drops of 2 kg or more: rise beyond stopping", max(f.rise for f in heavy), "mm", at_most=20.0)
-    report.row(f"{len(light)} drops of 0.5 to 2 kg: rise beyond stopping", max(f.rise for f in light), "mm", at_most=20.0)
-    report.row(
-        f"{len(light)} drops of 0.5 to 2 kg: out of free-drive", sum(f.ended for f in light) / len(light), "", at_least=1.0
-    )
+    n = len(heavy)
+    report.row("drops of 2 kg or more: STOP after, longest", max(f.delay for f in heavy), "ms", at_most=20.0, n=n)
+    report.row("drops of 2 kg or more: rise beyond stopping", max(f.rise for f in heavy), "mm", at_most=20.0, n=n)
+    n = len(light)
+    report.row("drops of 0.5 to 2 kg: rise beyond stopping", max(f.rise for f in light), "mm", at_most=20.0, n=n)
+    report.share("drops of 0.5 to 2 kg: out of free-drive", sum(f.ended for f in light), n, at_least=1.0)
     for f in sorted(falls, key=lambda f: -f.rise)[:4]:
         how = "guided" if f.drop.guided else "at rest"
         report.notes.append(f"{f.drop.case.true:.1f} kg, {how}, {f.speed:.2f} m/s: STOP {f.delay:.0f} ms, rise {f.rise:.1f} mm")
     runs = spread(measure_hands, [case._replace(configured=case.true) for case in hands(report)])
     touches = sum(run.touches for run in runs)
-    report.row(f"{touches} grabs, snatches and let-goes: STOP", sum(run.stops for run in runs) / touches, "", at_most=0.01)
+    report.share("grabs, snatches and let-goes: STOP", sum(run.stops for run in runs), touches, at_most=0.01)
     kinds = sorted({kind for run in runs for kind in run.kinds})
     report.notes.append("hands ended free-drive by: " + (", ".join(kinds) or "nothing"))
 

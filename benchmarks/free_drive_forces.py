@@ -242,37 +242,36 @@ def measure(report: Report) -> None:
     rows = spread(measure_case, cases)
     helped, plain = [row for row, _ in rows[:count]], [row for row, _ in rows[count : 2 * count]]
     thrown = sum(number for _, number in rows[:count])
-    report.row("postures near a singularity thrown away", 100.0 * thrown / (thrown + count), "%", at_most=15.0)
+    report.share("postures near a singularity thrown away", thrown, thrown + count, at_most=0.15)
     # A right payload's acceptance has its bar in the payload bench; a posture that was refused has no forces.
-    report.row("refused at entry", 100.0 * sum(not row.entered for row in helped) / count, "%")
+    report.share("refused at entry", sum(not row.entered for row in helped), count)
     helped, plain = [row for row in helped if row.entered], [row for row in plain if row.entered]
     for name, what, unit, bar in FORCES:
         values, others = (np.concatenate([row.forces[name] for row in side]) for side in (helped, plain))
         ended = np.isnan(values)
-        report.row(f"{what}: free-drive ended meanwhile", 100.0 * float(ended.mean()), "%", at_most=0.0)
+        report.share(f"{what}: free-drive ended meanwhile", int(ended.sum()), ended.size, at_most=0.0)
         values, others = values[~ended], others[~np.isnan(others)]
         p95 = float(np.percentile(values, 95))
-        report.row(f"{what}, p95 of {values.size}", p95, unit, at_most=bar)
-        report.row(f"{what}, median", float(np.median(values)), unit)
-        report.row(f"{what}, largest", float(values.max()), unit)
-        report.row(f"{what}, p95 without compensation", float(np.percentile(others, 95)), unit)
-        report.row(f"{what}, without over with compensation", float(np.percentile(others, 95)) / p95, "times")
-    report.row("rest after letting go, worst", max(row.rest for row in helped), "s", at_most=0.3)
-    report.row("drift hands off, 10 s, worst", max(row.drift for row in helped), "mm", at_most=2.0)
-    report.row("speed while a hand holds on, RMS, worst", max(row.hum for row in helped), "rad/s", at_most=HUM)
+        report.row(f"{what}, p95", p95, unit, at_most=bar, n=values.size)
+        report.row(f"{what}, median", float(np.median(values)), unit, n=values.size)
+        report.row(f"{what}, largest", float(values.max()), unit, n=values.size)
+        report.row(f"{what}, p95 without compensation", float(np.percentile(others, 95)), unit, n=others.size)
+        report.row(f"{what}, without over with compensation", float(np.percentile(others, 95)) / p95, "times", n=values.size)
+    n = len(helped)
+    report.row("rest after letting go, worst", max(row.rest for row in helped), "s", at_most=0.3, n=n)
+    report.row("drift hands off, 10 s, worst", max(row.drift for row in helped), "mm", at_most=2.0, n=n)
+    report.row("speed while a hand holds on, RMS, worst", max(row.hum for row in helped), "rad/s", at_most=HUM, n=n)
     ended, rest, drift = np.array([row.long for row in helped]).T
-    report.row("a long free-drive: ended meanwhile", 100.0 * float(np.mean(ended > 0.0)), "%", at_most=0.0)
-    report.row("a long free-drive: rest after it, worst", float(rest.max()), "s", at_most=0.3)
-    report.row("a long free-drive: drift after it, hands off, worst", float(drift.max()), "mm", at_most=2.0)
+    report.share("a long free-drive: ended meanwhile", int(np.sum(ended > 0.0)), n, at_most=0.0)
+    report.row("a long free-drive: rest after it, worst", float(rest.max()), "s", at_most=0.3, n=n)
+    report.row("a long free-drive: drift after it, hands off, worst", float(drift.max()), "mm", at_most=2.0, n=n)
     over = [row for row, _ in rows[2 * count :] if row.entered]
-    report.row("20 % too much: fastest joint long after letting go, worst", max(row.last for row in over), "rad/s", at_most=HUM)
-    report.row(
-        "20 % too much: speed while a hand holds on, RMS, worst",
-        max(row.hum for row in over),
-        "rad/s",
-        at_most=HUM,
-    )
-    report.row("20 % too much: drift hands off, worst", max(row.drift for row in over), "mm")
+    n = len(over)
+    what = "20 % too much: fastest joint long after letting go, worst"
+    report.row(what, max(row.last for row in over), "rad/s", at_most=HUM, n=n)
+    what = "20 % too much: speed while a hand holds on, RMS, worst"
+    report.row(what, max(row.hum for row in over), "rad/s", at_most=HUM, n=n)
+    report.row("20 % too much: drift hands off, worst", max(row.drift for row in over), "mm", n=n)
 
 
 if __name__ == "__main__":

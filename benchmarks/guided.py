@@ -202,14 +202,15 @@ def measure(report: Report) -> None:
     led = [result for result in results if result.entered]
     minutes = sum(result.led for result in led)
     ends = [result for result in led if result.end]
-    report.row(f"{len(results)} free-drives, entered", len(led) / len(results), "")
-    report.row("guided", minutes, "min")
-    report.row("involuntary ends in 300 guided minutes", 300.0 * len(ends) / minutes, "", at_most=1.0)
+    report.share("free-drives, entered", len(led), len(results))
+    report.row("guided", minutes, "min", n=len(led))
+    report.row("involuntary ends in 300 guided minutes", 300.0 * len(ends) / minutes, "", at_most=1.0, n=len(led))
     for style in STYLES:
         some = [result for result in led if result.lead.style == style]
-        report.row(f"{style}: involuntary ends", sum(bool(result.end) for result in some), "")
-        report.row(f"{style}: speed of the part, mean", sum(r.way for r in some) / sum(60.0 * r.led for r in some), "m/s")
-    report.row("a wall held a led arm, in 300 minutes", 300.0 * sum(r.caught for r in led) / minutes, "")
+        report.share(f"{style}: involuntary ends", sum(bool(result.end) for result in some), len(some))
+        speed = sum(r.way for r in some) / sum(60.0 * r.led for r in some)
+        report.row(f"{style}: speed of the part, mean", speed, "m/s", n=len(some))
+    report.row("a wall held a led arm, in 300 minutes", 300.0 * sum(r.caught for r in led) / minutes, "", n=len(led))
     for r in ends:
         case = r.lead.case
         report.notes.append(

@@ -174,16 +174,18 @@ def measure(report: Report) -> None:
         results = spread(measure_case, cases)
         for arm in arms:
             mine = [result for result in results if result.case.arm == arm]
-            label = f"{arm}, {len(mine)} cases, mismatch {mismatch}"
-            report.row(f"{label}: drift in NORMAL, 10 s, worst", max(r.normal for r in mine), "mm", at_most=0.2)
-            report.row(f"{label}: free-drive entered", sum(r.entered for r in mine) / len(mine), "", at_least=1.0)
-            report.row(f"{label}: drift in FREE_DRIVE, 10 s, worst", max(r.free for r in mine), "mm", at_most=2.0)
+            label, n = f"{arm}, mismatch {mismatch}", len(mine)
+            report.row(f"{label}: drift in NORMAL, 10 s, worst", max(r.normal for r in mine), "mm", at_most=0.2, n=n)
+            report.share(f"{label}: free-drive entered", sum(r.entered for r in mine), n, at_least=1.0)
+            report.row(f"{label}: drift in FREE_DRIVE, 10 s, worst", max(r.free for r in mine), "mm", at_most=2.0, n=n)
             fast = [r for r in mine if r.stop_speed >= 0.25]
-            report.row(f"{label}: share guided to 250 mm/s", len(fast) / len(mine), "", at_least=0.9)
-            report.row(f"{label}: stop from 250 mm/s, worst", max((r.stop for r in fast), default=0.0), "mm", at_most=15.0)
-            report.row(f"{label}: hold after the stop, worst", max(r.stop_hold for r in mine), "mm", at_most=0.2)
+            report.share(f"{label}: guided to 250 mm/s", len(fast), n, at_least=0.9)
+            stopped = max((r.stop for r in fast), default=0.0)
+            report.row(f"{label}: stop from 250 mm/s, worst", stopped, "mm", at_most=15.0, n=len(fast))
+            report.row(f"{label}: hold after the stop, worst", max(r.stop_hold for r in mine), "mm", at_most=0.2, n=n)
             worst = max(mine, key=lambda r: r.push_back)
-            report.row(f"{label}: 50 N push, back to ({worst.push_back_part})", worst.push_back, "mm", at_most=0.3)
+            report.row(f"{label}: 50 N push, back to", worst.push_back, "mm", at_most=0.3, n=n)
+            report.notes.append(f"{label}: 50 N push, worst on {worst.push_back_part}")
         redrawn = sum(r.redrawn for r in results)
         report.notes.append(
             f"mismatch {mismatch}: {redrawn} postures near a singularity drawn again for {len(results)} cases; "

@@ -149,20 +149,22 @@ def measure(report: Report) -> None:
         for part in dict.fromkeys(row.part for row in held):
             mine = [row for row in held if row.part == part]
             label = f"mismatch {mismatch}: {FORCE:g} N on {part}"
-            report.row(f"{label}: stiffness, least of {len(mine)}", min(row.stiffness for row in mine), "N/m")
-            report.row(f"{label}: settling to {SETTLED:g} mm, worst", max(row.settling for row in mine), "s", at_most=RELEASED)
+            report.row(f"{label}: stiffness, least", min(row.stiffness for row in mine), "N/m", n=len(mine))
+            settling = max(row.settling for row in mine)
+            report.row(f"{label}: settling to {SETTLED:g} mm, worst", settling, "s", at_most=RELEASED, n=len(mine))
     runs = 6 if full else 2
     kinds = {"no limit": (1.0, True), "limit": (LIMITED, True), "limit, integral goes on": (LIMITED, False)}
     cases = [Case(k, seed, "on", limit, waits) for limit, waits in kinds.values() for k in range(runs)]
     found = spread(reach_limit, cases)
     rows = {name: found[k * runs : (k + 1) * runs] for k, name in enumerate(kinds)}
     limited = rows["limit"]
-    report.row("shoulder at its current limit, least share of 2 s", 100.0 * min(row.share for row in limited), "%", at_least=1.0)
+    least = 100.0 * min(row.share for row in limited)
+    report.row("shoulder at its current limit, least share of 2 s", least, "%", at_least=1.0, n=runs)
     for name, mine in rows.items():
-        report.row(f"shoulder, {name}: behind its reference, largest", max(row.lag for row in mine), "mrad")
-        report.row(f"shoulder, {name}: beyond its target, largest", max(row.beyond for row in mine), "mrad")
+        report.row(f"shoulder, {name}: behind its reference, largest", max(row.lag for row in mine), "mrad", n=runs)
+        report.row(f"shoulder, {name}: beyond its target, largest", max(row.beyond for row in mine), "mrad", n=runs)
     share = max(row.beyond / row.lag for row in limited)
-    report.row("beyond the target after a limit, of what it was behind", 100.0 * share, "%", at_most=5.0)
+    report.row("beyond the target after a limit, of what it was behind", 100.0 * share, "%", at_most=5.0, n=runs)
 
 
 if __name__ == "__main__":

@@ -252,21 +252,21 @@ def measure(report: Report) -> None:
         touches = sum(result.touches for result in results)
         inside = wrong.pop(CONE, 0)
         how = "push felt by the flange, no handshake" if what.endswith("alone") else "all sources, handshake"
-        report.row(f"{how}: {touches} touches that must not, activations", sum(wrong.values()), "", at_most=0)
+        report.share(f"{how}: touches that must not, activations", sum(wrong.values()), touches, at_most=0.0)
         report.row(f"{how}: activations by in-cone leaning", inside, "", at_most=None if what.endswith("alone") else 0)
         if wrong:
             report.notes.append(f"{how}: " + ", ".join(f"{kind} {number}" for kind, number in wrong.items()))
     results = spread(measure_arm, arms(report, "bumps in the check", 500 if full else 40, 8))
     bumps = sum(result.touches for result in results)
-    report.row(f"{bumps} bumps in the check: entered", sum(result.entered for result in results), "")
-    report.row(f"{bumps} bumps in the check: way of the flange, largest", max(r.way for r in results), "mm", at_most=10.0)
+    report.share("bumps in the check: entered", sum(result.entered for result in results), bumps)
+    report.row("bumps in the check: way of the flange, largest", max(r.way for r in results), "mm", at_most=10.0, n=bumps)
     refusals = Counter(kind for result in results for kind in result.kinds)
     report.notes.append("bumps: " + ", ".join(f"{kind} {number}" for kind, number in refusals.items()))
     results = spread(measure_arm, arms(report, "pushes", 1000 if full else 40, 8))
     pushes = sum(result.touches for result in results)
-    on_time, entered = sum(r.on_time for r in results) / pushes, sum(r.entered for r in results) / pushes
-    report.row(f"{pushes} pushes: taken within 50 ms of the period's end", on_time, "", at_least=0.995)
-    report.row(f"{pushes} pushes, then hands off: entered", entered, "", at_least=0.99)
+    on_time, entered = sum(r.on_time for r in results), sum(r.entered for r in results)
+    report.share("pushes: taken within 50 ms of the period's end", on_time, pushes, at_least=0.995)
+    report.share("pushes, then hands off: entered", entered, pushes, at_least=0.99)
     failures = Counter(kind for result in results for kind in result.kinds)
     report.notes.append("pushes refused or cut short: " + (", ".join(f"{k} {n}" for k, n in failures.items()) or "none"))
 

@@ -28,13 +28,15 @@ ASSUMED = {
 
 def friction_rows(report: Report, label: str, results: list[Result], bar: float) -> None:
     """Friction error and its uncertainty."""
+    n = len(results)
     for joint, name in enumerate(load_arm("ur5e").chain.joints):
-        report.row(f"{label}: friction error, {name}", 100.0 * relative(results, joint), "%")
-    report.row(f"{label}: friction error, all {len(results)} runs", 100.0 * relative(results), "%", at_most=bar)
+        report.row(f"{label}: friction error, {name}", 100.0 * relative(results, joint), "%", n=n)
+    report.row(f"{label}: friction error, all runs", 100.0 * relative(results), "%", at_most=bar, n=n)
     worst = max(results, key=lambda result: relative([result]))
-    report.row(f"{label}: worst run ({describe(worst.case)})", 100.0 * relative([worst]), "%", at_most=bar)
+    report.row(f"{label}: friction error, worst run", 100.0 * relative([worst]), "%", at_most=bar, n=n)
+    report.notes.append(f"{label}: friction error is worst in {describe(worst.case)}")
     inside = 100.0 * float(np.mean([result.inside for result in results]))
-    report.row(f"{label}: within its own uncertainty", inside, "% of samples", at_least=90.0)
+    report.row(f"{label}: within its own uncertainty", inside, "% of samples", at_least=90.0, n=n)
 
 
 def torque_rows(report: Report, label: str, results: list[Result]) -> None:
@@ -42,12 +44,13 @@ def torque_rows(report: Report, label: str, results: list[Result]) -> None:
     limit = np.array(load_arm("ur5e").limits.torque)
     sizes = np.sqrt(np.mean([result.torques / limit**2 for result in results], axis=(0, 2)))
     for way, size in zip((*WAYS, "fused"), sizes, strict=True):
-        report.row(f"{label}: transmission torque, {way}", 100.0 * float(size), "% of rated")
+        report.row(f"{label}: transmission torque, {way}", 100.0 * float(size), "% of rated", n=len(results))
     each = 100.0 * np.sqrt(np.mean([result.torques / limit**2 for result in results], axis=0))
     for name, of_joint in zip(load_arm("ur5e").chain.joints, each.T, strict=True):
-        report.row(f"{label}: transmission torque, {name}: {', '.join(WAYS)}, fused", listed(of_joint), "% of rated")
+        what = f"{label}: transmission torque, {name}: {', '.join(WAYS)}, fused"
+        report.row(what, listed(of_joint), "% of rated", n=len(results))
     best = float(sizes[:3].min())
-    report.row(f"{label}: fused over the best single way", float(sizes[3]) / best, "", at_most=1.0)
+    report.row(f"{label}: fused over the best single way", float(sizes[3]) / best, "", at_most=1.0, n=len(results))
 
 
 def tracking_rows(report: Report, label: str, results: list[Result]) -> None:
@@ -59,30 +62,31 @@ def tracking_rows(report: Report, label: str, results: list[Result]) -> None:
     runs = {result.case: result for result in results}
     for law, bar in (("PD + gravity", 5.0), ("fixed friction model", 2.0)):
         pairs = [(runs[case], runs[case._replace(law=law)]) for case in runs if case.law == "ours"]
+        n = len(pairs)
         rms = rms_of(np.array([other.tracking for _, other in pairs]))
-        report.row(f"{label}: tracking error RMS, {law}", rms, "mrad")
+        report.row(f"{label}: tracking error RMS, {law}", rms, "mrad", n=n)
         pooled = rms / rms_of(np.array([ours.tracking for ours, _ in pairs]))
-        report.row(f"{label}: {law} over ours, RMS, all {len(pairs)} runs", pooled, "times", at_least=bar)
+        report.row(f"{label}: {law} over ours, RMS, all runs", pooled, "times", at_least=bar, n=n)
         ours, other = min(pairs, key=lambda pair: pair[1].tracking / pair[0].tracking)
         worst = other.tracking / ours.tracking
+        what = f"{label}: {law} over ours, RMS, worst run"
         if law == "PD + gravity":
-            report.row(f"{label}: the same, worst run", worst, "times", at_least=bar)
+            report.row(what, worst, "times", at_least=bar, n=n)
         else:
-            report.row(f"{label}: the same, worst run", worst, "times")
-            report.row(f"{label}: error of that model's friction in that run", 100.0 * relative([other]), "%")
+            report.row(what, worst, "times", n=n)
+            report.row(f"{label}: error of that model's friction in that run", 100.0 * relative([other]), "%", n=n)
         peaks = max(other.peak for _, other in pairs) / max(ours.peak for ours, _ in pairs)
-        report.row(f"{label}: {law} over ours, highest peaks", peaks, "times", at_least=bar)
+        report.row(f"{label}: {law} over ours, highest peaks", peaks, "times", at_least=bar, n=n)
+    n = sum(result.case.law == "ours" for result in results)
     for joint, name in enumerate(load_arm("ur5e").chain.joints):
         mine = {law: np.array([result.missed[:, joint] for result in results if result.case.law == law]) for law in LAWS}
-        report.row(
-            f"{label}: tracking error RMS, {name}: {', '.join(LAWS)}", listed(rms_of(x[:, 0]) for x in mine.values()), "mrad"
-        )
-        report.row(
-            f"{label}: tracking error peak, {name}: {', '.join(LAWS)}", listed(x[:, 1].max() for x in mine.values()), "mrad"
-        )
+        what = f"{label}: tracking error RMS, {name}: {', '.join(LAWS)}"
+        report.row(what, listed(rms_of(x[:, 0]) for x in mine.values()), "mrad", n=n)
+        what = f"{label}: tracking error peak, {name}: {', '.join(LAWS)}"
+        report.row(what, listed(x[:, 1].max() for x in mine.values()), "mrad", n=n)
     ours = [result for result in results if result.case.law == "ours"]
-    report.row(f"{label}: tracking error RMS, ours", rms_of(np.array([r.tracking for r in ours])), "mrad")
-    report.row(f"{label}: tracking error peak, ours", max(r.peak for r in ours), "mrad")
+    report.row(f"{label}: tracking error RMS, ours", rms_of(np.array([r.tracking for r in ours])), "mrad", n=n)
+    report.row(f"{label}: tracking error peak, ours", max(r.peak for r in ours), "mrad", n=n)
 
 
 def rms_of(values: Array) -> float:
@@ -144,7 +148,8 @@ def measure(report: Report) -> None:
         results = [next(done) for _ in runs]
         friction_rows(report, f"mismatch {mismatch}", results, BARS[mismatch])
         torque_rows(report, f"mismatch {mismatch}", results)
-        report.row(f"mismatch {mismatch}: share of ticks in RUN", min(result.running for result in results), "", at_least=1.0)
+        running = min(result.running for result in results)
+        report.row(f"mismatch {mismatch}: share of ticks in RUN", running, "", at_least=1.0, n=len(results))
     for label, runs in groups.items():
         results = [next(done) for _ in runs]
         ours = [result for result in results if result.case.law == "ours"]
@@ -165,8 +170,9 @@ def step_rows(report: Report) -> None:
     for mismatch, bar in BARS.items():
         mine = [step for step in steps if step.case.mismatch == mismatch]
         after, contact = max(step.after for step in mine), max(step.contact for step in mine)
-        report.row(f"mismatch {mismatch}: friction error 15-20 s after a step of 15 K, worst", 100.0 * after, "%", at_most=bar)
-        report.row(f"mismatch {mismatch}: change by a contact, worst", 100.0 * contact, "%", at_most=5.0)
+        what = f"mismatch {mismatch}: friction error 15-20 s after a step of 15 K, worst"
+        report.row(what, 100.0 * after, "%", at_most=bar, n=len(mine))
+        report.row(f"mismatch {mismatch}: change by a contact, worst", 100.0 * contact, "%", at_most=5.0, n=len(mine))
 
 
 if __name__ == "__main__":

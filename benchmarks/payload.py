@@ -165,24 +165,25 @@ def measure(report: Report) -> None:
 def score_unguarded(report: Report, grid: str, results: list[Result]) -> None:
     """What an arm does that nobody checks and nothing holds."""
     heavy = [r.whole for r in results if abs(r.case.true - r.case.configured) >= 2.0]
-    report.row(f"{grid}, {len(heavy)} of 2 kg or more: way in the first second, median", float(np.median(heavy)), "mm")
-    report.row(f"{grid}, {len(heavy)} of 2 kg or more: way in the first second, largest", max(heavy), "mm")
+    what = f"{grid}, wrong by 2 kg or more: way in the first second"
+    report.row(f"{what}, median", float(np.median(heavy)), "mm", n=len(heavy))
+    report.row(f"{what}, largest", max(heavy), "mm", n=len(heavy))
 
 
 def score(report: Report, grid: str, results: list[Result]) -> None:
     """The bars of the grid with the checks on."""
     n = len(results)
     refused = [r for r in results if not r.entered]
-    report.row(f"{grid}, {n} cases: way until refused or entered, largest", max(r.before for r in results), "mm", at_most=10.0)
+    report.row(f"{grid}: way until refused or entered, largest", max(r.before for r in results), "mm", at_most=10.0, n=n)
     p95 = float(np.percentile([r.whole for r in refused], 95)) if refused else 0.0
-    report.row(f"{grid}, {len(refused)} refused: way, 95th percentile", p95, "mm", at_most=3.0)
-    report.row(f"{grid}: way of the flange in the whole period, largest", max(r.whole for r in results), "mm", at_most=30.0)
+    report.row(f"{grid}, refused: way, 95th percentile", p95, "mm", at_most=3.0, n=len(refused))
+    report.row(f"{grid}: way of the flange in the whole period, largest", max(r.whole for r in results), "mm", at_most=30.0, n=n)
     least, share = (1.0, 0.99) if grid == "sensor" else (2.0, 0.95)
     wrong = [r for r in results if abs(r.case.true - r.case.configured) >= least]
-    found = sum(not r.entered for r in wrong) / len(wrong)
-    report.row(f"{grid}: {len(wrong)} wrong by {least:g} kg or more, refused", found, "", at_least=share)
+    found = sum(not r.entered for r in wrong)
+    report.share(f"{grid}: wrong by {least:g} kg or more, refused", found, len(wrong), at_least=share)
     right = [r for r in results if r.case.true == r.case.configured]
-    report.row(f"{grid}: {len(right)} right payloads, accepted", sum(r.entered for r in right) / len(right), "", at_least=0.99)
+    report.share(f"{grid}: right payloads, accepted", sum(r.entered for r in right), len(right), at_least=0.99)
     unseen = [r for r in wrong if r.entered]
     for r in unseen[:5]:
         error = r.case.true - r.case.configured
@@ -193,10 +194,11 @@ def score(report: Report, grid: str, results: list[Result]) -> None:
         report.notes.append(f"{grid}: right payload refused: {r.cause}, case {r.case.number}, {r.case.mounting}")
     named = [r for r in wrong if not r.entered]
     if grid == "sensor":
-        payload = sum("payload" in r.reason and ("push" in r.reason or "let go" in r.reason) for r in named) / max(len(named), 1)
-        report.row(f"{grid}: reason names payload or push", payload, "", at_least=0.99)
+        payload = sum("payload" in r.reason and ("push" in r.reason or "let go" in r.reason) for r in named)
+        report.share(f"{grid}: reason names payload or push", payload, len(named), at_least=0.99)
         off = [abs(r.said - r.best) for r in named if not math.isnan(r.said)]
-        report.row(f"{grid}: mass said, off what the sensor tells, largest", max(off, default=math.nan), "kg", at_most=0.3)
+        largest = max(off, default=math.nan)
+        report.row(f"{grid}: mass said, off what the sensor tells, largest", largest, "kg", at_most=0.3, n=len(off))
 
 
 if __name__ == "__main__":

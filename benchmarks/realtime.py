@@ -234,22 +234,23 @@ def _measure(report: Report, loop: Loop, served: Served, ledger: Ledger, seconds
     _fill(report, window, seen)
     found = latencies(ledger.used, frames, seen["operator"]["positions"], window)
     expected = HOLD_RATE * (seconds - 0.5)
-    report.row("drag messages followed to a picture, of those due", len(found) / expected, "", at_least=0.95)
+    report.row("drag messages followed to a picture, of those due", len(found) / expected, "", at_least=0.95, n=round(expected))
     for percent, limit in ((50, None), (95, 0.06), (99, None)):
         value = 1000.0 * float(np.percentile(found, percent)) if found.size else float("nan")
-        report.row(f"drag to picture, p{percent}", value, "ms", at_most=None if limit is None else 1000.0 * limit)
+        at_most = None if limit is None else 1000.0 * limit
+        report.row(f"drag to picture, p{percent}", value, "ms", at_most=at_most, n=len(found))
     refused = ", ".join(f"{reason} {count}" for reason, count in sorted(served.guard.refused.items()))
     report.notes.append(f"{seconds:g} s measured; refused messages: {refused or 'none'}")
 
 
 def _pace(report: Report, window: Window, where: str, bars: bool) -> None:
-    factor = window.ticks * TICK / window.seconds
+    factor, n = window.ticks * TICK / window.seconds, window.lateness.size
     report.row(f"{where}real-time factor", factor, "", at_least=0.99 if bars else None, at_most=1.01 if bars else None)
     report.row(f"{where}debt dropped", 1000.0 * window.dropped, "ms")
     for percent, limit in ((50.0, None), (99.0, 3.0), (99.9, 10.0)):
         late = 1000.0 * float(np.percentile(window.lateness, percent))
-        report.row(f"{where}lateness of ticks, p{percent:g}", late, "ms", at_most=limit if bars else None)
-    report.row(f"{where}lateness of ticks, worst", 1000.0 * float(window.lateness.max()), "ms")
+        report.row(f"{where}lateness of ticks, p{percent:g}", late, "ms", at_most=limit if bars else None, n=n)
+    report.row(f"{where}lateness of ticks, worst", 1000.0 * float(window.lateness.max()), "ms", n=n)
     report.row(f"{where}CPU of the app, of one core", window.cpu / window.seconds)
 
 

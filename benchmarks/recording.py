@@ -60,13 +60,12 @@ def measure(report: Report, ticks: int = 2000, turns: int = 5) -> None:
     clocked(time.process_time, 300, 1)  # compiles and warms caches up
     bare, recorded, seen = clocked(time.process_time, ticks, turns)
     base = float(np.median(bare))
-    report.row("a tick without recording, median", 1e6 * base, "µs")
-    report.row("recording on the simulation's thread, median", 1e6 * float(np.median(seen)), "µs a tick")
-    report.row("its share of a tick", float(np.median(seen)) / base, "", at_most=SHARE)
+    report.row("a tick without recording, median", 1e6 * base, "µs", n=turns)
+    report.row("recording on the simulation's thread, median", 1e6 * float(np.median(seen)), "µs a tick", n=turns)
+    report.row("its share of a tick", float(np.median(seen)) / base, "", at_most=SHARE, n=turns)
     both = [a / b - 1.0 for a, b in zip(recorded, bare, strict=True)]
-    report.row(
-        "with packing, compressing and writing on the recorder's thread: share of a tick's processor time", float(np.median(both))
-    )
+    what = "with packing, compressing and writing on the recorder's thread: share of a tick's processor time"
+    report.row(what, float(np.median(both)), n=turns)
     for name in SESSIONS:
         session = load(find(name), Session)
         prepared = prepare(session, name)
@@ -80,8 +79,8 @@ def measure(report: Report, ticks: int = 2000, turns: int = 5) -> None:
                 speeds.append((session.duration / took, session.duration / spent))
                 size = (Path(out) / "log.mcap").stat().st_size
         speed, on_one = np.median(speeds, axis=0).tolist()  # the first run loads what is compiled
-        report.row(f"session {name} with recording, median of {turns}", speed, "x real time", at_least=SPEED)
-        report.row(f"session {name} with recording, in processor time of all threads", on_one, "x real time")
+        report.row(f"session {name} with recording, median", speed, "x real time", at_least=SPEED, n=turns)
+        report.row(f"session {name} with recording, in processor time of all threads", on_one, "x real time", n=turns)
         report.row(f"session {name}: log", size / 1e6 / session.duration, "MB a second")
     report.notes.append(f"processor time of all threads, but for speed: the wall clock; a tick is {1000 * TICK:g} ms")
 

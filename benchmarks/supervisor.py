@@ -87,8 +87,8 @@ def measure(report: Report, rounds: int = 8) -> None:
         times = [took for _ in range(rounds) for took in timed(estimates, inputs, used, within)]
         mean, late = float(np.mean(times)) / 1000.0, float(np.percentile(times, 99)) / 1000.0
         report.row(f"{name}: steps measured", len(times), at_least=rounds * 2000)
-        report.row(f"{name}: mean", mean, "µs", at_most=at_most)
-        report.row(f"{name}: p99 over the mean", late / mean, at_most=3.0)
+        report.row(f"{name}: mean", mean, "µs", at_most=at_most, n=len(times))
+        report.row(f"{name}: p99 over the mean", late / mean, at_most=3.0, n=len(times))
 
 
 if __name__ == "__main__":

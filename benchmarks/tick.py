@@ -157,8 +157,8 @@ def sessions(report: Report, runs: int) -> None:
                 begun = time.process_time()
                 run(session, prepared, simulation, Path(out))
                 speeds.append(session.duration / (time.process_time() - begun))
-        what = f"session {name}, {session.duration:g} s, median of {runs}"
-        report.row(what, float(np.median(speeds)), "x real time", at_least=SPEED)
+        what = f"session {name}, {session.duration:g} s, median"
+        report.row(what, float(np.median(speeds)), "x real time", at_least=SPEED, n=runs)
 
 
 def measure(report: Report, arms: tuple[str, ...] = ("ur5e",), ticks: int = 500, runs: int = 5) -> None:
@@ -173,11 +173,13 @@ def measure(report: Report, arms: tuple[str, ...] = ("ur5e",), ticks: int = 500,
             ratio = [each.whole / each.bare for each in blocks]
             label = f"{arm}, {name}"
             speed = [TICK / each.whole for each in blocks]
-            report.row(f"{label}: headless, median", float(np.median(speed)), "x real time", at_least=SPEED)
-            report.row(f"{label}: headless, best block", max(speed), "x real time")
-            report.row(f"{label}: tick over bare physics, median of {BLOCKS}", float(np.median(ratio)), "", at_most=RATIO)
-            report.row(f"{label}: bare physics, median", 1e6 * float(np.median([each.bare for each in blocks])), "µs a tick")
-            report.row(f"{label}: share of ticks in that mode", min(each.in_mode for each in blocks), "", at_least=1.0)
+            report.row(f"{label}: headless, median", float(np.median(speed)), "x real time", at_least=SPEED, n=BLOCKS)
+            report.row(f"{label}: headless, best block", max(speed), "x real time", n=BLOCKS)
+            report.row(f"{label}: tick over bare physics, median", float(np.median(ratio)), "", at_most=RATIO, n=BLOCKS)
+            bare = 1e6 * float(np.median([each.bare for each in blocks]))
+            report.row(f"{label}: bare physics, median", bare, "µs a tick", n=BLOCKS)
+            in_mode = min(each.in_mode for each in blocks)
+            report.row(f"{label}: share of ticks in that mode", in_mode, "", at_least=1.0, n=BLOCKS)
             costs = stages(scene, 4 * ticks)
             whole = costs.pop("whole")
             shares = ", ".join(f"{stage} {cost:.1f} ({100 * cost / whole:.0f} %)" for stage, cost in costs.items())

@@ -112,12 +112,11 @@ def measure(report: Report) -> None:
         results = [r for r in spread(measure_push, pushes(report, sensor, walls, number, steady)) if r.left != "no way"]
         label = f"walls {'on' if walls else 'off'}{', whole force all the time' if steady else ''}"
         entered = [r for r in results if r.entered]
-        report.row(f"{label}: {len(results)} pushes, entered", len(entered) / len(results), "")
-        far = sum(r.way >= 200.0 for r in entered) / len(entered)
-        report.row(f"{label}: {len(entered)} pushes, 200 mm or more in 3 s", far, "", at_least=0.99 if walls else None)
-        stayed = sum(not r.left for r in entered) / len(entered)
-        report.row(f"{label}: no involuntary leaving", stayed, "", at_least=0.99 if walls else None)
-        report.row(f"{label}: pushes in which a wall held the arm", sum(r.caught > 0 for r in entered), "")
+        n, at_least = len(entered), 0.99 if walls else None
+        report.share(f"{label}: pushes, entered", n, len(results))
+        report.share(f"{label}: pushes, 200 mm or more in 3 s", sum(r.way >= 200.0 for r in entered), n, at_least=at_least)
+        report.share(f"{label}: no involuntary leaving", sum(not r.left for r in entered), n, at_least=at_least)
+        report.share(f"{label}: pushes in which a wall held the arm", sum(r.caught > 0 for r in entered), n)
         short = sorted((r for r in entered if r.way < 200.0 or r.left), key=lambda r: r.way)
         for r in short[:6]:
             report.notes.append(

@@ -97,13 +97,13 @@ def measure(report: Report) -> None:
     held = spread(measure_press, presses(report, count, True))
     free = spread(measure_press, presses(report, count // 5, False))
     safe = [r for r in held if not r.zeroed or r.way <= 10.0]
-    refused = sum(not r.zeroed for r in held) / len(held)
-    report.row(f"{len(held)} with a hand of 5 to 30 N: refused", refused, "")
-    report.row(f"{len(held)} with a hand: refused, or no motion beyond 10 mm", len(safe) / len(held), "", at_least=0.99)
-    report.row("with a hand: way of the flange when it goes, largest", max(r.way for r in held), "mm")
+    report.share("with a hand of 5 to 30 N: refused", sum(not r.zeroed for r in held), len(held))
+    report.share("with a hand: refused, or no motion beyond 10 mm", len(safe), len(held), at_least=0.99)
+    report.row("with a hand: way of the flange when it goes, largest", max(r.way for r in held), "mm", n=len(held))
     taken = [r for r in free if r.zeroed]
-    report.row(f"{len(free)} with nobody on the arm: zeroed", len(taken) / len(free), "", at_least=0.99)
-    report.row(f"{len(taken)} zeroed: off the true zero, largest", max((r.off for r in taken), default=0.0), "N", at_most=CLOSE)
+    report.share("with nobody on the arm: zeroed", len(taken), len(free), at_least=0.99)
+    off = max((r.off for r in taken), default=0.0)
+    report.row("zeroed: off the true zero, largest", off, "N", at_most=CLOSE, n=len(taken))
     for r in [r for r in held if r.zeroed][:5]:
         report.notes.append(
             f"zeroed with {r.press.force:.1f} N at the {r.press.part}, {r.press.case.true:.1f} kg, case {r.press.case.number}: "

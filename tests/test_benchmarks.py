@@ -2,6 +2,9 @@
 
 import importlib
 import json
+import math
+import re
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +30,12 @@ def test_a_bench_says_what_it_measures_and_has_a_measure(name: str) -> None:
     assert (FOLDER / f"{name}.py").read_text().rstrip().endswith(f'if __name__ == "__main__":\n    main("{name}", measure)')
 
 
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.py")), ids=lambda path: path.stem)
+def test_no_row_has_a_count_in_its_name(path: Path) -> None:
+    """It would be another row at every seed base; what is counted goes into `n`."""
+    assert re.findall(r"report\.(?:row|share)\(\s*f\"[^\"]*\{(?:len\(|n\}|count\})", path.read_text()) == []
+
+
 def test_make_bench_runs_all_of_them() -> None:
     makefile = (FOLDER.parent / "Makefile").read_text()
     assert f"filter-out {' '.join(sorted(HELPERS))}," in makefile
@@ -49,9 +58,113 @@ def test_a_bar_is_held_or_missed(value: float, limits: dict[str, float], held: b
     tried.row("figure", value, "m", **limits)
     assert tried.rows[0]["held"] is held
     assert tried.finish() == (1 if held is False else 0)
-    written: dict[str, Any] = json.loads((tmp_path / "tried-quick-1000.json").read_text())
+    written: dict[str, Any] = json.loads((tmp_path / f"tried-quick-1000-{common.code_digest()}.json").read_text())
     assert len(written["settings"]) == 8
+    assert (written["digest"], written["commit"]) == (common.code_digest(), common.commit())
     assert [row["held"] for row in written["rows"]] == [held]
+
+
+def binomial(hits: int, n: int, share: float) -> float:
+    """Chance of at most so many hits."""
+    return sum(math.comb(n, k) * share**k * (1.0 - share) ** (n - k) for k in range(hits + 1))
+
+
+@pytest.mark.parametrize(("hits", "n"), [(0, 59), (3, 40), (39, 40), (497, 500)])
+def test_the_bound_of_a_share_is_where_the_count_becomes_unlikely(hits: int, n: int) -> None:
+    assert binomial(hits, n, common.bound(hits, n, upper=True)) == pytest.approx(0.05)
+    if hits:
+        assert 1.0 - binomial(hits - 1, n, common.bound(hits, n, upper=False)) == pytest.approx(0.05)
+
+
+def test_all_or_none_bounds_a_share_on_one_side_only() -> None:
+    assert (common.bound(0, 9, upper=False), common.bound(9, 9, upper=True)) == (0.0, 1.0)
+
+
+def test_a_share_is_bounded_towards_its_bar(tmp_path: Path) -> None:
+    tried = report(tmp_path)
+    tried.share("accepted", 99, 100, at_least=0.98)
+    tried.share("stopped", 1, 100, at_most=0.02)
+    tried.share("seen", 1, 4)
+    tried.share("named", 0, 0, at_least=1.0)
+    assert [(row["value"], row["n"], row["held"]) for row in tried.rows] == [
+        (0.99, 100, True),
+        (0.01, 100, True),
+        (0.25, 4, None),
+        ("no case", 0, None),
+    ]
+    assert [row["bound"] for row in tried.rows] == [
+        pytest.approx(0.95344, abs=1e-5),
+        pytest.approx(0.04656, abs=1e-5),
+        None,
+        None,
+    ]
+
+
+def test_the_table_says_how_many_cases_and_with_which_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tried = report(tmp_path)
+    tried.share("accepted", 59, 59, at_least=0.9)
+    tried.finish()
+    said = capsys.readouterr().out
+    assert f"code {common.code_digest()}, commit {common.commit()}" in " ".join(said.split())
+    assert [cell.strip() for cell in said.splitlines()[-2].split("│")[1:-1]] == [
+        "accepted",
+        "59",
+        "1",
+        "",
+        "0.9505",
+        ">= 0.9",
+        "yes",
+    ]
+
+
+def test_what_was_measured_while_the_code_changed_is_no_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = report(tmp_path / "out")
+    before = tried.digest
+    monkeypatch.setattr(common, "code_digest", lambda: "c0ffee000000")
+    assert tried.finish() == 2
+    assert capsys.readouterr().err == f"tried: the code changed while it was measured ({before}, now c0ffee000000): no result\n"
+    assert not (tmp_path / "out").exists()
+
+
+def code(root: Path) -> Path:
+    """A folder as the project's, with a file in each folder that a figure depends on."""
+    for folder in common.CODE:
+        (root / folder).mkdir(parents=True)
+        (root / folder / "file.py").write_text(folder)
+    return root
+
+
+@pytest.mark.parametrize("folder", common.CODE)
+def test_the_digest_is_of_names_and_bytes(folder: str, tmp_path: Path) -> None:
+    root = code(tmp_path)
+    digests = [common.code_digest(root)]
+    (root / folder / "file.py").write_text("other")
+    digests.append(common.code_digest(root))
+    (root / folder / "file.py").rename(root / folder / "name.py")
+    digests.append(common.code_digest(root))
+    (root / folder / "new.yaml").write_text("")
+    digests.append(common.code_digest(root))
+    assert len(set(digests)) == 4
+    (root / folder / "__pycache__").mkdir()
+    (root / folder / "__pycache__" / "file.pyc").write_text("compiled")
+    (root / "README.md").write_text("no code")
+    assert common.code_digest(root) == digests[-1]
+
+
+def test_the_commit_says_whether_the_code_is_as_committed(tmp_path: Path) -> None:
+    root = code(tmp_path / "project")
+    assert common.commit(root) == "unknown"
+    for command in (["init", "-q"], ["add", "."], ["-c", "user.name=x", "-c", "user.email=x@y", "commit", "-qm", "all"]):
+        subprocess.run(["git", *command], cwd=root, check=True)
+    name = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=root, check=True, capture_output=True, text=True).stdout
+    (root / "notes.txt").write_text("no code")
+    assert common.commit(root) == name.strip()
+    (root / "sim" / "new.py").write_text("")
+    assert common.commit(root) == name.strip() + "+"
+    inside = code(root / "unpacked")
+    assert common.commit(inside) == "unknown", "an archive that was unpacked in somebody's repository is not of its commit"
 
 
 def test_the_bench_of_the_tick_measures(tmp_path: Path) -> None:
@@ -60,7 +173,7 @@ def test_the_bench_of_the_tick_measures(tmp_path: Path) -> None:
     rows = {row["what"]: row["value"] for row in tried.rows}
     for scene in ("NORMAL", "RUN", "FREE_DRIVE guided"):
         assert rows[f"ur5e, {scene}: share of ticks in that mode"] == 1.0
-        assert rows[f"ur5e, {scene}: tick over bare physics, median of 9"] > 1.0
+        assert rows[f"ur5e, {scene}: tick over bare physics, median"] > 1.0
 
 
 def test_a_drag_is_followed_to_the_first_picture_of_a_tick_that_used_it() -> None:
@@ -83,4 +196,4 @@ def test_the_bench_of_the_recording_measures(tmp_path: Path) -> None:
     recording.measure(tried, ticks=50, turns=1)
     rows = {row["what"]: row["value"] for row in tried.rows}
     assert rows["its share of a tick"] > 0.0
-    assert all(rows[f"session {name} with recording, median of 1"] > 0.0 for name in recording.SESSIONS)
+    assert all(rows[f"session {name} with recording, median"] > 0.0 for name in recording.SESSIONS)

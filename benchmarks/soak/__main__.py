@@ -58,7 +58,7 @@ def soak(report: Report, minutes: float, warm: float = WARM, every: float | None
         app.stdin.close()
         reader.join()
         report.row("exit code of the app", app.wait(), at_most=0, at_least=0)
-        report.row("clients that stayed to the end", sum(user.stayed for user in users), at_least=len(users))
+        report.share("clients that stayed to the end", sum(user.stayed for user in users), len(users), at_least=1.0)
         errors.seek(0)
         log = errors.read()
     judge(report, states, log, 60.0 * warm)
@@ -91,9 +91,8 @@ def judge(report: Report, states: list[dict[str, Any]], log: str, warm: float) -
 
 def judge_first_uses(report: Report, uses: FirstUses) -> None:
     """The rows of the first uses, and what the page said where one did not go as it should."""
-    report.row("first uses", uses.begun)
-    report.row("first uses that entered free-drive", uses.entered, at_least=uses.begun)
-    report.row("first uses that then ended by their period", uses.ended)
+    report.share("first uses that entered free-drive", uses.entered, uses.begun, at_least=1.0)
+    report.share("first uses that then ended by their period", uses.ended, uses.begun)
     report.notes += uses.told
 
 
