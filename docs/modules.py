@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "modules.md"
-TOPS = ("pendant", "sim", "app", "benchmarks", "examples")
+TOPS = ("pendant", "sim", "app", "benchmarks", "examples", "tools")
 
 
 def rooms() -> list[str]:

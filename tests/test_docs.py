@@ -40,7 +40,8 @@ SPAN = re.compile(r"`([^`\n]+)`")
 def named(page: Path) -> list[str]:
     """The files and folders of the repository that a page names; those of the user have no folder."""
     spans = SPAN.findall(BLOCK.sub("", page.read_text()))
-    return [each for each in spans if re.fullmatch(r"(app|sim|pendant|assets|docs|tests|benchmarks|examples)/[\w./-]*", each)]
+    tops = "app|sim|pendant|assets|docs|tests|benchmarks|examples|tools"
+    return [each for each in spans if re.fullmatch(rf"({tops})/[\w./-]*", each)]
 
 
 def blocks(name: str, kind: str = "python") -> list[str]:

@@ -68,7 +68,7 @@ def test_the_licence_is_mit() -> None:
 
 def test_no_file_names_the_machine_it_was_made_on() -> None:
     suffixes = {".py", ".md", ".toml", ".yaml", ""}
-    folders = ["app", "sim", "pendant", "assets", "benchmarks", "docs"]
+    folders = ["app", "sim", "pendant", "assets", "benchmarks", "docs", "tools"]
     files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file() and path.suffix in suffixes]
     assert len(files) > 40
     assert [path for path in files if re.search(r"/(home|root|Users)/|/work/", path.read_text(errors="replace"))] == []
