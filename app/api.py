@@ -16,7 +16,7 @@ from app.files.checked import BadInput, convert, load
 from app.log.reader import Log
 from app.log.reader import read as read_log
 from app.runs.batch import Job, run_all, work
-from app.runs.runner import Outcome, simulate
+from app.runs.runner import RunOutcome, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session, find
 from pendant.inputs import Button, Command, Inputs
@@ -29,9 +29,9 @@ __all__ = [
     "Button",
     "Command",
     "Log",
-    "Outcome",
     "Pull",
     "Push",
+    "RunOutcome",
     "Session",
     "Simulation",
     "read",
@@ -67,7 +67,7 @@ def read(path: str | Path) -> Log:
     return read_log(Path(path))
 
 
-def run(what: Session, out: str | Path | None = None) -> Outcome:
+def run(what: Session, out: str | Path | None = None) -> RunOutcome:
     """Run a session as fast as it goes.
 
     Args:
@@ -83,7 +83,7 @@ def run(what: Session, out: str | Path | None = None) -> Outcome:
         return work(Job("session", what, Path(folder), recorded=False))
 
 
-def run_many(sessions: Iterable[Session]) -> list[Outcome]:
+def run_many(sessions: Iterable[Session]) -> list[RunOutcome]:
     """Run sessions in parallel on all cores, keeping no files; the outcomes are in the order of the sessions.
 
     In a script, call it under `if __name__ == "__main__":`, since the other processes import the script.

@@ -7,15 +7,23 @@ import msgspec
 from msgspec import Meta
 
 from pendant.contact.settings import ContactUse
-from pendant.freedrive.settings import Activation, ButtonUse, Enabling, FreeDrive, Hold, ReducedLimits, Sequence
+from pendant.freedrive.settings import (
+    ActivationSettings,
+    ButtonUse,
+    Enabling,
+    FreeDriveSettings,
+    HoldSettings,
+    ReducedLimits,
+    SequenceSettings,
+)
 from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
-from pendant.limits.settings import Axes, JointLimits, Limits, Soft, Static
-from pendant.settings.schema import Limit, Row, Section, SettingError, Value
+from pendant.limits.settings import AxisSettings, JointLimits, LimitSettings, Soft, Static
+from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
 from pendant.settings.schema import switch as _switch
-from pendant.signals.settings import Handshake, LetGo, Signals
+from pendant.signals.settings import Handshake, LetGo, SignalSettings
 from pendant.tooling.settings import ToolUse
-from pendant.walls.settings import Walls
+from pendant.walls.settings import WallSettings
 
 
 class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -42,22 +50,22 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All settings. Every field has its default; `Settings()` is what ships."""
 
-    signals: Signals = Signals()
-    activation: Activation = Activation()
+    signals: SignalSettings = SignalSettings()
+    activation: ActivationSettings = ActivationSettings()
     handshake: Handshake = Handshake()
     let_go: LetGo = LetGo()
-    sequence: Sequence = Sequence()
-    free_drive: FreeDrive = FreeDrive()
-    hold: Hold = Hold()
+    sequence: SequenceSettings = SequenceSettings()
+    free_drive: FreeDriveSettings = FreeDriveSettings()
+    hold: HoldSettings = HoldSettings()
     button: ButtonUse = ButtonUse()
     enabling: Enabling = Enabling()
     reduced: ReducedLimits = ReducedLimits()
-    limits: Limits = Limits()
+    limits: LimitSettings = LimitSettings()
     unexplained: Unexplained = Unexplained()
     soft: Soft = Soft()
-    axes: Axes = Axes()
+    axes: AxisSettings = AxisSettings()
     joint_limits: JointLimits = JointLimits()
-    walls: Walls = Walls()
+    walls: WallSettings = WallSettings()
     haptics: HapticUse = HapticUse()
     static: Static = Static()
     tools: ToolUse = ToolUse()
@@ -65,8 +73,8 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     contact: ContactUse = ContactUse()
 
 
-def _rows(section: type[Section], prefix: str) -> list[Row]:
-    rows: list[Row] = []
+def _rows(section: type[Section], prefix: str) -> list[SettingRow]:
+    rows: list[SettingRow] = []
     hints = get_type_hints(section, include_extras=True)
     for field in msgspec.structs.fields(section):
         hint = hints[field.name]
@@ -82,13 +90,13 @@ def _rows(section: type[Section], prefix: str) -> list[Row]:
             continue
         low, high = (None, None) if meta.ge is None else (float(meta.ge), float(meta.le or 0.0))
         text = meta.description or ""
-        rows.append(Row(prefix + field.name, field.default, low, high, extra["unit"], extra["id"], text, extra["locked"]))
+        rows.append(SettingRow(prefix + field.name, field.default, low, high, extra["unit"], extra["id"], text, extra["locked"]))
     return rows
 
 
-def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> list[Row]:
+def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> list[SettingRow]:
     """The rows of one limit: its value and what all limits have."""
-    first = Row(f"{name}.max", default.max, extra["low"], extra["high"], extra["unit"], extra["id"], text, True)
+    first = SettingRow(f"{name}.max", default.max, extra["low"], extra["high"], extra["unit"], extra["id"], text, True)
     rows = [first]
     for row in _rows(type(default), f"{name}."):
         rows.append(row._replace(default=getattr(default, row.name.rpartition(".")[2]), text=f"{text}: {row.text}"))
@@ -98,12 +106,12 @@ def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> 
 _ROWS = {row.name: row for row in _rows(Settings, "")}
 
 
-def describe() -> list[Row]:
+def describe() -> list[SettingRow]:
     """Every setting, in the order of the schema."""
     return list(_ROWS.values())
 
 
-def find(name: str) -> Row:
+def find(name: str) -> SettingRow:
     """The row of a dotted name.
 
     Raises:
@@ -124,7 +132,7 @@ def value_of(settings: Settings, name: str) -> Value:
     return value
 
 
-def _checked(row: Row, value: object) -> Value:
+def _checked(row: SettingRow, value: object) -> Value:
     if row.low is None or row.high is None:
         if not isinstance(value, bool):
             raise SettingError(row.name, value, "true or false")
@@ -164,6 +172,6 @@ def limits_checksum(settings: Settings) -> str:
     return _hashed(settings, [row for row in _ROWS.values() if row.locked])
 
 
-def _hashed(settings: Settings, rows: list[Row]) -> str:
+def _hashed(settings: Settings, rows: list[SettingRow]) -> str:
     lines = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in rows)
     return hashlib.sha256(lines.encode()).hexdigest()[:8]

@@ -1,13 +1,13 @@
-"""The one event table: effect on the mode, severity, texts, what clears it, who may override. Interfaces render from it."""
+"""The one event table: effect on the mode, severity, texts, what clears it. Interfaces render from it."""
 
 from pendant.events.event import Event, Kind
-from pendant.events.event_row import Row
+from pendant.events.event_row import EventRow
 from pendant.freedrive.entry_rows import ENTRY
 from pendant.freedrive.rows import FREE_DRIVE
 from pendant.program.rows import PROGRAM
 from pendant.robot.rows import SAFETY
 
-TABLE: dict[Kind, Row] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROGRAM}
+TABLE: dict[Kind, EventRow] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROGRAM}
 
 
 def render(event: Event) -> tuple[str, str]:

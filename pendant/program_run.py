@@ -65,14 +65,20 @@ class ProgramRun:
                     robot.refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate.tick, events)
-        braked = sequencer.braked
-        if robot.mode is _FREE_DRIVE or (not braked and (move is None or sequencer.move is not move)):
+        if robot.mode is _FREE_DRIVE or (not sequencer.braked and (move is None or sequencer.move is not move)):
             return
         tool_on = sequencer.tool_on
+        self._go_on(estimate, monitor, settings, events)
+        if sequencer.tool_on is not tool_on:
+            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+
+    def _go_on(self, estimate: Estimate, monitor: ContactMonitor, settings: Settings, events: list[Event]) -> None:
+        """One tick of a step, in the order of precedence."""
+        robot, sequencer = self._robot, self._robot.sequencer
         if not motion_ok(estimate):
             event = Event(Kind.RUN_SENSORS_LOST, estimate.tick, {"sensor": JOINTS_SENSED})
             robot.happen(event, settings, events)
-        elif braked:
+        elif sequencer.braked:
             if robot.static and sequencer.rest(monitor.now()):
                 self._finish(estimate.tick, events)
         elif not robot.enabled:
@@ -85,8 +91,6 @@ class ProgramRun:
             self.fail("it ended without a contact", estimate.tick, events)
         elif sequencer.step(estimate.move_done, monitor.now, self._felt):
             self._finish(estimate.tick, events)
-        if sequencer.tool_on is not tool_on:
-            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
 
     def fail(self, reason: str, tick: int, events: list[Event]) -> None:
         """The program cannot go on."""

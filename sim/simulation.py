@@ -25,7 +25,7 @@ from sim.estimation.estimator import Estimator
 from sim.exchange.desk import Wishes
 from sim.exchange.scoring import Glance
 from sim.exchange.snapshot import Snapshot
-from sim.plant.changes import AnyChange, AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
 from sim.plant.model import Step
 from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
@@ -218,7 +218,7 @@ class Simulation:
             plant.drop()
         elif isinstance(change, SensorFault):
             self.sensors.fault(change)
-        elif isinstance(change, Friction):
+        elif isinstance(change, FrictionChange):
             plant.friction.factor[self._joints(change.joint)] = change.factor
         elif isinstance(change, Temperature):
             plant.temperature[self._joints(change.joint)] = change.celsius

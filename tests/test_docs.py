@@ -102,7 +102,7 @@ def test_the_parameter_of_the_example_is_read() -> None:
     made: dict[str, Any] = eval("{" + row + "}", names)
     value = estimate()
     value.v_F = np.array([9.0, 9.0, 9.0, 1.0, -2.0, 2.0])
-    view = parameters.View(value, parameters.Reference((0.0,) * 3, (0.0,) * 6, (0.0,) * 6, (0.0,) * 6), None, (), (), 0.0)
+    view = parameters.Observed(value, parameters.EntryValues((0.0,) * 3, (0.0,) * 6, (0.0,) * 6, (0.0,) * 6), None, (), (), 0.0)
     assert made["flange_turn"].read(view, Gauge("t", "")) == (3.0, "flange")
     assert set(made["flange_turn"]._fields) == set(parameters.Parameter._fields)
     section = within(limit_settings, f"class Made(Section, frozen=True):\n    {cell}")["Made"]()

@@ -91,6 +91,11 @@ def test_no_module_has_the_name_of_another() -> None:
     assert {name for name, count in names.items() if count > 1 and name not in SHARED} == set()
 
 
+def test_no_class_has_the_name_of_another() -> None:
+    names = Counter(node.name for tree in MODULES.values() for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
+    assert [name for name, count in names.items() if count > 1] == []
+
+
 def test_no_module_is_long() -> None:
     for module in MODULES:
         lines = len((ROOT / (module.replace(".", "/") + ".py")).read_text(encoding="utf-8").splitlines())

@@ -4,7 +4,7 @@ from app.files.checked import BadInput
 from pendant.equipment.load import Problem, problem
 from pendant.equipment.tools import table_problem, tool_problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Load, Tool
+from sim.arm.scenario import AnyObject, Load, ToolModel
 
 OVERLOAD = 10.0
 """Heaviest load, as a multiple of the arm's rated payload: enough to try any mistake, and within what the physics can bear."""
@@ -20,7 +20,7 @@ def check_load(load: Load, arm: Arm, where: str, field: str) -> None:
     _refuse(problem(load, OVERLOAD * arm.payload), arm, where, f"{field}.")
 
 
-def check_tool(tool: Tool, arm: Arm, where: str, field: str) -> None:
+def check_tool(tool: ToolModel, arm: Arm, where: str, field: str) -> None:
     """Refuse a tool that no arm could carry, as `check_load`, or whose name or tool centre point cannot be.
 
     Raises:
@@ -29,7 +29,7 @@ def check_tool(tool: Tool, arm: Arm, where: str, field: str) -> None:
     _refuse(tool_problem(tool, OVERLOAD * arm.payload), arm, where, f"{field}.")
 
 
-def check_tools(tools: list[Tool], arm: Arm, where: str, field: str) -> None:
+def check_tools(tools: list[ToolModel], arm: Arm, where: str, field: str) -> None:
     """Refuse a table of tools with one that `check_tool` refuses, or with two of a name.
 
     Raises:

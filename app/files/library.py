@@ -5,7 +5,7 @@ from pathlib import Path
 import assets
 from app.files.checked import ABSENT, BadInput, load
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Tool
+from sim.arm.scenario import ToolModel
 from sim.arm_problems import problems
 
 ASSETS = Path(assets.__file__).parent
@@ -34,13 +34,13 @@ def load_arm(name_or_path: str | Path, where: str = "robots") -> Arm:
     return arm
 
 
-def load_tool(name_or_path: str | Path, where: str = "tools") -> Tool:
+def load_tool(name_or_path: str | Path, where: str = "tools") -> ToolModel:
     """The tool of that name, or of the file at that path; `where` names the file or option that asks for it.
 
     Raises:
         BadInput: no such tool, or its file does not make sense.
     """
-    return load(_path(name_or_path, "tools", "tool", where), Tool)
+    return load(_path(name_or_path, "tools", "tool", where), ToolModel)
 
 
 def mesh_path(arm_name: str, link: str) -> Path:

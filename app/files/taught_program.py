@@ -36,7 +36,7 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     quaternion: Annotated[list[float], Meta(min_length=4, max_length=4)]  # of the tool in B, wxyz
 
 
-class Step(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A step of the program: a move to a waypoint, or what needs none."""
 
     do: Literal["joint", "line", "touch", "wait", "contact", "tool on", "tool off", "zero"]
@@ -57,7 +57,7 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """All that was taught. Without steps, the program visits the waypoints in order."""
 
     waypoints: Annotated[list[Waypoint], Meta(max_length=MOST)] = []
-    steps: Annotated[list[Step], Meta(max_length=MOST)] = []
+    steps: Annotated[list[TaughtStep], Meta(max_length=MOST)] = []
 
     def __post_init__(self) -> None:
         """Check that names are unique and known."""
@@ -76,9 +76,9 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         raise KeyError(name)
 
     @property
-    def plan(self) -> list[Step]:
+    def plan(self) -> list[TaughtStep]:
         """The steps to run."""
-        return self.steps or [Step(do="joint", to=waypoint.name) for waypoint in self.waypoints]
+        return self.steps or [TaughtStep(do="joint", to=waypoint.name) for waypoint in self.waypoints]
 
     def free_name(self) -> str:
         """A name that no waypoint has."""
@@ -97,7 +97,7 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     def renamed(self, name: str, new: str) -> "Lesson":
         """With another name for a waypoint."""
         waypoints = [msgspec.structs.replace(w, name=new) if w.name == name else w for w in self.waypoints]
-        return Lesson(waypoints=waypoints, steps=[Step(do=s.do, to=new if s.to == name else s.to) for s in self.steps])
+        return Lesson(waypoints=waypoints, steps=[TaughtStep(do=s.do, to=new if s.to == name else s.to) for s in self.steps])
 
     def moved(self, name: str, by: int) -> "Lesson":
         """With a waypoint moved up (-1) or down (1) in the list."""
@@ -107,17 +107,17 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         waypoints.insert(to, waypoints.pop(at))
         return Lesson(waypoints=waypoints, steps=self.steps)
 
-    def with_steps(self, steps: list[Step]) -> "Lesson":
+    def with_steps(self, steps: list[TaughtStep]) -> "Lesson":
         """With another program."""
         return Lesson(waypoints=self.waypoints, steps=steps)
 
 
-def program(lesson: Lesson, steps: list[Step], speed: float, name: str = "taught") -> Program:
+def program(lesson: Lesson, steps: list[TaughtStep], speed: float, name: str = "taught") -> Program:
     """The program of some steps at a share of full speed, 0 < speed <= 1."""
     return Program(name=name, steps=tuple(_move(lesson, step, speed) for step in steps))
 
 
-def _move(lesson: Lesson, step: Step, speed: float) -> AnyStep:
+def _move(lesson: Lesson, step: TaughtStep, speed: float) -> AnyStep:
     if step.to is None:
         if step.do == "wait":
             return Wait(duration=1.0)

@@ -45,7 +45,7 @@ Index = tuple[int, np.ndarray[Any, Any]]
 """A channel and its messages in a chunk, (k, 2): time [ns], offset."""
 
 
-class Summary:
+class FileSummary:
     """What stands at a file's end: found out while writing, or again from a file without its end.
 
     Attributes:
@@ -113,7 +113,7 @@ class Container:
             self._file = path.open("wb")
         except OSError as error:
             raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
-        self._summary = Summary()
+        self._summary = FileSummary()
         self._at = 0
         self._pending: dict[int, list[tuple[int, bytes]]] = {}
         self._sequence: dict[int, int] = {}

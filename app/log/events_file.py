@@ -14,7 +14,7 @@ FLUSH = TICK_RATE // 2
 """Ticks between two flushes: half a second, so that a killed process loses less than the last second."""
 
 
-class Line(msgspec.Struct, frozen=True, kw_only=True):
+class EventLine(msgspec.Struct, frozen=True, kw_only=True):
     """One line of the file."""
 
     tick: int
@@ -26,10 +26,10 @@ class Line(msgspec.Struct, frozen=True, kw_only=True):
     values: dict[str, float | int | str | bool]
 
 
-def line_of(event: Event) -> Line:
+def line_of(event: Event) -> EventLine:
     """The line that stands for an event."""
     headline, guidance = render(event)
-    return Line(
+    return EventLine(
         tick=event.tick,
         t=round(event.tick * TICK, 6),
         kind=event.kind.value,
@@ -73,7 +73,7 @@ class EventsFile:
             self._flushed = tick
 
 
-def read(path: Path) -> list[Line]:
+def read(path: Path) -> list[EventLine]:
     """The lines of an events file; half a line at its end, left by a killed process, is dropped.
 
     Raises:
@@ -84,6 +84,6 @@ def read(path: Path) -> list[Line]:
     except OSError as error:
         raise BadInput(str(path), "", ABSENT, f"cannot be read ({error.strerror})") from None
     try:
-        return [msgspec.json.decode(line, type=Line) for line in lines[:-1]]
+        return [msgspec.json.decode(line, type=EventLine) for line in lines[:-1]]
     except msgspec.MsgspecError as error:
         raise BadInput(path.name, "", ABSENT, f"not an events file ({error})") from None

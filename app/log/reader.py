@@ -28,8 +28,8 @@ from mcap.records import (
 from numpy.typing import NDArray
 
 from app.files.checked import ABSENT, BadInput
-from app.log.container import MAGIC, Summary, index_of
-from app.log.events_file import Line
+from app.log.container import MAGIC, FileSummary, index_of
+from app.log.events_file import EventLine
 from app.log.layout import CODES, STATE, TRUTH, record, width
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
@@ -57,7 +57,7 @@ class Log:
     ticks: NDArray[np.int64]  # (k,)
     state: dict[str, NDArray[Any]]
     truth: dict[str, NDArray[Any]]
-    events: list[Line]
+    events: list[EventLine]
     pictures: list[dict[str, Any]]  # /pendant, at 60 Hz
     frames: list[dict[str, list[float]]]  # poses in W by name, at the ticks of `pictures`
     settings: list[tuple[int, dict[str, Any]]]  # the tick from which they hold
@@ -72,7 +72,7 @@ class Log:
 class Scan:
     """What a pass over a file finds."""
 
-    summary: Summary = field(default_factory=Summary)
+    summary: FileSummary = field(default_factory=FileSummary)
     end: int = 0  # of the last whole record of data [bytes]
     whole: bool = False
     files: dict[str, bytes] = field(default_factory=dict)
@@ -224,7 +224,7 @@ def _log(path: Path, scan: Scan) -> Log:
     ticks, state = _columns(scan.packed.get("/state", []), STATE, arm.n, CODES)
     _, truth = _columns(scan.packed.get("/truth", []), TRUTH, arm.n, ())
     said = {topic: [msgspec.json.decode(each) for each in scan.messages.get(topic, [])] for topic in ("/pendant", "/tf")}
-    events = [msgspec.json.decode(each, type=Line) for each in scan.messages.get("/events", [])]
+    events = [msgspec.json.decode(each, type=EventLine) for each in scan.messages.get("/events", [])]
     settings = [msgspec.json.decode(each) for each in scan.messages.get("/settings", [])]
     return Log(
         path,

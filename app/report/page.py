@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
-from app.log.events_file import Line
+from app.log.events_file import EventLine
 from app.report.summary import NOT_A_VALIDATION, SLOW, Peak, Summary
 
 UNIT = re.compile(r"(?<=\d) (?=(?:s|ms|m|mm|m/s|N|N·m|rad|rad/s|kg)\b)")
@@ -196,11 +196,11 @@ def _identity(summary: Summary) -> list[tuple[str, str]]:
     ]
 
 
-def _message(event: Line) -> tuple[str, str, str]:
+def _message(event: EventLine) -> tuple[str, str, str]:
     return f"{event.t:.3f}", event.headline, event.guidance
 
 
-def _contact(event: Line) -> tuple[str, ...]:
+def _contact(event: EventLine) -> tuple[str, ...]:
     values = event.values
     delay = f"{2 * float(values['steps']):.0f}" if "steps" in values else ""
     return f"{event.t:.3f}", event.headline, str(values.get("rule", "")), delay, str(values.get("action", ""))

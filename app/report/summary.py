@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from app.log.events_file import Line
+from app.log.events_file import EventLine
 from app.log.layout import WORDS
 from app.log.reader import Log
 from app.report.regions import regions
@@ -59,7 +59,7 @@ class Margin(msgspec.Struct, frozen=True):
     t: float  # [s]
 
 
-class Stop(msgspec.Struct, frozen=True):
+class StopFigures(msgspec.Struct, frozen=True):
     """A stop: how long and how far until the arm stood."""
 
     kind: str
@@ -107,9 +107,9 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     modes: list[Span]
     phases: list[Span]
     margins: list[Margin]
-    messages: list[Line]  # refusals, leavings and stops, with cause and guidance
-    stops: list[Stop]
-    contacts: list[Line]
+    messages: list[EventLine]  # refusals, leavings and stops, with cause and guidance
+    stops: list[StopFigures]
+    contacts: list[EventLine]
     tcp_speed: Peak
     elbow_speed: Peak
     joint_speed: Peak
@@ -203,7 +203,7 @@ def _margins(log: Log) -> list[Margin]:
     return sorted(found, key=lambda margin: -margin.share)
 
 
-def _told(event: Line) -> Margin | None:
+def _told(event: EventLine) -> Margin | None:
     """The parameter beyond its limit that an event tells of."""
     told = {"parameter", "value", "limit", "unit"}
     values = event.values
@@ -213,14 +213,14 @@ def _told(event: Line) -> Margin | None:
     return Margin(str(values["parameter"]), str(values["unit"]), value, limit, abs(value / limit), event.t)
 
 
-def _matters(event: Line) -> bool:
+def _matters(event: EventLine) -> bool:
     row = TABLE[Kind(event.kind)]
     if event.kind.startswith("contact_") or row.effect in (Effect.TRY, Effect.ENTER):
         return False
     return row.effect is not Effect.INFO or row.severity >= Severity.NOTICE
 
 
-def _stop(log: Log, event: Line) -> Stop:
+def _stop(log: Log, event: EventLine) -> StopFigures:
     after = log.ticks >= event.tick
     moving = np.abs(log.truth["qd"][after]).max(axis=1, initial=0.0) > AT_REST
     places = log.truth["flange"][after, :3]
@@ -228,7 +228,7 @@ def _stop(log: Log, event: Line) -> Stop:
     quiet = np.convolve(moving, np.ones(RESTING))[RESTING - 1 :][: max(len(moving) - RESTING + 1, 0)] == 0
     last = int(quiet.argmax()) if quiet.any() else len(moving) - 1
     way = float(np.linalg.norm(np.diff(places[: last + 1], axis=0), axis=1).sum())
-    return Stop(event.kind, event.t, round(last * TICK, 6) if quiet.any() else None, way)
+    return StopFigures(event.kind, event.t, round(last * TICK, 6) if quiet.any() else None, way)
 
 
 def _checksum(values: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from app.log.reader import read
 from app.report.files import write_report
-from app.runs.runner import Outcome, Progress, record, run, silent, simulate
+from app.runs.runner import Progress, RunOutcome, record, run, silent, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
 
@@ -24,7 +24,7 @@ class Job(NamedTuple):
     recorded: bool = True  # with log.mcap, summary.json and report.html; otherwise events.jsonl alone
 
 
-def work(job: Job, progress: Progress = silent) -> Outcome:
+def work(job: Job, progress: Progress = silent) -> RunOutcome:
     """Run one job in this process. Raises BadInput: what the session says cannot be used."""
     prepared = prepare(job.session, job.name)
     if not job.recorded:
@@ -34,7 +34,7 @@ def work(job: Job, progress: Progress = silent) -> Outcome:
     return outcome
 
 
-def run_all(jobs: Iterable[Job]) -> Iterator[tuple[int, Outcome]]:
+def run_all(jobs: Iterable[Job]) -> Iterator[tuple[int, RunOutcome]]:
     """Run all jobs; gives the place of each in `jobs` with its outcome, in the order in which they end.
 
     Raises:

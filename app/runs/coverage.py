@@ -9,14 +9,14 @@ import msgspec
 
 from app.files.checked import ABSENT, BadInput, load
 from app.runs.batch import Job, run_all
-from app.runs.runner import Outcome
+from app.runs.runner import RunOutcome
 from app.session.claims import CLAIMS, Claim
 from app.session.prepare import prepare, without
 from app.session.session_file import Session, bundled, find
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ClaimRow:
     """A claim and a session that shows it; without a session, nothing does."""
 
     claim: Claim
@@ -55,7 +55,7 @@ def claiming() -> dict[str, Session]:
     return found
 
 
-def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -> list[Row]:
+def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -> list[ClaimRow]:
     """Run all claiming sessions, on and off, in parallel; their results go into folders of `out`.
 
     Args:
@@ -70,7 +70,7 @@ def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -
     for name, session in sessions.items():
         jobs.append(Job(f"{name}.yaml", session, out / name / "on", recorded=False))
         jobs.append(Job(f"{name}.yaml", without(session), out / name / "off", recorded=False))
-    outcomes: dict[int, Outcome] = {}
+    outcomes: dict[int, RunOutcome] = {}
     for place, outcome in run_all(jobs):
         outcomes[place] = outcome
         told(len(outcomes), len(jobs))
@@ -78,22 +78,22 @@ def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -
     return rows_of(sessions, pairs)
 
 
-def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[Outcome, Outcome]]) -> list[Row]:
+def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[RunOutcome, RunOutcome]]) -> list[ClaimRow]:
     """A row for each claim and session that shows it, in the order of the claims; one without a session where there is none."""
-    rows: list[Row] = []
+    rows: list[ClaimRow] = []
     for claim in CLAIMS.values():
         names = [name for name, session in sessions.items() if claim.name in session.claims]
-        rows += [_row(claim, name, sessions[name], *pairs[name]) for name in names] or [Row(claim)]
+        rows += [_row(claim, name, sessions[name], *pairs[name]) for name in names] or [ClaimRow(claim)]
     return rows
 
 
-def _row(claim: Claim, name: str, session: Session, on: Outcome, off: Outcome) -> Row:
+def _row(claim: Claim, name: str, session: Session, on: RunOutcome, off: RunOutcome) -> ClaimRow:
     checks = tuple(verdict.expected for verdict in on.verdicts)
     unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
-    return Row(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)
+    return ClaimRow(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)
 
 
-def write(rows: list[Row], out: Path) -> None:
+def write(rows: list[ClaimRow], out: Path) -> None:
     """Write `out`/claims.md and `out`/claims.json.
 
     Raises:
@@ -107,7 +107,7 @@ def write(rows: list[Row], out: Path) -> None:
         raise BadInput(str(out), "", ABSENT, f"cannot be written ({error.strerror})") from None
 
 
-def as_json(rows: list[Row]) -> dict[str, Any]:
+def as_json(rows: list[ClaimRow]) -> dict[str, Any]:
     """The content of claims.json."""
     return {
         "totals": totals(rows),
@@ -128,12 +128,12 @@ def as_json(rows: list[Row]) -> dict[str, Any]:
     }
 
 
-def totals(rows: list[Row]) -> dict[str, int]:
+def totals(rows: list[ClaimRow]) -> dict[str, int]:
     """How many rows are in each state."""
     return {state: sum(row.state == state for row in rows) for state in ("shown", "fails", "holds without its switch", "missing")}
 
 
-def markdown(rows: list[Row]) -> str:
+def markdown(rows: list[ClaimRow]) -> str:
     """The content of claims.md."""
     counts = ", ".join(f"{number} {state}" for state, number in totals(rows).items())
     lines = [

@@ -4,10 +4,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from app.files.checked import ABSENT, BadInput
-from app.runs.runner import Outcome
+from app.runs.runner import RunOutcome
 
 
-def junit(outcomes: dict[str, Outcome]) -> str:
+def junit(outcomes: dict[str, RunOutcome]) -> str:
     """The document, for outcomes by the name of their session."""
     root = ElementTree.Element("testsuites", name="pendant")
     total = failed = 0
@@ -26,7 +26,7 @@ def junit(outcomes: dict[str, Outcome]) -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def write(path: Path, outcomes: dict[str, Outcome]) -> None:
+def write(path: Path, outcomes: dict[str, RunOutcome]) -> None:
     """Write the document.
 
     Raises:

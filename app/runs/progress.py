@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from app.runs.runner import Outcome
+from app.runs.runner import RunOutcome
 from app.session.session_file import Session
 from pendant.tick.modes import Mode
 
@@ -39,7 +39,7 @@ def counting(what: str) -> Iterator[Callable[[int, int], None]]:
         yield lambda done, of: bar.update(task, completed=done, total=of)
 
 
-def show(session: Session, outcome: Outcome, out: Path) -> None:
+def show(session: Session, outcome: RunOutcome, out: Path) -> None:
     """Print what became of a session."""
     console = Console()
     speed = outcome.seconds / outcome.took if outcome.took > 0 else 0.0
@@ -59,7 +59,7 @@ def show(session: Session, outcome: Outcome, out: Path) -> None:
     console.print(f"{len(outcome.events)} events; all is in {escape(str(out))}")
 
 
-def show_all(names: list[str], outcomes: list[Outcome], out: Path) -> None:
+def show_all(names: list[str], outcomes: list[RunOutcome], out: Path) -> None:
     """Print what became of several sessions, a line each, and under it what was not met."""
     table = Table("", "session", "met", "simulated [s]", "took [s]", "events", box=None, pad_edge=False)
     for column in (2, 3, 4, 5):

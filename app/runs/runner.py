@@ -46,7 +46,7 @@ class Simulated(Protocol):
 
 
 @dataclass(slots=True)
-class Outcome:
+class RunOutcome:
     """What became of a session."""
 
     modes: list[tuple[float, Mode]] = field(default_factory=list)  # time at which each mode began [s], the mode
@@ -71,7 +71,7 @@ def simulate(prepared: Prepared) -> Simulation:
     return Simulation(prepared.arm, prepared.scenario, prepared.settings)
 
 
-def record(session: Session, prepared: Prepared, out: Path, realtime: bool = False, progress: Progress = silent) -> Outcome:
+def record(session: Session, prepared: Prepared, out: Path, realtime: bool = False, progress: Progress = silent) -> RunOutcome:
     """Run a session as `run`, and record it into `out`/log.mcap.
 
     Raises:
@@ -90,7 +90,7 @@ def run(
     realtime: bool = False,
     progress: Progress = silent,
     see: Callable[[Decision], None] = lambda decision: None,
-) -> Outcome:
+) -> RunOutcome:
     """Run a session to its end and write `out`/events.jsonl.
 
     Args:
@@ -108,7 +108,7 @@ def run(
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
     watches = [watch(expectation, joints) for expectation in session.expectations]
-    outcome = Outcome(seconds=session.duration)
+    outcome = RunOutcome(seconds=session.duration)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
         last, tenth = ticks(session.duration), ticks(0.1)

@@ -14,11 +14,6 @@ from sim.arm.scenario import Load, Vector
 from sim.plant.changes import AnyChange
 from sim.plant.touch import ZERO, Push, Triple
 
-PLANNED_CONTROLS: dict[str, str] = {
-    "confirm": "FD-8",
-}
-"""Controls of the pendant that a session can name but that do nothing yet, with the requirement that brings them."""
-
 Control = Literal[
     "free_drive",
     "emergency_stop",
@@ -27,7 +22,6 @@ Control = Literal[
     "normal",
     "teach",
     "remote",
-    "confirm",
     "restart_period",
     "register_waypoint",
     "detection",
@@ -52,10 +46,6 @@ HOLDABLE = tuple(button.value for button in Button)
 class Action(When, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="do"):
     """Base of all actions."""
 
-    def planned(self) -> str | None:
-        """The requirement that brings what this action needs, where it is not there yet."""
-        return None
-
 
 class Press(Action, tag="press", frozen=True, kw_only=True):
     """A control goes down and stays held, until `release`."""
@@ -66,10 +56,6 @@ class Press(Action, tag="press", frozen=True, kw_only=True):
         """Check that the control can be held."""
         super().__post_init__()
         must_be_holdable(self.control)
-
-    def planned(self) -> str | None:
-        """See `Action.planned`."""
-        return PLANNED_CONTROLS.get(self.control)
 
 
 class Release(Action, tag="release", frozen=True, kw_only=True):
@@ -82,20 +68,12 @@ class Release(Action, tag="release", frozen=True, kw_only=True):
         super().__post_init__()
         must_be_holdable(self.control)
 
-    def planned(self) -> str | None:
-        """See `Action.planned`."""
-        return PLANNED_CONTROLS.get(self.control)
-
 
 class Tap(Action, tag="tap", frozen=True, kw_only=True):
     """A control is pressed shortly; for a control that acts once, this is how to use it."""
 
     control: Control
     length: Positive = msgspec.field(default=0.2, name="for")  # [s]
-
-    def planned(self) -> str | None:
-        """See `Action.planned`."""
-        return PLANNED_CONTROLS.get(self.control)
 
 
 class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
@@ -171,13 +149,13 @@ class Hold(Effort, tag="hold", frozen=True, kw_only=True):
     cap: Annotated[float, Meta(gt=0, le=2000)] = 50.0  # [N]
 
 
-class Program(Action, tag="program", frozen=True, kw_only=True):
+class LoadProgram(Action, tag="program", frozen=True, kw_only=True):
     """The session's program is started, paused, resumed or stopped."""
 
     command: Literal["start", "pause", "resume", "stop"]
 
 
-class Settings(Action, tag="settings", frozen=True, kw_only=True):
+class ChangeSettings(Action, tag="settings", frozen=True, kw_only=True):
     """Settings are changed, by dotted name."""
 
     set: Annotated[dict[str, float | bool | str], Meta(min_length=1)]
@@ -189,7 +167,7 @@ class SelectTool(Action, tag="select_tool", frozen=True, kw_only=True):
     tool: str
 
 
-class Payload(Action, tag="payload", frozen=True, kw_only=True):
+class SetPayload(Action, tag="payload", frozen=True, kw_only=True):
     """The payload that the controller is to believe in, beyond the tool, is entered on the pendant."""
 
     load: Load
@@ -235,10 +213,10 @@ AnyAction = (
     | Bump
     | Lean
     | Hold
-    | Program
-    | Settings
+    | LoadProgram
+    | ChangeSettings
     | SelectTool
-    | Payload
+    | SetPayload
     | Axes
     | Laboratory
 )
@@ -259,5 +237,5 @@ def triple(values: list[float], factor: float = 1.0) -> Triple:
 
 def must_be_holdable(control: str) -> None:
     """Raise ValueError when `control` acts once and cannot be held."""
-    if control not in HOLDABLE and control not in PLANNED_CONTROLS:
+    if control not in HOLDABLE:
         raise ValueError(f'control: "{control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}')

@@ -35,10 +35,6 @@ OF_A_JOINT = ("joint_angle", "joint_speed", "tracking_error", "friction_error", 
 class Expectation(After, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="expect"):
     """Base of all expectations. With `after`, all their times count from there."""
 
-    def planned(self) -> str | None:
-        """The requirement that brings what this expectation needs, where it is not there yet."""
-        return None
-
 
 class During(Expectation, frozen=True, kw_only=True):
     """Base of what is looked at in an interval."""
@@ -162,14 +158,4 @@ class Period(Expectation, tag="period", frozen=True, kw_only=True):
     run: Annotated[int, Meta(ge=1)] = 1
 
 
-class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
-    """The contact is detected at most `max` after its true onset."""
-
-    max: Positive  # [s]
-
-    def planned(self) -> str | None:
-        """See `Expectation.planned`."""
-        return "CD-16"
-
-
-AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period | ContactDelay
+AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period

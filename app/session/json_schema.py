@@ -6,9 +6,9 @@ import msgspec
 
 from app.session.session_file import Session, Setup
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Tool
+from sim.arm.scenario import ToolModel
 
-KINDS: dict[str, type[Any]] = {"session": Session, "configuration": Setup, "robot": Arm, "tool": Tool}
+KINDS: dict[str, type[Any]] = {"session": Session, "configuration": Setup, "robot": Arm, "tool": ToolModel}
 
 
 def schema_of(kind: str) -> str:

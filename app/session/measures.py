@@ -223,4 +223,4 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
             found = DisplacementWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
             found.ends_alone = expectation.measure == "final"
             return found
-    raise AssertionError(f"{type(expectation).__name__} is planned, and app.session.prepare.prepare refuses it")
+    raise AssertionError(f"{type(expectation).__name__} has no case here")

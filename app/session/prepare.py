@@ -9,11 +9,10 @@ import msgspec
 from app.files.bodies import check_load, check_tool, check_tools, check_world
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, load_tool, tools
-from app.session.actions import Action, Axes, Effort, Laboratory, Payload, Program, SelectTool
-from app.session.actions import Settings as SettingsAction
+from app.session.actions import Action, Axes, ChangeSettings, Effort, Laboratory, LoadProgram, SelectTool, SetPayload
 from app.session.claims import CLAIMS
 from app.session.expectations import Displacement, Expectation, Value
-from app.session.session_file import Session, Setup, World, bundled, folder
+from app.session.session_file import Session, Setup, WorldSection, bundled, folder
 from pendant.all_settings import Settings, apply, describe
 from pendant.freedrive.settings import SequenceDynamic
 from pendant.limits.settings import MaintainLimits, OperationLimits
@@ -23,8 +22,8 @@ from pendant.settings.schema import Limit, SettingError
 from pendant.walls.containment import PARTS, TETHER
 from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Scenario, Tool, table
-from sim.plant.changes import AttachPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.arm.scenario import AnyObject, Scenario, ToolModel, table
+from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -130,7 +129,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
     if isinstance(world, str):
         if world not in bundled("worlds"):
             raise BadInput(where, "world", world, f"a list of objects, or one of {', '.join(bundled('worlds'))}")
-        world = load(folder("worlds") / f"{world}.yaml", World).objects
+        world = load(folder("worlds") / f"{world}.yaml", WorldSection).objects
     check_world(world, where)
     _check_walls(setup.walls, world, where)
     check_load(setup.payload_true, arm, where, "payload_true")
@@ -151,7 +150,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
     )
 
 
-def _tools(setup: Setup, tool: Tool | None, arm: Arm, where: str) -> list[Tool]:
+def _tools(setup: Setup, tool: ToolModel | None, arm: Arm, where: str) -> list[ToolModel]:
     """The table: the file's tools, then those shipped whose names they leave."""
     if tool is not None:
         check_tool(tool, arm, where, "tool")
@@ -183,7 +182,7 @@ def _check_features(features: dict[str, Literal["on", "off"]], where: str) -> No
         if match is None or not 0 <= int(match[2]) <= LAST_OF.get(match[1], -1):
             raise BadInput(where, "features", ident, "the id of a requirement, such as FD-9")
         if ident not in FEATURES:
-            raise _planned(where, f"features.{ident}", ident)
+            raise BadInput(where, f"features.{ident}", ABSENT, f"has no switch; these have: {', '.join(FEATURES)}")
 
 
 def _applied(settings: Settings, changes: dict[str, float | bool | str], where: str, field: str) -> Settings:
@@ -224,32 +223,33 @@ def _check_session(session: Session, prepared: Prepared, where: str) -> None:
 
 
 def _check_action(action: Action, field: str, session: Session, prepared: Prepared, parts: list[str], where: str) -> None:
-    if (ident := action.planned()) is not None:
-        raise _planned(where, field, ident)
     if action.at is not None and action.at >= session.duration:
         raise BadInput(where, f"{field}.at", action.at, f"below the duration, {session.duration:g} s")
     if isinstance(action, Effort):
         _one_of(action.part, parts, where, f"{field}.part")
-    elif isinstance(action, SettingsAction):
+    elif isinstance(action, ChangeSettings):
         _applied(prepared.settings, action.set, where, f"{field}.set")
     elif isinstance(action, SelectTool):
         _one_of(action.tool, [tool.name for tool in table(prepared.scenario)], where, f"{field}.tool")
-    elif isinstance(action, Payload):
+    elif isinstance(action, SetPayload):
         check_load(action.load, prepared.arm, where, f"{field}.load")
     elif isinstance(action, Axes):
         _applied(prepared.settings, action.set, where, field)
-    elif isinstance(action, Program) and session.program is None:
+    elif isinstance(action, LoadProgram) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
     elif isinstance(action, Laboratory):
-        change = action.change
-        if isinstance(change, AttachPayload):
-            check_load(change.load, prepared.arm, where, f"{field}.change.load")
-        elif isinstance(change, SensorFault):
-            _check_channel(change, prepared.arm, where, f"{field}.change.channel")
-        elif isinstance(change, MoveObject):
-            _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.change.name")
-        elif isinstance(change, Friction | Temperature) and change.joint is not None:
-            _one_of(change.joint, prepared.arm.chain.joints, where, f"{field}.change.joint")
+        _check_change(action.change, f"{field}.change", prepared, where)
+
+
+def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
+    if isinstance(change, AttachPayload):
+        check_load(change.load, prepared.arm, where, f"{field}.load")
+    elif isinstance(change, SensorFault):
+        _check_channel(change, prepared.arm, where, f"{field}.channel")
+    elif isinstance(change, MoveObject):
+        _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.name")
+    elif isinstance(change, FrictionChange | Temperature) and change.joint is not None:
+        _one_of(change.joint, prepared.arm.chain.joints, where, f"{field}.joint")
 
 
 def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> None:
@@ -259,8 +259,6 @@ def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> Non
 
 
 def _check_expectation(expectation: Expectation, field: str, session: Session, parts: list[str], where: str) -> None:
-    if (ident := expectation.planned()) is not None:
-        raise _planned(where, field, ident)
     for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
         moment = getattr(expectation, name, None)
         if expectation.after is None and moment is not None and moment > session.duration:
@@ -274,7 +272,3 @@ def _check_expectation(expectation: Expectation, field: str, session: Session, p
 def _one_of(value: str, allowed: list[str], where: str, field: str) -> None:
     if value not in allowed:
         raise BadInput(where, field, value, f"one of {', '.join(allowed)}" if allowed else "there is none in this session")
-
-
-def _planned(where: str, field: str, ident: str) -> BadInput:
-    return BadInput(where, field, ABSENT, f"{ident}: not available yet (planned)")

@@ -12,7 +12,7 @@ from app.session.actions import AnyAction
 from app.session.expectations import AnyExpectation
 from pendant.program.steps import Program
 from pendant.walls.definitions import AnyBorder
-from sim.arm.scenario import AnyObject, Load, Tool, Vector
+from sim.arm.scenario import AnyObject, Load, ToolModel, Vector
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -21,8 +21,8 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     robot: str = "ur5e"
     mounting: Literal["floor", "wall", "ceiling"] | Vector = "floor"  # or roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
-    tool: Tool | str | None = None  # or the name of a shipped tool, or a path
-    tools: list[Tool] = []  # to choose from on the pendant, besides those shipped
+    tool: ToolModel | str | None = None  # or the name of a shipped tool, or a path
+    tools: list[ToolModel] = []  # to choose from on the pendant, besides those shipped
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     settings: dict[str, float | bool | str] = {}  # overrides, by dotted name
@@ -47,7 +47,7 @@ class Session(Setup, frozen=True, kw_only=True):
     expectations: list[AnyExpectation] = []
 
 
-class World(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class WorldSection(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A bundled world."""
 
     title: str

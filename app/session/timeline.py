@@ -7,15 +7,15 @@ from app.session.actions import (
     COMMAND_OF_PROGRAM,
     Action,
     Axes,
+    ChangeSettings,
     DigitalInput,
     Hold,
     Laboratory,
-    Payload,
+    LoadProgram,
     Press,
-    Program,
     Release,
     SelectTool,
-    Settings,
+    SetPayload,
     Tap,
     Wrench,
     triple,
@@ -156,18 +156,18 @@ class Timeline:
                 self._let_go(Button(action.control), now)
             case Tap():
                 now.commands.append(Command(action.control))
-            case Program():
+            case LoadProgram():
                 now.commands.append(COMMAND_OF_PROGRAM[action.command])
-            case Settings() | Axes():
+            case ChangeSettings() | Axes():
                 now.settings.update(action.set)
             case SelectTool():
                 now.tool = action.tool
-            case Payload():
+            case SetPayload():
                 now.load = action.load
             case Laboratory():
                 now.changes.append(action.change)
             case _:
-                raise AssertionError(f"{type(action).__name__} is planned, and app.session.prepare.prepare refuses it")
+                raise AssertionError(f"{type(action).__name__} has no case here")
 
     def _let_go(self, button: Button, now: _Tick) -> None:
         self._held.discard(button)

@@ -8,7 +8,7 @@ from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
 from app.web.panel.mode_panel import Panel
 from app.web.running import Running
-from app.web.scene.virtual_hand import Hand
+from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
 from app.web.tabs.contact_log import Contacts
 from app.web.tabs.plots import Plots
@@ -29,7 +29,7 @@ class Docks:
     """All panels."""
 
     def __init__(
-        self, server: viser.ViserServer, guard: Guard, loop: Running, hand: Hand, arm: Arm, recording: LiveRecording
+        self, server: viser.ViserServer, guard: Guard, loop: Running, hand: VirtualHand, arm: Arm, recording: LiveRecording
     ) -> None:
         self._loop = loop
         self._read = 0

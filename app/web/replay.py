@@ -8,7 +8,7 @@ import numpy as np
 import viser
 from viser import uplot
 
-from app.log.events_file import Line
+from app.log.events_file import EventLine
 from app.log.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
@@ -179,5 +179,5 @@ def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
     ]
 
 
-def _line(event: Line) -> tuple[str, str, Colour]:
+def _line(event: EventLine) -> tuple[str, str, Colour]:
     return f"{event.t:.2f} s", event.headline, SEVERITY_COLOURS[Severity[event.severity]]

@@ -17,7 +17,7 @@ from app.web.keys import Keys
 from app.web.panel.preferences import Preferences
 from app.web.running import Running
 from app.web.scene.arm_picture import TOOL, Scene, frames_of
-from app.web.scene.virtual_hand import Hand
+from app.web.scene.virtual_hand import VirtualHand
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 
@@ -43,7 +43,7 @@ class Served(Site):
         self._shown = -1  # tick of the last picture
         self._frame = 0
         self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
-        self.hand = Hand(loop.desk, loop.latest, frames_of(arm))
+        self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
         self.recording = recording
         self.docks = Docks(self.server, self.guard, loop, self.hand, arm, recording)
         self.panel, self.lab = self.docks.panel, self.docks.lab

@@ -15,7 +15,7 @@ from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.reaction import Until
 from pendant.program.steps import JointMove, LinearMove, Program
 from sim.arm.frames import quaternion_from_matrix
-from sim.arm.scenario import Box, Load, Scenario
+from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
@@ -102,7 +102,7 @@ def _attempt(case: Approach, q: Array, rng: np.random.Generator) -> Recording | 
     x = np.cross(-way, [0.3, 0.5, 0.8])
     x /= np.linalg.norm(x)
     turn = rpy(np.column_stack([x, np.cross(-way, x), -way]))
-    box = Box(
+    box = BoxObject(
         name="block",
         position=(face + 0.05 * way).tolist(),
         rpy=turn,
@@ -177,7 +177,7 @@ def link_contact(case: Approach) -> Recording:
         c, s = np.cos(sweep), np.sin(sweep)
         place = np.array([c * point[0] - s * point[1], s * point[0] + c * point[1], point[2]])
         heading = float(np.arctan2(place[1], place[0]))
-        box = Box(
+        box = BoxObject(
             name="block", position=place.tolist(), rpy=[0.0, 0.0, heading], size=[0.12, 0.1, 0.12], stiffness=case.stiffness
         )
         goal = q.copy()

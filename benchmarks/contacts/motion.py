@@ -11,7 +11,7 @@ from pendant.inputs import NOTHING, Inputs
 from pendant.program.steps import JointMove, Program
 from sim.arm.scenario import Load, Scenario
 from sim.exchange.desk import Wishes
-from sim.plant.changes import Friction, SensorFault, Temperature
+from sim.plant.changes import FrictionChange, SensorFault, Temperature
 from sim.simulation import Simulation
 
 LOW = np.array([-3.0, -2.7, -2.3, -3.1, -3.1, -3.1])
@@ -61,7 +61,7 @@ def free(case: Free) -> Recording:
         simulation.tick(IDLE)
     recording = Recording()
     changes = (
-        Friction(factor=float(rng.uniform(0.8, 1.4))),
+        FrictionChange(factor=float(rng.uniform(0.8, 1.4))),
         Temperature(celsius=float(rng.uniform(25.0, 60.0))),
         SensorFault(sensor="force_torque", drift=float(rng.uniform(-0.02, 0.02))),
     )

@@ -14,7 +14,7 @@ from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
 from pendant.tick.pose import flat, turned
-from pendant.tick.source_signal import Signal, Signals
+from pendant.tick.source_signal import ContactSignals, Signal
 
 
 class Source(NamedTuple):
@@ -77,7 +77,7 @@ class ContactMonitor:
         self._on_links = ContactUse()
         self._used = (False,) * len(SOURCES)
         self._poses = Poses()
-        self._kept: deque[Signals] = deque(maxlen=SUMMED)  # that the detectors have not got yet
+        self._kept: deque[ContactSignals] = deque(maxlen=SUMMED)  # that the detectors have not got yet
 
     def now(self) -> ArmPose:
         """Where the arm is."""

@@ -46,7 +46,7 @@ class Posture(NamedTuple):
     torque: Vector  # at the flange origin [N·m]
 
 
-class Finding(NamedTuple):
+class FittedPayload(NamedTuple):
     """What the postures say of the load beyond what is known. Uncertainties are standard ones."""
 
     mass: float  # [kg]
@@ -85,7 +85,7 @@ def _angle(a: Vector, b: Vector) -> float:
     return math.atan2(math.hypot(*cross), a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
-def solve(postures: Sequence[Posture], known: Sequence[Load] = ()) -> Finding | str:
+def solve(postures: Sequence[Posture], known: Sequence[Load] = ()) -> FittedPayload | str:
     """Mass and centre of what is carried beyond the `known` loads; or why they cannot be told, in a line.
 
     Args:
@@ -120,7 +120,7 @@ def solve(postures: Sequence[Posture], known: Sequence[Load] = ()) -> Finding | 
         centre = (float(c[0]), float(c[1]), float(c[2]))
         variances = np.diag(C_t)[:3] / mass**2 + (c * mass_deviation / mass) ** 2
         centre_deviation = math.sqrt(float(variances.max()))
-    return Finding(
+    return FittedPayload(
         max(mass, 0.0),
         mass_deviation,
         centre,

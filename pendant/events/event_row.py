@@ -1,4 +1,4 @@
-"""A row of the event table: effect on the mode, severity, texts, what clears it, who may override."""
+"""A row of the event table: effect on the mode, severity, texts, and what clears it."""
 
 from enum import IntEnum, StrEnum
 from typing import NamedTuple
@@ -41,7 +41,7 @@ class Clears(StrEnum):
     RESET = "reset"  # a reset, and nothing else
 
 
-class Row(NamedTuple):
+class EventRow(NamedTuple):
     """What an event of one kind does and says. Texts name the event's values in braces."""
 
     effect: Effect
@@ -50,7 +50,6 @@ class Row(NamedTuple):
     guidance: str
     keys: tuple[str, ...] = ()  # the values that the event carries
     clears: Clears = Clears.NEXT
-    override: str = "nobody"  # who may override it
     cool_down: bool = False  # starts the cool-down (FD-12c)
     variant: tuple[str, str] | None = None  # a value of the event, and the guidance instead of the other where it is true
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
@@ -65,31 +64,33 @@ EXCESS = Excess._fields
 """Values of an event of a limit."""
 
 
-def info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> Row:
+def info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> EventRow:
     """Told, and nothing else."""
-    return Row(Effect.INFO, Severity.INFO, headline, guidance, keys)
+    return EventRow(Effect.INFO, Severity.INFO, headline, guidance, keys)
 
 
-def refused(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
+def refused(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
     """Free-drive is refused; its cool-down begins."""
-    return Row(Effect.NO_ENTRY, Severity.WARNING, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+    return EventRow(Effect.NO_ENTRY, Severity.WARNING, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
 
 
-def left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Severity = Severity.NOTICE) -> Row:
+def left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Severity = Severity.NOTICE) -> EventRow:
     """Free-drive is left; its cool-down begins."""
-    return Row(Effect.LEAVE, severity, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+    return EventRow(Effect.LEAVE, severity, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
 
 
-def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> Row:
+def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
     """Free-drive ends in STOP."""
-    return Row(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
+    return EventRow(Effect.LEAVE_TO_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True)
 
 
-def protected(headline: str, guidance: str, keys: tuple[str, ...], category: int = 2) -> Row:
+def protected(headline: str, guidance: str, keys: tuple[str, ...], category: int = 2) -> EventRow:
     """A protective stop of this category."""
-    return Row(Effect.PROTECTIVE_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True, category=category)
+    return EventRow(
+        Effect.PROTECTIVE_STOP, Severity.STOP, headline, guidance, keys, Clears.RESET, cool_down=True, category=category
+    )
 
 
-def denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> Row:
+def denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> EventRow:
     """Something is not possible, or not as it should be."""
-    return Row(Effect.INFO, Severity.WARNING, headline, guidance, keys)
+    return EventRow(Effect.INFO, Severity.WARNING, headline, guidance, keys)

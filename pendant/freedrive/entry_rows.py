@@ -1,9 +1,9 @@
 """Rows of the event table: activation and entry of free-drive (FD-7 to FD-12), and pushes (FD-6a)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, denied, info, protected, refused
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, denied, info, protected, refused
 
-ENTRY: dict[Kind, Row] = {
+ENTRY: dict[Kind, EventRow] = {
     # The signal (FD-7, FD-8a)
     Kind.ACTIVATION_STARTED: info(
         "Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)
@@ -39,7 +39,7 @@ ENTRY: dict[Kind, Row] = {
         "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
     ),
     # Entry (FD-9)
-    Kind.ENTERED: Row(
+    Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),
     # Refused before the check (FD-1, FD-12)
@@ -64,7 +64,7 @@ ENTRY: dict[Kind, Row] = {
         "None of {age:.1f} s ago to compare with. Leave the arm untouched for so long, then try again.",
         ("age",),
     ),
-    Kind.SEQUENCE_STARTED: Row(
+    Kind.SEQUENCE_STARTED: EventRow(
         Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
     ),
     # What it finds (FD-10, FD-11)
@@ -103,7 +103,7 @@ ENTRY: dict[Kind, Row] = {
     Kind.COMPENSATING: info(
         "Free-drive is refused: the arm is balanced", "Hands off. When it stands, within {period:.1f} s, it is held.", ("period",)
     ),
-    Kind.COMPENSATED: Row(
+    Kind.COMPENSATED: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "The arm is balanced, and held",
@@ -115,7 +115,7 @@ ENTRY: dict[Kind, Row] = {
         "It moved by {moved:.1f} mm within {time:.1f} s. Check the payload.",
         ("moved", "time"),
     ),
-    Kind.LOAD_FOUND: Row(
+    Kind.LOAD_FOUND: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "What the arm bears beyond its payload",
@@ -123,14 +123,14 @@ ENTRY: dict[Kind, Row] = {
         ("mass", "force", "way"),
     ),
     # Payload or hand: what was felt, after a refusal (FD-11)
-    Kind.RESIDUAL_GONE: Row(
+    Kind.RESIDUAL_GONE: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "It was a push: the force is gone",
         "{force:.0f} N at the refusal, {left:.0f} N now. Hands off while the arm is checked.",
         ("force", "left"),
     ),
-    Kind.RESIDUAL_STAYED: Row(
+    Kind.RESIDUAL_STAYED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The force has stayed: check the payload",
@@ -142,7 +142,7 @@ ENTRY: dict[Kind, Row] = {
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)
-    Kind.NOT_YET: Row(
+    Kind.NOT_YET: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Free-drive not yet",

@@ -3,7 +3,7 @@
 import math
 
 from pendant.all_settings import Settings
-from pendant.limits.parameters import Monitor, Reference, View, reference
+from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split, upward
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.limit_engine import Excess
@@ -31,7 +31,7 @@ class Maintained:
         """
         self._monitor = Monitor(settings.limits.maintain)
         self._share = settings.limits.maintain.load_share
-        self._since: Reference = reference(estimate, wrench)
+        self._since: EntryValues = reference(estimate, wrench)
         self._joints = joints
         self._ones = (1.0,) * len(joints)
         self._up = upward(estimate.g_B.tolist())
@@ -52,7 +52,7 @@ class Maintained:
         parts = None if wrench is None else self._split(wrench)
         share = self._share
         heavier = share * GRAVITY * estimate.load_mass
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
+        beyond = self._monitor.step(Observed(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
         return beyond[0].excess if beyond else None
 
     def _split(self, wrench: Wrench) -> Split:

@@ -1,9 +1,9 @@
 """Rows of the event table: free-drive while it lasts, and its leaving (FD-8a, FD-12 to FD-23)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, WALL, Clears, Effect, Row, Severity, info, left, refused, stopped
+from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, info, left, refused, stopped
 
-FREE_DRIVE: dict[Kind, Row] = {
+FREE_DRIVE: dict[Kind, EventRow] = {
     # While it lasts: the hand (FD-13)
     Kind.MANIPULATION: info(
         "The arm is guided",
@@ -15,7 +15,7 @@ FREE_DRIVE: dict[Kind, Row] = {
     Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.PERIOD_ANEW: info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
     # Walls and areas (VW-6, VW-9)
-    Kind.WALL_REACHED: Row(
+    Kind.WALL_REACHED: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "{part} held at {wall}",
@@ -23,7 +23,7 @@ FREE_DRIVE: dict[Kind, Row] = {
         WALL,
     ),
     # Locked axes (FD-4)
-    Kind.SINGULARITY: Row(
+    Kind.SINGULARITY: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Singularity: {status}",
@@ -31,20 +31,20 @@ FREE_DRIVE: dict[Kind, Row] = {
         ("status", "value", "limit"),
     ),
     # The flange sensor (FD-3a, FD-19)
-    Kind.WRENCH_LOST: Row(
+    Kind.WRENCH_LOST: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Flange force sensor not valid",
         "The arm is heavier to move: no help from the force sensor.",
     ),
-    Kind.SENSOR_STEPPED: Row(
+    Kind.SENSOR_STEPPED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor stepped",
         "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
         ("force",),
     ),
-    Kind.SENSOR_DRIFTED: Row(
+    Kind.SENSOR_DRIFTED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor drifts",
@@ -52,7 +52,7 @@ FREE_DRIVE: dict[Kind, Row] = {
         ("force", "torque"),
     ),
     # The button (FD-23)
-    Kind.HOLD_SILENT: Row(
+    Kind.HOLD_SILENT: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Button counts as released",
@@ -102,9 +102,9 @@ FREE_DRIVE: dict[Kind, Row] = {
     ),
     Kind.STOPPED_WALL: stopped("Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL),
     # Asked for (FD-17)
-    Kind.DEACTIVATED: Row(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
+    Kind.DEACTIVATED: EventRow(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     # Without joint sensors nothing can be decided (FD-12)
-    Kind.SENSORS_LOST: Row(
+    Kind.SENSORS_LOST: EventRow(
         Effect.LEAVE_TO_STOP,
         Severity.STOP,
         "Stopped: joint sensors not valid",
@@ -123,7 +123,7 @@ FREE_DRIVE: dict[Kind, Row] = {
         ("grip",),
         Severity.WARNING,
     ),
-    Kind.RUN_ENABLING: Row(
+    Kind.RUN_ENABLING: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Program stopped: enabling device {grip}",

@@ -6,7 +6,7 @@ from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.limits.dynamic_limits import DynamicLimits, Shares, in_activation
-from pendant.limits.parameters import ZEROS, Monitor, Reference, View
+from pendant.limits.parameters import ZEROS, EntryValues, Monitor, Observed
 from pendant.limits.residual import Split, Vector, mass_error, split, upward
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.tick.estimate import Estimate
@@ -59,7 +59,7 @@ class Sequence:
         settings: Settings,
         joints: tuple[str, ...],
         rated: tuple[float, ...],
-        stored: Reference | None = None,
+        stored: EntryValues | None = None,
     ) -> None:
         """
         Args:
@@ -78,7 +78,7 @@ class Sequence:
         self._share = limits.load_share
         # Torques are judged as they are, not as changes: what was wrong before is what is looked for.
         place, angles = tuple(estimate.p_BF.tolist()), tuple(estimate.q.tolist())
-        self._since = Reference(place, ZEROS, (0.0,) * len(joints), angles)
+        self._since = EntryValues(place, ZEROS, (0.0,) * len(joints), angles)
         self._wrench = around.wrench_ok
         self._acceleration = estimate.acceleration_valid
         self._up: Vector = upward(estimate.g_B.tolist())
@@ -106,13 +106,13 @@ class Sequence:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
         parts = split(around.mean.mean(), self._up) if self._wrench else None
         shares = self._shares(around.estimate, parts)
-        beyond = self._monitor.step(View(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares))
+        beyond = self._monitor.step(Observed(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares))
         if self._against is None:
             return beyond
         stored, changes = self._against
         if self._wrench:
             parts = split([now - then for now, then in zip(around.mean.mean(), stored.wrench, strict=True)], self._up)
-        return beyond + changes.step(View(around.estimate, stored, parts, self._joints, self._scale, self._share, shares))
+        return beyond + changes.step(Observed(around.estimate, stored, parts, self._joints, self._scale, self._share, shares))
 
     def _shares(self, estimate: Estimate, parts: Split | None) -> Shares:
         """What is left of the limits (FD-12b). Without a sensor no force lowers them."""
@@ -147,7 +147,7 @@ class Sequence:
         return events
 
 
-class Verdict:
+class SequenceVerdict:
     """Payload or push: what was refused as either is told apart by what stays when the user lets go (FD-11, FD-22)."""
 
     __slots__ = ("_force", "_up", "waiting")

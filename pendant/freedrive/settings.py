@@ -7,7 +7,7 @@ from pendant.settings.schema import number as _number
 from pendant.settings.schema import switch as _switch
 
 
-class Activation(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class ActivationSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """From the signal to entry."""
 
     period: Annotated[float, _number(0.0, 15.0, "s", "FD-7", "how long the signal must be present without a break")] = 1.0
@@ -24,7 +24,7 @@ class SequenceDynamic(Section, frozen=True, forbid_unknown_fields=True, kw_only=
     vertical: Annotated[bool, _switch("FD-12b", "its ways, speeds and accelerations are less along gravity")] = False
 
 
-class Sequence(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class SequenceSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The activation sequence, in which the arm is freed to see whether it stays."""
 
     on: Annotated[bool, _switch("FD-24", "free-drive begins with an activation sequence")] = True
@@ -45,7 +45,7 @@ class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     run: Annotated[bool, _switch("FD-1", "free-drive can be entered from RUN, which it pauses")] = False
 
 
-class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class FreeDriveSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Free-drive itself."""
 
     allowed_from: Origins = Origins()
@@ -65,7 +65,7 @@ class FreeDrive(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     force_cap: Annotated[float, _number(5.0, 100.0, "N", "FD-3", "largest user force that is amplified")] = 50.0
 
 
-class Hold(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class HoldSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Held controls."""
 
     silence: Annotated[float, _number(0.1, 1.0, "s", "FD-23", "a held control silent for longer counts as released")] = 0.5

@@ -9,7 +9,7 @@ from pendant.freedrive.activation import Activation
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.gate import Gate
 from pendant.freedrive.periods import Periods, Remaining
-from pendant.freedrive.sequence import Verdict
+from pendant.freedrive.sequence import SequenceVerdict
 from pendant.guided.endings import way_back
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.sensor_bias import Zero
@@ -68,7 +68,7 @@ class FreeDrive:
         self._gate = Gate()
         self._zero = Zero()
         self._activation = Activation(joints, rated, containment, self._zero)
-        self._verdict = Verdict()
+        self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None
         self._periods: Periods | None = None  # from entry to leaving
 

@@ -13,8 +13,8 @@ from pendant.events.event import Kind, Values
 from pendant.guided.hidden_drop import LEAST, HiddenDrop
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.unintended_motion import Alone
-from pendant.guided.user_force import Hand
-from pendant.limits.parameters import Monitor, Reference, View, reference
+from pendant.guided.user_force import UserForce
+from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
 from pendant.tick.estimate import GRAVITY, Estimate
@@ -60,7 +60,7 @@ class Ending(NamedTuple):
     values: Values
 
 
-class Operation:
+class EndingWatch:
     """Watches one free-drive, from entry to leaving.
 
     Attributes:
@@ -104,7 +104,7 @@ class Operation:
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
-        self._since: Reference = reference(estimate, None)
+        self._since: EntryValues = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
         self._alone = Alone(self._on, self._since)
@@ -141,7 +141,9 @@ class Operation:
         )
         return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
 
-    def step(self, estimate: Estimate, hand: Hand, baseline: Wrench | None, driven: bool, slack: Slack = SURE) -> Ending | None:
+    def step(
+        self, estimate: Estimate, hand: UserForce, baseline: Wrench | None, driven: bool, slack: Slack = SURE
+    ) -> Ending | None:
         """One tick; its joint values are finite.
 
         Args:
@@ -152,7 +154,8 @@ class Operation:
             slack: what may be the sensor's drift.
         """
         if self._on.payload and baseline is not None:
-            lost = self._lost(estimate, hand, baseline)
+            # What may be the sensor's drift is no payload.
+            lost = self._lost(estimate, hand, baseline, LEAST + slack.force)
             if lost is not None:
                 return lost
         else:
@@ -166,7 +169,7 @@ class Operation:
             soft.step(estimate)
         self.damping = soft.damping
         parts = None if baseline is None else Split(0.0, 0.0, norm(hand.change), 0.0)
-        beyond = self._monitor.step(View(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
+        beyond = self._monitor.step(Observed(estimate, self._since, parts, self._joints, self._rated, 0.0, soft.shares))
         if beyond:
             gauge = next((gauge for gauge in beyond if gauge.stop), beyond[0])
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
@@ -175,8 +178,8 @@ class Operation:
         values = self._alone.step(estimate, hand, baseline is not None, driven, slack, torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
-    def _lost(self, estimate: Estimate, hand: Hand, baseline: Wrench) -> Ending | None:
-        """A payload-like step."""
+    def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench, least: float) -> Ending | None:
+        """A payload-like step, of at least so much force [N]."""
         mass = estimate.load_mass
         weight = mass * GRAVITY
         if weight < LEAST:
@@ -199,13 +202,13 @@ class Operation:
         if not self._stepped:
             # Of the force alone: a hand's, which stays, becomes another share of what a swinging load needs.
             jump = share - (bx * nx + by * ny + bz * nz) / max(square, 1e-9)
-            began = abs(share) * weight >= LEAST and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
+            began = abs(share) * weight >= least and share * jump > 0.0 and abs(jump) >= STAYS * abs(share)
             began = began and abs(share) >= STAYS * abs(jump) and (calm or abs(share) >= MUCH)
             began = began and hand.stands_out((mx - bx, my - by, mz - bz))
             self._stepped = int(began and self._like(share, across, square))
         elif self._stepped == 1:  # the sensor's mean over the tick in which it happened may have held a part of it
             self._level = share
-            self._stepped = 2 if self._like(share, across, square) and abs(share) * weight >= LEAST else 0
+            self._stepped = 2 if self._like(share, across, square) and abs(share) * weight >= least else 0
         elif self._like(share, across, square) and STAYS <= share / self._level <= RISES:
             self._stepped += 1
         else:

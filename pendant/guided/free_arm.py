@@ -3,9 +3,9 @@
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
-from pendant.guided.endings import Operation
+from pendant.guided.endings import EndingWatch
 from pendant.guided.sensor_bias import Zero
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
@@ -65,8 +65,8 @@ class FreeArm:
         """
         estimate = around.estimate
         self._zero, self._containment, self._zones = zero, containment, zones
-        self._hand = Hand(estimate, around.mean.mean())
-        self._operation = Operation(estimate, settings, joints, rated, around.payload)
+        self._hand = UserForce(estimate, around.mean.mean())
+        self._operation = EndingWatch(estimate, settings, joints, rated, around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN

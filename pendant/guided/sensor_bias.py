@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from pendant.events.event import Event, Kind
 from pendant.guided.sensor_steps import ANSWER, MOVED, Steps
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
 from pendant.tick.estimate import Estimate
@@ -58,7 +58,7 @@ class Slack(NamedTuple):
 SURE = Slack(0.0, 0.0)
 
 
-class Drift:
+class BiasFollower:
     """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
 
     Attributes:
@@ -175,7 +175,7 @@ class Zero:
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench = ZEROS
-        self._drift, self._steps = Drift(), Steps()
+        self._drift, self._steps = BiasFollower(), Steps()
         self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
@@ -187,7 +187,7 @@ class Zero:
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
-        self._drift, self._steps, self._since = Drift(estimate.tick), Steps(), estimate.tick
+        self._drift, self._steps, self._since = BiasFollower(estimate.tick), Steps(), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
@@ -211,7 +211,7 @@ class Zero:
         """Of what is told at the flange now."""
         return self._drift.slack(estimate.tick)
 
-    def step(self, estimate: Estimate, hand: Hand, mean: WrenchMean, waits: bool) -> Event | None:
+    def step(self, estimate: Estimate, hand: UserForce, mean: WrenchMean, waits: bool) -> Event | None:
         """One tick of free-drive with a valid sensor: what it drifts by is taken off.
 
         One that steps, or has drifted far, is not used any more; that is returned.
@@ -256,7 +256,7 @@ class Zero:
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
 
-    def _take_off(self, gone: Wrench, hand: Hand) -> None:
+    def _take_off(self, gone: Wrench, hand: UserForce) -> None:
         """So much, axes of F [N, N·m], is an offset of the sensor."""
         hand.shift((gone[0], gone[1], gone[2]))
         self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])

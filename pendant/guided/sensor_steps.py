@@ -6,7 +6,7 @@ first: the help that the step calls for pushes them from within.
 
 import math
 
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import beyond_gravity
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, dot, norm
@@ -68,7 +68,7 @@ class Steps:
         """All of its state, to compare."""
         return tuple([getattr(self, name) for name in self.__slots__])
 
-    def step(self, estimate: Estimate, hand: Hand) -> Vector | None:
+    def step(self, estimate: Estimate, hand: UserForce) -> Vector | None:
         """One tick, `hand` after its step. A step that is the sensor's, axes of B [N], or None."""
         change = hand.change
         oldest, older, last = self._oldest, self._older, self._last

@@ -5,9 +5,9 @@ import math
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.settings import Unexplained
-from pendant.guided.user_force import CARRIED, Hand
+from pendant.guided.user_force import CARRIED, UserForce
 from pendant.guided.work import Work
-from pendant.limits.parameters import Reference
+from pendant.limits.parameters import EntryValues
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
@@ -33,7 +33,7 @@ class Way:
 
     __slots__ = ("_began", "work")
 
-    def __init__(self, since: Reference) -> None:
+    def __init__(self, since: EntryValues) -> None:
         """
         Args:
             since: what held at entry; the way begins there.
@@ -68,7 +68,7 @@ class Alone:
 
     __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_helped", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
 
-    def __init__(self, on: Unexplained, since: Reference) -> None:
+    def __init__(self, on: Unexplained, since: EntryValues) -> None:
         """
         Args:
             on: settings.
@@ -91,7 +91,7 @@ class Alone:
         return (*own, self._stretch.memory, self._whole.memory)
 
     def step(
-        self, estimate: Estimate, hand: Hand, use_wrench: bool, driven: bool, slack: Slack = SURE, torque: Vector = ORIGIN
+        self, estimate: Estimate, hand: UserForce, use_wrench: bool, driven: bool, slack: Slack = SURE, torque: Vector = ORIGIN
     ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 

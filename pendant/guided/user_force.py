@@ -49,7 +49,7 @@ _LATELY = 1.0 - math.exp(-TICK / LATELY)
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
 
 
-class Hand:
+class UserForce:
     """Follows the user's force from entry to leaving."""
 
     __slots__ = (

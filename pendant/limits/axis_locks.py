@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from pendant.limits.settings import Axes
+from pendant.limits.settings import AxisSettings
 from pendant.tick.pose import Rotation, Vector
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
@@ -27,7 +27,7 @@ class AxisLocks(NamedTuple):
     too_near: float  # and below which with all of the resistance [m]
 
 
-def axis_locks(axes: Axes) -> AxisLocks | None:
+def axis_locks(axes: AxisSettings) -> AxisLocks | None:
     """The locks that the settings ask for, None where everything is free."""
     locked = tuple([not getattr(axes, axis) for axis in AXES])
     if not (axes.on and any(locked)):

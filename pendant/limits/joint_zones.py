@@ -1,13 +1,13 @@
 """Zones before the joint limits: in free-drive a joint is damped, then held back by a spring, before its range ends (FD-4).
 
 Motion out of a zone is free. A joint that starts in its stiff zone starts without any force, and what holds it there moves along
-with it on its way out (`resistance.Guard`), so that nothing kicks; the spring gives back what was put into it at most.
+with it on its way out (`resistance.LimitGuard`), so that nothing kicks; the spring gives back what was put into it at most.
 """
 
 import math
 from operator import sub
 
-from pendant.limits.resistance import Guard, closeness, resisting
+from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.limits.settings import JointLimits
 from pendant.tick.estimate import Estimate
 
@@ -33,7 +33,7 @@ class JointZones:
         self._inner: tuple[float, ...] = ()  # where each damping zone begins [rad]
         self._least = 0.0  # where the first of them does
         self._begin: tuple[float, ...] = ()  # where each stiff zone begins [rad]
-        self._guards: list[Guard | None] = []
+        self._guards: list[LimitGuard | None] = []
         self.torque: tuple[float, ...] = ()
         self.pushing = False
 
@@ -86,7 +86,7 @@ class JointZones:
         distance = abs(angle) - self._begin[joint]
         guard = self._guards[joint]
         if guard is None:
-            guard = self._guards[joint] = Guard(distance)
+            guard = self._guards[joint] = LimitGuard(distance)
         damping = settings.damping * rated
         beyond = guard.step(distance, 0.0)
         if beyond > 0.0:

@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from pendant.limits.settings import Axes
+from pendant.limits.settings import AxisSettings
 
 BACK = 1.2
 """The way back to a better word needs so many times the value, so that it does not flicker."""
@@ -33,7 +33,7 @@ class SingularityWatch:
         """All of its state, to compare."""
         return self.status
 
-    def step(self, value: float, axes: Axes) -> bool:
+    def step(self, value: float, axes: AxisSettings) -> bool:
         """One tick; returns whether the word is another one now.
 
         Args:

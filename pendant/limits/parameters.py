@@ -17,7 +17,7 @@ from pendant.tick.pose import Wrench
 ZEROS = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-class Reference(NamedTuple):
+class EntryValues(NamedTuple):
     """What held when a stage or a period began."""
 
     position: tuple[float, ...]  # of the flange in B [m]
@@ -26,11 +26,11 @@ class Reference(NamedTuple):
     angles: tuple[float, ...]  # q [rad]
 
 
-class View(msgspec.Struct, frozen=True, gc=False):
+class Observed(msgspec.Struct, frozen=True, gc=False):
     """What parameters are read from."""
 
     estimate: Estimate
-    since: Reference
+    since: EntryValues
     split: Split | None  # of the user's wrench; None: there is no flange sensor to go by (FD-3a)
     joints: tuple[str, ...]
     scale: tuple[float, ...]  # of the joint torque limits, for each joint
@@ -39,10 +39,10 @@ class View(msgspec.Struct, frozen=True, gc=False):
     heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
 
 
-Reader = Callable[[View, Gauge], tuple[float, str]]
+Reader = Callable[[Observed, Gauge], tuple[float, str]]
 
 
-def _flange_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
+def _flange_displacement(view: Observed, gauge: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.p_BF.tolist()
     x0, y0, z0 = view.since.position
     x, y, z = x - x0, y - y0, z - z0
@@ -51,7 +51,7 @@ def _flange_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
     return math.hypot(x, y, z), "flange"
 
 
-def _flange_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+def _flange_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.v_F.tolist()[:3]
     if view.shares is not WHOLE:
         gauge.high = gauge.base * view.shares.speed * view.shares.along(x, y, z)
@@ -63,41 +63,41 @@ def beyond_gravity(estimate: Estimate) -> float:
     return math.hypot(*estimate.a_felt.tolist())
 
 
-def _flange_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+def _flange_acceleration(view: Observed, gauge: Gauge) -> tuple[float, str]:
     x, y, z = view.estimate.a_felt.tolist()
     if view.shares is not WHOLE:
         gauge.high = gauge.base * view.shares.linear * view.shares.along(x, y, z)
     return math.hypot(x, y, z), "flange"
 
 
-def _tcp_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+def _tcp_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
     if view.shares is not WHOLE:
         gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.tcp.tolist()[3:])
     return view.estimate.v_tcp, "tcp"
 
 
-def _elbow_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+def _elbow_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
     if view.shares is not WHOLE:
         gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.elbow.tolist()[3:])
     return view.estimate.v_elbow, "elbow"
 
 
-def _joint_displacement(view: View, gauge: Gauge) -> tuple[float, str]:
+def _joint_displacement(view: Observed, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base * view.shares.way
     return _largest(list(map(sub, view.estimate.q.tolist(), view.since.angles)), view)
 
 
-def _joint_speed(view: View, gauge: Gauge) -> tuple[float, str]:
+def _joint_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base * view.shares.turning
     return _largest(view.estimate.qd.tolist(), view)
 
 
-def _joint_acceleration(view: View, gauge: Gauge) -> tuple[float, str]:
+def _joint_acceleration(view: Observed, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base * view.shares.angular
     return _largest(view.estimate.qdd.tolist(), view)
 
 
-def _largest(values: list[float], view: View) -> tuple[float, str]:
+def _largest(values: list[float], view: Observed) -> tuple[float, str]:
     """The largest in size, and its joint."""
     most, least = max(values), min(values)
     if most >= -least:
@@ -105,7 +105,7 @@ def _largest(values: list[float], view: View) -> tuple[float, str]:
     return -least, view.joints[values.index(least)]
 
 
-def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+def _motor_torque(view: Observed, gauge: Gauge) -> tuple[float, str]:
     """The motor that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
     torques = view.estimate.tau_m.tolist()
     _, part = _largest(list(map(truediv, torques, view.scale)), view)
@@ -114,7 +114,7 @@ def _motor_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     return abs(torques[joint]), part
 
 
-def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
+def _joint_torque(view: Observed, gauge: Gauge) -> tuple[float, str]:
     """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
     share, base, felt = view.share, gauge.base, view.estimate
     nearest, size, part = -1.0, 0.0, 0
@@ -127,24 +127,24 @@ def _joint_torque(view: View, gauge: Gauge) -> tuple[float, str]:
     return size, view.joints[part]
 
 
-def _payload_force(view: View, _: Gauge) -> tuple[float, str]:
+def _payload_force(view: Observed, _: Gauge) -> tuple[float, str]:
     return _of(view).payload_force, "flange"
 
 
-def _payload_torque(view: View, _: Gauge) -> tuple[float, str]:
+def _payload_torque(view: Observed, _: Gauge) -> tuple[float, str]:
     return _of(view).payload_torque, "flange"
 
 
-def _user_force(view: View, gauge: Gauge) -> tuple[float, str]:
+def _user_force(view: Observed, gauge: Gauge) -> tuple[float, str]:
     gauge.high = gauge.base + view.heavier
     return _of(view).user_force, "flange"
 
 
-def _user_torque(view: View, _: Gauge) -> tuple[float, str]:
+def _user_torque(view: Observed, _: Gauge) -> tuple[float, str]:
     return _of(view).user_torque, "flange"
 
 
-def _of(view: View) -> Split:
+def _of(view: Observed) -> Split:
     assert view.split is not None
     return view.split
 
@@ -203,7 +203,7 @@ class Monitor:
                 self._gauges.append((parameter.read, gauge))
                 self._needs.append((parameter.wrench, parameter.acceleration))
 
-    def step(self, view: View) -> list[Gauge]:
+    def step(self, view: Observed) -> list[Gauge]:
         """Check one tick; its joint values are finite. Returns what was beyond for longer than allowed."""
         beyond: list[Gauge] = []
         gauges, way = self._gauges, view.shares.way
@@ -230,6 +230,8 @@ class Monitor:
         return tuple([gauge.memory for _, gauge in self._gauges])
 
 
-def reference(estimate: Estimate, wrench: Wrench | None) -> Reference:
+def reference(estimate: Estimate, wrench: Wrench | None) -> EntryValues:
     """What is stored when a period begins, with this F_user, axes of B [N, N·m]; None is without it."""
-    return Reference(tuple(estimate.p_BF.tolist()), wrench or ZEROS, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist()))
+    return EntryValues(
+        tuple(estimate.p_BF.tolist()), wrench or ZEROS, tuple(estimate.tau_ext.tolist()), tuple(estimate.q.tolist())
+    )

@@ -34,7 +34,7 @@ def resisting(near: float, speed: float, damping: float) -> float:
     return near * damping * speed
 
 
-class Guard:
+class LimitGuard:
     """Remembers how far out a part may be: further out is resisted, and the place itself moves only inwards (VW-10).
 
     A part that starts outside starts at this place, so that nothing pushes it.

@@ -8,7 +8,7 @@ from pendant.settings.schema import number as _number
 from pendant.settings.schema import switch as _switch
 
 
-class Operation(Limit, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class EndLimit(Limit, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A limit while free-drive lasts, with its reaction."""
 
     stop: Annotated[bool, _switch("FD-18", "beyond is STOP")] = False
@@ -52,22 +52,22 @@ class MaintainLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=T
 class OperationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """What ends free-drive while it lasts."""
 
-    tcp_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the tool centre point")] = Operation(max=1.5)
-    elbow_speed: Annotated[Operation, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the elbow")] = Operation(max=1.5)
-    joint_speed: Annotated[Operation, _limit(0.1, 6.0, "rad/s", "FD-18", "speed of a joint")] = Operation(max=3.0)
-    flange_acceleration: Annotated[Operation, _limit(1.0, 78.0, "m/s²", "FD-18", "acceleration of the flange")] = Operation(
+    tcp_speed: Annotated[EndLimit, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the tool centre point")] = EndLimit(max=1.5)
+    elbow_speed: Annotated[EndLimit, _limit(0.05, 5.0, "m/s", "FD-18", "speed of the elbow")] = EndLimit(max=1.5)
+    joint_speed: Annotated[EndLimit, _limit(0.1, 6.0, "rad/s", "FD-18", "speed of a joint")] = EndLimit(max=3.0)
+    flange_acceleration: Annotated[EndLimit, _limit(1.0, 78.0, "m/s²", "FD-18", "acceleration of the flange")] = EndLimit(
         max=40.0, stop=True
     )
-    joint_torque: Annotated[Operation, _limit(0.01, 2.0, "of rated", "FD-18", "external torque of a joint")] = Operation(
+    joint_torque: Annotated[EndLimit, _limit(0.01, 2.0, "of rated", "FD-18", "external torque of a joint")] = EndLimit(
         max=0.8, time=0.05, stop=True
     )
-    user_force: Annotated[Operation, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = Operation(max=90.0, time=0.1)
-    flange_displacement: Annotated[Operation, _limit(0.005, 2.0, "m", "FD-18", "way of the flange since entry")] = Operation(
+    user_force: Annotated[EndLimit, _limit(5.0, 100.0, "N", "FD-18", "the user's force")] = EndLimit(max=90.0, time=0.1)
+    flange_displacement: Annotated[EndLimit, _limit(0.005, 2.0, "m", "FD-18", "way of the flange since entry")] = EndLimit(
         max=0.5, on=False
     )
 
 
-class Limits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class LimitSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Every limit: parameter x stage (FD-25)."""
 
     activation: ActivationLimits = ActivationLimits()
@@ -101,7 +101,7 @@ class Soft(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     hard: Annotated[bool, _switch("FD-12b", "all this lowers the limits that end free-drive, too")] = False
 
 
-class Axes(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class AxisSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Freedom of the tool in free-drive, axis by axis, and what singularities do to it."""
 
     on: Annotated[bool, _switch("FD-4", "axes can be locked", locked=False)] = True

@@ -1,10 +1,10 @@
 """Rows of the event table: mode and program, contacts, tool and payload, settings, and the loop."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import Effect, Row, Severity, denied, info
+from pendant.events.event_row import Effect, EventRow, Severity, denied, info
 
 
-def _touched(headline: str) -> Row:
+def _touched(headline: str) -> EventRow:
     """A change in contact: force on the object in B, pose of the tool centre point at the first suspicious sample."""
     keys = (
         "part",
@@ -26,7 +26,7 @@ def _touched(headline: str) -> Row:
         "posture",
         "action",
     )
-    return Row(
+    return EventRow(
         Effect.INFO,
         Severity.NOTICE,
         headline,
@@ -35,7 +35,7 @@ def _touched(headline: str) -> Row:
     )
 
 
-PROGRAM: dict[Kind, Row] = {
+PROGRAM: dict[Kind, EventRow] = {
     # Mode and program
     Kind.MODE_CHANGED: info("Mode {to}", "It was {from}.", ("from", "to")),
     Kind.COMMAND_REFUSED: denied("Not possible in {mode}: {command}", "{reason}.", ("command", "mode", "reason")),
@@ -72,7 +72,7 @@ PROGRAM: dict[Kind, Row] = {
         ("number", "angle", "limit", "missing"),
     ),
     Kind.POSTURE_REFUSED: denied("Posture refused", "{reason}.", ("reason",)),
-    Kind.PAYLOAD_FOUND: Row(
+    Kind.PAYLOAD_FOUND: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Found: {mass:.2f} ± {mass_deviation:.2f} kg",
@@ -84,7 +84,7 @@ PROGRAM: dict[Kind, Row] = {
         "Force sensor zeroed", "{force:.1f} N and {torque:.2f} N·m subtracted.", ("force", "torque", "x", "y", "z")
     ),
     Kind.ZERO_REFUSED: denied("Force sensor not zeroed", "{reason}.", ("reason",)),
-    Kind.ZERO_DUE: Row(
+    Kind.ZERO_DUE: EventRow(
         Effect.INFO,
         Severity.NOTICE,
         "Zero the force sensor",

@@ -7,7 +7,7 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import joints_ok
 from pendant.program.steps import ProgramState
-from pendant.signals.settings import Push
+from pendant.signals.settings import PushSettings
 from pendant.signals.sources import BUTTON, DIGITAL, NONE, Sources
 from pendant.tick.estimate import Estimate
 
@@ -99,7 +99,7 @@ def _told(push: tuple[float, float, float], tick: int) -> Event:
     return Event(Kind.PUSHED, tick, {"part": "flange", "force": size, "x": x, "y": y, "z": z})
 
 
-def _steered(use: Push, state: ProgramState) -> tuple[Command, ...]:
+def _steered(use: PushSettings, state: ProgramState) -> tuple[Command, ...]:
     """What a push does to the program (FD-6a)."""
     if state is ProgramState.RUNNING and use.pauses:
         return (Command.PAUSE_PROGRAM,)

@@ -1,9 +1,9 @@
 """Rows of the event table: safety inputs, sensors, stops and resets (FD-1)."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import EXCESS, Clears, Effect, Row, Severity, denied, info, protected
+from pendant.events.event_row import EXCESS, Clears, Effect, EventRow, Severity, denied, info, protected
 
-SAFETY: dict[Kind, Row] = {
+SAFETY: dict[Kind, EventRow] = {
     # Safety (FD-1)
     Kind.RUN_SENSORS_LOST: protected(
         "Protective stop: joint sensors not valid",
@@ -14,7 +14,7 @@ SAFETY: dict[Kind, Row] = {
         "Lost: {sensor} of {joint}", "{left}. End the motion and check it; free-drive needs it.", ("sensor", "joint", "left")
     ),
     Kind.JOINT_SENSOR_BACK: info("Back: {sensor} of {joint}", "", ("sensor", "joint")),
-    Kind.EMERGENCY_STOP: Row(
+    Kind.EMERGENCY_STOP: EventRow(
         Effect.EMERGENCY_STOP,
         Severity.STOP,
         "Emergency stop",
@@ -24,7 +24,7 @@ SAFETY: dict[Kind, Row] = {
         cool_down=True,
         category=1,
     ),
-    Kind.SAFEGUARD_STOP: Row(
+    Kind.SAFEGUARD_STOP: EventRow(
         Effect.SAFEGUARD_STOP,
         Severity.STOP,
         "Safeguard stop",

@@ -20,7 +20,7 @@ class SettingError(ValueError):
         self.allowed = allowed
 
 
-class Row(NamedTuple):
+class SettingRow(NamedTuple):
     """What a page or a document shows of a setting."""
 
     name: str  # dotted

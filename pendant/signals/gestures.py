@@ -1,7 +1,7 @@
 """Signals told by their course in time: pushes in a row, a force step, a tap, a joint turned by hand (FD-5f to FD-5i)."""
 
 from pendant.settings.schema import ticks
-from pendant.signals.settings import ForceStep, Pattern, Tap, Turn
+from pendant.signals.settings import ForceStep, PushPattern, TapSettings, Turn
 
 
 class PatternSignal:
@@ -19,7 +19,7 @@ class PatternSignal:
         """All of its state, to compare."""
         return (self._pushes, self._length, self._present)
 
-    def step(self, present: bool, use: Pattern) -> bool:
+    def step(self, present: bool, use: PushPattern) -> bool:
         """One tick of the push that it is made of. True in the tick in which it is whole."""
         longest = ticks(use.longest)
         if present is self._present:
@@ -88,7 +88,7 @@ class TapSignal:
         """All of its state, to compare."""
         return (self._length, self._quiet)
 
-    def step(self, acceleration: float, use: Tap) -> bool:
+    def step(self, acceleration: float, use: TapSettings) -> bool:
         """One tick; `acceleration` beyond gravity [m/s²]. True in the tick in which it is whole."""
         longest = ticks(use.longest)
         if acceleration > use.threshold:

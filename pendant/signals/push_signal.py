@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from pendant.settings.schema import ticks
-from pendant.signals.settings import Push, Twist
+from pendant.signals.settings import PushSettings, Twist
 from pendant.tick.pose import Rotation, Vector, turned
 
 STAYS = 0.75
@@ -25,7 +25,7 @@ class PushSignal:
         """All of its state, to compare."""
         return (self.present, self._calm)
 
-    def step(self, change: Sequence[float], R_BF: Rotation, use: Push) -> bool:
+    def step(self, change: Sequence[float], R_BF: Rotation, use: PushSettings) -> bool:
         """One tick.
 
         Args:
@@ -47,7 +47,7 @@ class PushSignal:
         return self.present
 
 
-def _right_way(f: Vector, force: float, R_BF: Rotation, use: Push) -> bool:
+def _right_way(f: Vector, force: float, R_BF: Rotation, use: PushSettings) -> bool:
     """Within the cone around the axis or, for a band, near the plane across it; not too much force off the axis."""
     length = math.hypot(use.x, use.y, use.z)
     if length == 0.0:
@@ -62,7 +62,7 @@ def _right_way(f: Vector, force: float, R_BF: Rotation, use: Push) -> bool:
     return across <= use.off_axis and math.atan2(across, along) <= math.radians(use.angle)
 
 
-def _at_place(change: Sequence[float], force: float, R_BF: Rotation, use: Push) -> bool:
+def _at_place(change: Sequence[float], force: float, R_BF: Rotation, use: PushSettings) -> bool:
     """The wrench's line of action passes the place: the torque about it is the force times its distance from the line."""
     fx, fy, fz, tx, ty, tz = change
     px, py, pz = turned(R_BF, (use.place_x, use.place_y, use.place_z))

@@ -5,7 +5,7 @@ from typing import Annotated
 from pendant.settings.schema import Section, number, switch
 
 
-class Push(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class PushSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(c) The user pushes at the flange."""
 
     on: Annotated[bool, switch("FD-5", "a push at the flange is an activation signal")] = False
@@ -47,7 +47,7 @@ class JointPush(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     last: Annotated[float, number(1.0, 12.0, "", "FD-5", "last joint that is asked")] = 6.0
 
 
-class Pattern(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class PushPattern(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(f) Short pushes in a row, such as push, release, push."""
 
     on: Annotated[bool, switch("FD-5", "short pushes in a row are an activation signal")] = False
@@ -73,7 +73,7 @@ class ForceStep(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     quiet: Annotated[float, number(0.1, 5.0, "s", "FD-5", "no commanded motion or payload change for so long")] = 0.5
 
 
-class Tap(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class TapSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(i) A tap that the flange's accelerometer feels."""
 
     on: Annotated[bool, switch("FD-5", "a tap at the flange is an activation signal")] = False
@@ -81,7 +81,7 @@ class Tap(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     longest: Annotated[float, number(0.01, 0.5, "s", "FD-5", "what lasts longer is no tap")] = 0.1
 
 
-class Signals(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class SignalSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Every source of an activation signal."""
 
     button: Annotated[bool, switch("FD-5", "the pendant's button is an activation signal")] = True
@@ -89,13 +89,13 @@ class Signals(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     digital_input: Annotated[float, number(0.0, 7.0, "", "FD-5", "which digital input")] = 0.0
     leaving: Annotated[bool, switch("FD-17", "a digital input that rises leaves free-drive")] = False
     leaving_input: Annotated[float, number(0.0, 7.0, "", "FD-17", "which digital input")] = 1.0
-    push: Push = Push()
+    push: PushSettings = PushSettings()
     twist: Twist = Twist()
     joints: JointPush = JointPush()
-    pattern: Pattern = Pattern()
+    pattern: PushPattern = PushPattern()
     turn: Turn = Turn()
     force_step: ForceStep = ForceStep()
-    tap: Tap = Tap()
+    tap: TapSettings = TapSettings()
 
 
 class LetGo(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

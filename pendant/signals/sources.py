@@ -9,7 +9,7 @@ from pendant.signals.contact_free_baseline import Untouched
 from pendant.signals.gestures import PatternSignal, StepSignal, TapSignal, TurnSignal
 from pendant.signals.joint_push import JointPushSignal
 from pendant.signals.push_signal import PushSignal, TwistSignal
-from pendant.signals.settings import LetGo, Signals
+from pendant.signals.settings import LetGo, SignalSettings
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import flat
 
@@ -80,7 +80,7 @@ class Sources:
         values = [getattr(self, name) for name in self.__slots__]
         return tuple([tuple(value) if isinstance(value, list) else getattr(value, "memory", value) for value in values])
 
-    def refresh(self, use: Signals) -> None:
+    def refresh(self, use: SignalSettings) -> None:
         """The settings are new: what a source felt that is off is over, and it begins afresh when it is on again."""
         pushing, by_wrench = _asked(use)
         if not by_wrench:
@@ -102,7 +102,9 @@ class Sources:
         if not (by_wrench or use.joints.on or use.turn.on or use.tap.on):
             self._held_at, self._quiet = [], 0  # nobody looks at postures and motions meanwhile
 
-    def step(self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: Signals) -> Presence:
+    def step(
+        self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: SignalSettings
+    ) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.
 
         Args:
@@ -194,7 +196,7 @@ class Sources:
         self._wrench.restart()
         self._push.present = self._twist.present = self._step.present = False
 
-    def _by_wrench(self, estimate: Estimate, pushing: bool, use: Signals) -> Presence:
+    def _by_wrench(self, estimate: Estimate, pushing: bool, use: SignalSettings) -> Presence:
         change = self._wrench.step(estimate.F_user.tolist())
         found = NONE
         if pushing:
@@ -211,7 +213,7 @@ class Sources:
         return found
 
 
-def _asked(use: Signals) -> tuple[bool, bool]:
+def _asked(use: SignalSettings) -> tuple[bool, bool]:
     """Whether pushes are looked for, and whether anything is that the flange sensor feels."""
     pushing = use.push.on or use.push.told or use.pattern.on
     return pushing, pushing or use.twist.on or use.force_step.on

@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from pendant.limits.parameters import Reference, reference
+from pendant.limits.parameters import EntryValues, reference
 from pendant.limits.validity import WrenchMean
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
@@ -20,7 +20,7 @@ class Stored:
     __slots__ = ("_states", "_wrench")
 
     def __init__(self) -> None:
-        self._states: deque[tuple[int, Reference]] = deque(maxlen=OLDEST // EVERY + 1)
+        self._states: deque[tuple[int, EntryValues]] = deque(maxlen=OLDEST // EVERY + 1)
         self._wrench = False  # the flange sensor was valid in all of them
 
     @property
@@ -43,7 +43,7 @@ class Stored:
         """What was kept is of another load or posture, or a sensor was out."""
         self._states.clear()
 
-    def of(self, tick: int, age: int, wrench_ok: bool) -> Reference | None:
+    def of(self, tick: int, age: int, wrench_ok: bool) -> EntryValues | None:
         """The youngest state that is at least `age` ticks old in `tick`; None without one, and where the sensors differ."""
         if wrench_ok is not self._wrench:
             return None

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.tick.source_signal import Signals
+from pendant.tick.source_signal import ContactSignals
 
 Array = NDArray[np.float64]
 
@@ -61,7 +61,9 @@ class Estimate:
     degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
     lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned
-    signals: Signals = field(default_factory=Signals)  # for the contact detectors, as pendant.contact.contact_monitor.SOURCES
+    signals: ContactSignals = field(
+        default_factory=ContactSignals
+    )  # for the contact detectors, as pendant.contact.contact_monitor.SOURCES
     tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]

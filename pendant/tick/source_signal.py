@@ -32,7 +32,7 @@ class Signal(NamedTuple):
     sz: float = 0.0
 
 
-class Signals(msgspec.Struct, frozen=True, gc=False):
+class ContactSignals(msgspec.Struct, frozen=True, gc=False):
     """One tick of all sources. While nobody looks at them they stay the rows of numbers that they come as."""
 
     rows: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, len(Signal._fields))))  # fields of `Signal`

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pendant.equipment.load import Load
-from pendant.equipment.payload_fit import LEAST, Finding, Posture, least_angle, nearest, solve
+from pendant.equipment.payload_fit import LEAST, FittedPayload, Posture, least_angle, nearest, solve
 from pendant.events.event import Event, Kind, Values
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import Vector, Wrench
@@ -23,7 +23,7 @@ class Progress(NamedTuple):
 
     postures: int = 0
     share: float = 0.0  # of the measurement that runs, 0 where none does
-    finding: Finding | None = None
+    finding: FittedPayload | None = None
     reason: str = ""  # why there is none, once there are postures enough
 
 

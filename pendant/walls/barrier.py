@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from pendant.limits.resistance import Guard, closeness, resisting
+from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.settings.schema import ticks
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, dot, finite, product, rotation, seen_from, turned, turned_back
 from pendant.walls.anchors import Anchor, Stay
@@ -36,7 +36,7 @@ class Consequence(IntEnum):
     REFUSE = 4  # do not enter (FD-10)
 
 
-class Part(msgspec.Struct, frozen=True, gc=False):
+class WatchedPart(msgspec.Struct, frozen=True, gc=False):
     """A point of the arm in one tick."""
 
     p: Vector  # in B [m]
@@ -46,7 +46,7 @@ class Part(msgspec.Struct, frozen=True, gc=False):
 class Around(msgspec.Struct, frozen=True, gc=False):
     """What walls need to know of one tick. Everything in B."""
 
-    parts: Mapping[str, Part]
+    parts: Mapping[str, WatchedPart]
     references: Mapping[str, Pose]  # X_BR of each reference
     user_force: Vector  # without the payload-like residual [N]
     payload_force: Vector  # of the payload-like residual [N]
@@ -109,7 +109,7 @@ class Barrier:
         turn = rotation(border.orientation)
         self._turn = None if turn == UNTURNED else turn
         self._anchor: Anchor | None = None  # of a wall, from its first tick on
-        self._guard: Guard | None = None
+        self._guard: LimitGuard | None = None
         self._lies: tuple[Vector, float, Pose] | None = None  # anchor, factor, reference of the tick before
         self._before = 0.0  # distance in the tick before [m]
         self._part: Vector = ORIGIN  # place in the tick before, in B [m]
@@ -153,7 +153,7 @@ class Barrier:
         distance, outward = self._measure(local, anchor, factor, reference)
         guard = self._guard
         if guard is None:
-            guard = self._guard = Guard(distance)
+            guard = self._guard = LimitGuard(distance)
             self._part, self._before = place, distance
         x, y, z = self._part
         moved = (px - x, py - y, pz - z)

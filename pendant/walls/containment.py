@@ -9,10 +9,10 @@ from msgspec.structs import replace
 from pendant.events.event import Values
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
-from pendant.walls.barrier import Around, Consequence, Part, Place, Reading, placed
+from pendant.walls.barrier import Around, Consequence, Place, Reading, WatchedPart, placed
 from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Reaction, Start, Wall
 from pendant.walls.enclosure import Enclosure, worst
-from pendant.walls.settings import Walls
+from pendant.walls.settings import WallSettings
 from pendant.walls.shapes import Sphere
 
 PARTS = ("flange", "tcp", "elbow")
@@ -25,7 +25,7 @@ NOBODY = (ORIGIN, ORIGIN, False)
 """The user's and the payload-like force where nothing is known of them, and nobody is known to lead the arm."""
 
 
-def tether(walls: Walls) -> Wall:
+def tether(walls: WallSettings) -> Wall:
     """The sphere round the flange, in the sizes of the settings."""
     return Wall(
         name=TETHER,
@@ -70,7 +70,7 @@ class Containment:
         self._enclosure: Enclosure | None = None  # walls hold, or will
         self._reading: tuple[Reading, ...] = ()
         self._parts: tuple[str, ...] = ()
-        self._points: dict[str, Part] = {}  # where they were in the last step
+        self._points: dict[str, WatchedPart] = {}  # where they were in the last step
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
 
@@ -79,14 +79,14 @@ class Containment:
         """All of its state, to compare."""
         return (self._reading, self.places())
 
-    def begin(self, start: Start, walls: Walls) -> None:
+    def begin(self, start: Start, walls: WallSettings) -> None:
         """The activation period or the sequence begins."""
         if start is Start.ACTIVATION or self._enclosure is None:
             self._enclosure = self._build(walls)
         if self._enclosure is not None:
             self._enclosure.begin(start)
 
-    def enter(self, walls: Walls) -> None:
+    def enter(self, walls: WallSettings) -> None:
         """FREE_DRIVE begins."""
         self._enclosure = self._build(walls)
         if self._enclosure is not None:
@@ -136,7 +136,7 @@ class Containment:
         pairs = zip([reading.border for reading in self._reading], self._enclosure.places(), strict=False)
         return tuple([(border, place) for border, place in pairs if place is not None])
 
-    def every_place(self, walls: Walls) -> tuple[tuple[AnyBorder, Place], ...]:
+    def every_place(self, walls: WallSettings) -> tuple[tuple[AnyBorder, Place], ...]:
         """What holds, and every area that will in free-drive, each with where its shape lies.
 
         Areas that do not hold yet and lie in a part of the arm are left out; one whose size follows the posture has its smallest.
@@ -149,7 +149,7 @@ class Containment:
         rest = [area for area in areas if area.name not in names]
         return hold + tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in rest])
 
-    def _build(self, walls: Walls) -> Enclosure | None:
+    def _build(self, walls: WallSettings) -> Enclosure | None:
         borders = self._borders if not walls.tether else (tether(walls), *self._borders)
         borders = tuple([_switched(border, walls) for border in borders])
         if not walls.on or not borders:
@@ -162,7 +162,7 @@ class Containment:
         return Enclosure(borders)
 
 
-def _switched(border: AnyBorder, walls: Walls) -> AnyBorder:
+def _switched(border: AnyBorder, walls: WallSettings) -> AnyBorder:
     """The border without what is switched off."""
     if not walls.resistance:
         border = replace(border, band=0.0)
@@ -194,13 +194,13 @@ def _word(share: float, axis: str) -> str:
     return f" {'+' if share > 0.0 else '-'}{axis}" if abs(share) >= 0.4 else ""  # sin 24°: of three axes one at least is named
 
 
-def _point(name: str, estimate: Estimate) -> Part:
+def _point(name: str, estimate: Estimate) -> WatchedPart:
     if name == "flange":
         x, y, z = estimate.p_BF.tolist()
         vx, vy, vz = estimate.v_F.tolist()[:3]
     else:
         x, y, z, vx, vy, vz = (estimate.tcp if name == "tcp" else estimate.elbow).tolist()
-    return Part((x, y, z), (vx, vy, vz))
+    return WatchedPart((x, y, z), (vx, vy, vz))
 
 
 def _measures(estimate: Estimate) -> dict[Measure, float]:

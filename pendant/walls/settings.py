@@ -7,7 +7,7 @@ from pendant.settings.schema import number as _number
 from pendant.settings.schema import switch as _switch
 
 
-class Walls(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class WallSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
 
     on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True

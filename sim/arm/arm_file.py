@@ -19,7 +19,7 @@ class Sourced(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     assumed: list[str] = []
 
 
-class Chain(Sourced, frozen=True):
+class ChainParameters(Sourced, frozen=True):
     """Kinematics, standard Denavit-Hartenberg (link i's frame sits behind joint i: Rz(q) Tz(d) Tx(a) Rx(alpha))."""
 
     joints: list[str]  # names, base to flange
@@ -43,7 +43,7 @@ class Inertias(Sourced, frozen=True):
     tensor: list[list[float]]
 
 
-class Limits(Sourced, frozen=True):
+class ArmLimits(Sourced, frozen=True):
     """Joint limits."""
 
     position: list[Positive]  # ± [rad]
@@ -137,7 +137,7 @@ class ForceTorque(Sourced, frozen=True):
     drift: Drift | None = None  # None: its zero stays where it is
 
 
-class Sensors(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class SensorNumbers(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All sensors; the flange sensor and the accelerometers are optional (FD-3a)."""
 
     encoders: Encoders
@@ -176,15 +176,15 @@ class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     reach: Positive  # [m]
     payload: Positive  # largest [kg]
     rating: Sourced  # of reach and payload
-    chain: Chain
+    chain: ChainParameters
     masses: Masses
     inertias: Inertias
-    limits: Limits
+    limits: ArmLimits
     motors: Motors
     transmissions: Transmissions
     frictions: Frictions
     thermals: Thermals
-    sensors: Sensors
+    sensors: SensorNumbers
     outline: Outline
     shapes: list[Capsule]
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 import pendant.equipment.tools
 from sim.arm.arm_file import Arm
 from sim.arm.frames import com_in_joint_frame, inertia_matrix, link_transform, skew
-from sim.arm.scenario import Load, Tool
+from sim.arm.scenario import Load, ToolModel
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def tool_body(tool: pendant.equipment.tools.Tool | None) -> Body:
     """`tool` as a body in F: without an inertia a cylinder of its length and radius, or as a load; no tool weighs nothing."""
     if tool is None:
         return Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    if tool.inertia is not None or not isinstance(tool, Tool):
+    if tool.inertia is not None or not isinstance(tool, ToolModel):
         return load_body(Load(mass=tool.mass, com=tool.com, inertia=tool.inertia))
     across = tool.mass * (3 * tool.radius**2 + tool.length**2) / 12.0
     return Body(tool.mass, np.array(tool.com), np.diag([across, across, tool.mass * tool.radius**2 / 2.0]))

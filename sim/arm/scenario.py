@@ -9,17 +9,17 @@ from pendant.equipment.load import Load, Vector
 from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import NotNegative, Positive
 
-__all__ = ["BARE", "AnyObject", "Load", "Scenario", "Tool", "Vector", "table"]
+__all__ = ["BARE", "AnyObject", "Load", "Scenario", "ToolModel", "Vector", "table"]
 
 
-class Tool(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class ToolModel(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A tool as it is: told to the controller, and with the shape of a capsule along z of F. Without an inertia a cylinder."""
 
     length: NotNegative = 0.0  # of its shape; 0 for none [m]
     radius: Positive = 0.03  # [m]
 
 
-BARE = Tool(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
+BARE = ToolModel(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
 """No tool: the tool centre point is the middle of the flange."""
 
 
@@ -33,7 +33,7 @@ class WorldObject(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     friction: NotNegative = 0.5  # Coulomb coefficient
 
 
-class Box(WorldObject, tag="box", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class BoxObject(WorldObject, tag="box", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A box (table, wall, block); `position` is its centre."""
 
     size: Vector  # full lengths [m]
@@ -73,7 +73,7 @@ class Moving(WorldObject, tag="moving", frozen=True, forbid_unknown_fields=True,
     period: Positive = 4.0  # [s]
 
 
-AnyObject = Box | Plane | Pad | SnapFit | TwoFrictions | Moving
+AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving
 
 
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -81,8 +81,8 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
 
     mounting: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
-    tool: Tool | None = None  # mounted, and the one in use at the start
-    tools: list[Tool] = []  # to choose from on the pendant, besides that one
+    tool: ToolModel | None = None  # mounted, and the one in use at the start
+    tools: list[ToolModel] = []  # to choose from on the pendant, besides that one
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     world: list[AnyObject] = []
@@ -92,7 +92,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)
 
 
-def table(scenario: Scenario) -> list[Tool]:
+def table(scenario: Scenario) -> list[ToolModel]:
     """The table of tools: first the one in use at the start, which wins over another of its name."""
     used = scenario.tool or next((tool for tool in scenario.tools if tool.name == BARE.name), BARE)
     return [used, *(tool for tool in scenario.tools if tool.name != used.name)]

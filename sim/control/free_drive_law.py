@@ -140,19 +140,26 @@ class FreeDriveLaw:
         else:
             hand[:] = 0.0
         if with_friction:
-            torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
-            rubs = (estimate.friction, estimate.theta_d, friction.terms, friction.warmth)
             # Where nobody may lead the arm it gets no help, and brakes: who leads it pushes then, and is felt.
-            share = 0.0 if decision.doubtful else help * self.share
-            _take_off(hand, *torques, estimate.q, self._memory, self._rates, *rubs, share, torque)
+            self._help(estimate, friction, 0.0 if decision.doubtful else help * self.share, torque)
         if locks is not None:
             self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
             constraint.hold(torque)
+        self._shake(estimate, decision, friction, torque)
+        return torque
+
+    def _shake(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, torque: Array) -> None:
+        """Add haptic feedback."""
         if decision.shake is None:
             self._shaker.stop()
         else:
             torque[-1] += self._shaker.torque(decision.shake, estimate, float(friction.breakaway[-1]))
-        return torque
+
+    def _help(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
+        """Take at most this share of the friction off the hand."""
+        torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
+        rubs = (estimate.friction, estimate.theta_d, friction.terms, friction.warmth)
+        _take_off(self._hand, *torques, estimate.q, self._memory, self._rates, *rubs, share, torque)
 
 
 @numba.njit(cache=True)

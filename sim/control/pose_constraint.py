@@ -34,6 +34,31 @@ def _quaternion(R):
 
 
 @numba.njit(cache=True)
+def _tilts(locked, frame, turned, rows, values, m) -> int:
+    """The rows of two locked turns: the free axis must not tilt."""
+    f = 0
+    for k in range(3):
+        if not locked[3 + k]:
+            f = k
+    ax, ay, az = frame[0, f], frame[1, f], frame[2, f]
+    now = np.empty(3)
+    for k in range(3):
+        now[k] = turned[k, 0] * ax + turned[k, 1] * ay + turned[k, 2] * az
+    upright = ax * now[0] + ay * now[1] + az * now[2]
+    tx, ty, tz = ay * now[2] - az * now[1], az * now[0] - ax * now[2], ax * now[1] - ay * now[0]
+    for k in range(3):
+        if locked[3 + k]:
+            bx, by, bz = frame[0, k], frame[1, k], frame[2, k]
+            along = bx * now[0] + by * now[1] + bz * now[2]
+            values[m] = bx * tx + by * ty + bz * tz
+            rows[m, 3] = upright * bx - along * ax
+            rows[m, 4] = upright * by - along * ay
+            rows[m, 5] = upright * bz - along * az
+            m += 1
+    return m
+
+
+@numba.njit(cache=True)
 def _turns(locked, frame, turn, R, rows, values, m) -> int:
     """Add the rows of the locked turns, by the angular velocity in B, and their values [rad]; the number of all rows."""
     count = 0
@@ -45,27 +70,8 @@ def _turns(locked, frame, turn, R, rows, values, m) -> int:
     for j in range(3):
         for k in range(3):
             turned[j, k] = R[j, 0] * turn[k, 0] + R[j, 1] * turn[k, 1] + R[j, 2] * turn[k, 2]
-    if count == 2:  # the free axis must not tilt
-        f = 0
-        for k in range(3):
-            if not locked[3 + k]:
-                f = k
-        ax, ay, az = frame[0, f], frame[1, f], frame[2, f]
-        now = np.empty(3)
-        for k in range(3):
-            now[k] = turned[k, 0] * ax + turned[k, 1] * ay + turned[k, 2] * az
-        upright = ax * now[0] + ay * now[1] + az * now[2]
-        tx, ty, tz = ay * now[2] - az * now[1], az * now[0] - ax * now[2], ax * now[1] - ay * now[0]
-        for k in range(3):
-            if locked[3 + k]:
-                bx, by, bz = frame[0, k], frame[1, k], frame[2, k]
-                along = bx * now[0] + by * now[1] + bz * now[2]
-                values[m] = bx * tx + by * ty + bz * tz
-                rows[m, 3] = upright * bx - along * ax
-                rows[m, 4] = upright * by - along * ay
-                rows[m, 5] = upright * bz - along * az
-                m += 1
-        return m
+    if count == 2:
+        return _tilts(locked, frame, turned, rows, values, m)
     w, x, y, z = _quaternion(turned)
     for k in range(3):
         if not locked[3 + k]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.source_signal import Signal, Signals
+from pendant.tick.source_signal import ContactSignals, Signal
 from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.rigid_body.cholesky import factor, solve
@@ -80,7 +80,7 @@ class ContactSources:
             out,
         )  # fmt: skip
         self._started = links
-        estimate.signals = Signals(out.copy(), (pair, flange, links, links))
+        estimate.signals = ContactSignals(out.copy(), (pair, flange, links, links))
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

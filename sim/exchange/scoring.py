@@ -57,7 +57,7 @@ class Scored(Protocol):
         ...
 
 
-class Running(Protocol):
+class RunningSimulation(Protocol):
     """What a view of a running simulation reads of it."""
 
     plant: Plant
@@ -77,7 +77,7 @@ class Running(Protocol):
 class Glance:
     """`Scored` of a running simulation; what it gives changes with the next tick."""
 
-    def __init__(self, simulation: Running) -> None:
+    def __init__(self, simulation: RunningSimulation) -> None:
         self._simulation = simulation
 
     @property

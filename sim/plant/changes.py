@@ -8,21 +8,21 @@ from sim.arm.arm_file import NotNegative
 from sim.arm.scenario import Load, Vector
 
 
-class Change(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
+class TrueChange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
     """Base of all changes."""
 
 
-class AttachPayload(Change, tag="attach_payload", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class AttachPayload(TrueChange, tag="attach_payload", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The true payload becomes `load` (also to change it)."""
 
     load: Load
 
 
-class DropPayload(Change, tag="drop_payload", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class DropPayload(TrueChange, tag="drop_payload", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The true payload falls off."""
 
 
-class SensorFault(Change, tag="sensor", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class SensorFault(TrueChange, tag="sensor", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A sensor drifts, becomes noisier, or fails. `channel` None: all channels of the sensor."""
 
     sensor: Literal["motor_encoder", "output_encoder", "current", "force_torque", "accelerometer", "gyro"]
@@ -33,25 +33,25 @@ class SensorFault(Change, tag="sensor", frozen=True, forbid_unknown_fields=True,
     outage: bool = False
 
 
-class Friction(Change, tag="friction", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class FrictionChange(TrueChange, tag="friction", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """True friction of a joint (None: all) times `factor` (wear, grease)."""
 
     joint: str | None = None
     factor: NotNegative
 
 
-class Temperature(Change, tag="temperature", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class Temperature(TrueChange, tag="temperature", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """True temperature of a joint (None: all)."""
 
     joint: str | None = None
     celsius: float
 
 
-class MoveObject(Change, tag="move_object", frozen=True, forbid_unknown_fields=True, kw_only=True):
+class MoveObject(TrueChange, tag="move_object", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A world object is put elsewhere."""
 
     name: str
     position: Vector
 
 
-AnyChange = AttachPayload | DropPayload | SensorFault | Friction | Temperature | MoveObject
+AnyChange = AttachPayload | DropPayload | SensorFault | FrictionChange | Temperature | MoveObject

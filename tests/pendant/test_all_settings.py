@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from pendant.all_settings import Settings, apply, describe, digest, find, limits_checksum, value_of
-from pendant.settings.schema import Row, SettingError, Value, ticks
+from pendant.settings.schema import SettingError, SettingRow, Value, ticks
 
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
 EXPECTED = {
@@ -322,7 +322,7 @@ def test_defaults_are_the_shipped_settings() -> None:
 
 
 @pytest.mark.parametrize("row", NUMBERS, ids=lambda row: row.name)
-def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: Row) -> None:
+def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: SettingRow) -> None:
     assert row.low is not None
     assert row.high is not None
     for value in (row.low, row.high, (row.low + row.high) / 2, math.nextafter(row.low, math.inf)):
@@ -337,7 +337,7 @@ def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: Row) -> None:
 
 
 @pytest.mark.parametrize("row", SWITCHES, ids=lambda row: row.name)
-def test_a_switch_is_true_or_false(row: Row) -> None:
+def test_a_switch_is_true_or_false(row: SettingRow) -> None:
     for value in (True, False):
         assert value_of(apply(Settings(), {row.name: value}), row.name) is value
     for value in (0, 1, 0.0, "true", None):
@@ -385,7 +385,7 @@ def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
             msgspec.convert(bad, Settings)
 
 
-def other(row: Row) -> Value:
+def other(row: SettingRow) -> Value:
     if row.low is None or row.high is None:
         return not row.default
     return row.low if row.high == row.default else row.high

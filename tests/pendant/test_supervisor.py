@@ -9,7 +9,7 @@ from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, Program, ProgramState, Wait
-from pendant.settings.schema import Row, Value
+from pendant.settings.schema import SettingRow, Value
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.walls.definitions import Start, Wall
@@ -28,12 +28,12 @@ def command(*commands: Command) -> Inputs:
     return Inputs(commands=commands)
 
 
-def another(row: Row) -> Value:
+def another(row: SettingRow) -> Value:
     """A value that is allowed and not the present one."""
     return not value_of(START, row.name) if row.low is None else other(row)
 
 
-def change(row: Row) -> Inputs:
+def change(row: SettingRow) -> Inputs:
     return Inputs(settings={row.name: another(row)})
 
 
@@ -283,7 +283,7 @@ def test_limits_are_locked_in_free_drive_and_run_and_from_the_signal_on(
 
 
 @pytest.mark.parametrize("row", UNLOCKED, ids=lambda row: row.name)
-def test_what_is_no_limit_changes_in_free_drive_and_run(row: Row) -> None:
+def test_what_is_no_limit_changes_in_free_drive_and_run(row: SettingRow) -> None:
     for bench, mode in ((Bench().entered(), Mode.FREE_DRIVE), (running(), Mode.RUN)):
         before = bench.supervisor.settings
         bench.step(change(row))
@@ -292,7 +292,7 @@ def test_what_is_no_limit_changes_in_free_drive_and_run(row: Row) -> None:
 
 
 @pytest.mark.parametrize("row", [*LOCKED, *UNLOCKED], ids=lambda row: row.name)
-def test_each_setting_changes_while_the_arm_is_held(row: Row) -> None:
+def test_each_setting_changes_while_the_arm_is_held(row: SettingRow) -> None:
     bench, value = Bench(), another(row)
     bench.step(change(row))
     values: Values = {"name": row.name, "old": value_of(START, row.name), "new": value}

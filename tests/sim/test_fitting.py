@@ -12,13 +12,13 @@ from pendant.program.steps import LinearMove
 from pendant.tick.modes import Mode
 from sim.arm.chain import tool_body
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
-from sim.arm.scenario import Load, Scenario, Tool, table
+from sim.arm.scenario import Load, Scenario, ToolModel, table
 from sim.exchange.desk import Wishes
 from tests.sim.bench import Bench
 
 G = 9.81
-GRIPPER = Tool(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.02, 0.16], length=0.16)
-PROBE = Tool(name="probe", mass=0.3, com=[0.0, 0.0, 0.03], tcp=[0.0, 0.0, 0.05], inertia=[1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0])
+GRIPPER = ToolModel(name="gripper", mass=0.9, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.02, 0.16], length=0.16)
+PROBE = ToolModel(name="probe", mass=0.3, com=[0.0, 0.0, 0.03], tcp=[0.0, 0.0, 0.05], inertia=[1e-3, 1e-3, 1e-3, 0.0, 0.0, 0.0])
 
 
 def wish(tool: str = "", load: Load | None = None, tools: tuple[pendant.equipment.tools.Tool, ...] = ()) -> Wishes:
@@ -32,10 +32,10 @@ def bench(scenario: Scenario, ramp: float) -> Bench:
 
 
 def test_the_table_begins_with_the_tool_in_use_which_wins() -> None:
-    other = Tool(name="gripper", mass=2.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.2])
+    other = ToolModel(name="gripper", mass=2.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.2])
     assert table(Scenario(tool=GRIPPER, tools=[other, PROBE])) == [GRIPPER, PROBE]
     assert [tool.name for tool in table(Scenario(tools=[PROBE, GRIPPER]))] == ["flange", "probe", "gripper"]
-    bare = Tool(name="flange", mass=0.1, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
+    bare = ToolModel(name="flange", mass=0.1, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
     assert table(Scenario(tools=[PROBE, bare])) == [bare, PROBE]
     assert [tool.mass for tool in table(Scenario())] == [0.0]
 

@@ -16,16 +16,16 @@ from pendant.inputs import Button, Command, Inputs
 from pendant.program.steps import JointMove, LinearMove, Program, Wait
 from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Box, Load, Scenario
+from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
-from sim.plant.changes import AttachPayload, DropPayload, Friction, MoveObject, SensorFault, Temperature
+from sim.plant.changes import AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
 from sim.plant.touch import Push, Touch
 from sim.sensing.calibration import Calibration
 from sim.simulation import Simulation
 from tests.sim.arms import PROBE, TWO_KG, UR5E
 from tests.sim.bench import CENTRE, IDLE, NOMINAL, Bench, push
 
-TABLE = Box(name="table", position=[0.6, 0.6, 0.0], size=[0.4, 0.4, 0.1])
+TABLE = BoxObject(name="table", position=[0.6, 0.6, 0.0], size=[0.4, 0.4, 0.1])
 SETTINGS = apply(
     Settings(),
     # a push that does not care how fast the arm gets is not to end it
@@ -57,7 +57,7 @@ def script(tick: int) -> Wishes:
     if 1000 < tick < 1200:
         touches.append(push("elbow", (0.0, 5.0, 10.0)))
     changes = {
-        300: (Temperature(celsius=35.0), Friction(joint="elbow", factor=1.3)),
+        300: (Temperature(celsius=35.0), FrictionChange(joint="elbow", factor=1.3)),
         900: (SensorFault(sensor="gyro", noise_factor=3.0),),
         1100: (SensorFault(sensor="force_torque", outage=True),),
         1200: (SensorFault(sensor="force_torque"),),
@@ -300,7 +300,7 @@ def test_changes_act_on_the_true_arm_and_on_nothing_the_controller_believes() ->
     q = np.array(UR5E.chain.home)
     believed = bench.simulation.dynamics.gravity(q).copy()
     bench.change(
-        AttachPayload(load=Load(mass=4.0)), Friction(factor=2.0), Temperature(joint="wrist_2", celsius=60.0),
+        AttachPayload(load=Load(mass=4.0)), FrictionChange(factor=2.0), Temperature(joint="wrist_2", celsius=60.0),
         MoveObject(name="table", position=[1.0, 1.0, 0.0]),
     )  # fmt: skip
     plant = bench.plant
@@ -316,7 +316,7 @@ def test_changes_act_on_the_true_arm_and_on_nothing_the_controller_believes() ->
 def test_a_change_of_an_unknown_joint_or_object_is_an_error() -> None:
     simulation = Simulation(UR5E, SCENARIO, SETTINGS)
     with pytest.raises(KeyError, match=r"knee.*there are base, shoulder"):
-        simulation.apply(Friction(joint="knee", factor=1.0))
+        simulation.apply(FrictionChange(joint="knee", factor=1.0))
     with pytest.raises(KeyError):
         simulation.apply(MoveObject(name="chair", position=[0.0, 0.0, 0.0]))
 

@@ -2,8 +2,8 @@
 
 viser 1.1.1 takes from every client any attribute of any control, presses of disabled buttons, values beyond the range, requests
 to open a public tunnel, uploads, and connections of any web page, and tells the other clients before a callback sees it. Here
-every connection is a `Gate`, whose `recv` hands on only what `Guard.admit` allows; the `Door` asks for Host, Origin and token
-before there is a connection at all. Whatever is refused is dropped and counted.
+every connection is a `MessageGate`, whose `recv` hands on only what `Guard.admit` allows; the `Door` asks for Host, Origin and
+token before there is a connection at all. Whatever is refused is dropped and counted.
 """
 
 import functools
@@ -20,8 +20,8 @@ import websockets.asyncio.server
 
 from app.web.access.door import Door
 from app.web.access.listening import Access
-from app.web.access.message_gate import MAX_BYTES, Gate
-from app.web.access.messages import Admitted, Camera, Drag, Part, Trigger, Update, Upload, decode, encode
+from app.web.access.message_gate import MAX_BYTES, MessageGate
+from app.web.access.messages import Admitted, Camera, CommandTrigger, Drag, Update, Upload, UploadPart, decode, encode
 from app.web.access.operator import Operator
 from app.web.access.takes import bounded, reason_against
 
@@ -62,7 +62,7 @@ class Guard:
         def serve(handler: Any, host: str, port: int, **options: Any) -> Any:
             options |= {
                 "max_size": MAX_BYTES,
-                "create_connection": functools.partial(Gate, self),
+                "create_connection": functools.partial(MessageGate, self),
                 "process_request": functools.partial(self.door.answer, options["process_request"]),
             }
             return original(handler, host, port, **options)
@@ -118,8 +118,8 @@ class Guard:
             if message.phase == "end":
                 return None
         else:
-            uuid = message.source_component_uuid if isinstance(message, Upload | Part) else message.uuid
-            control = self._command(uuid) if isinstance(message, Trigger) else self._control(client, uuid)
+            uuid = message.source_component_uuid if isinstance(message, Upload | UploadPart) else message.uuid
+            control = self._command(uuid) if isinstance(message, CommandTrigger) else self._control(client, uuid)
             if control is None:
                 return "unknown control"
             reason = reason_against(control, message)
@@ -149,19 +149,19 @@ class Guard:
         """Count a refusal."""
         self.refused[reason] += 1
 
-    def client_of(self, gate: Gate) -> int | None:
+    def client_of(self, gate: MessageGate) -> int | None:
         """The number that viser gave to the connection."""
         if self._server is None:
             return None
         live = self._server._websock_server._live_connections
         return next((client for client, connection in live.items() if connection is gate), None)
 
-    def stalled(self, gate: Gate) -> None:
+    def stalled(self, gate: MessageGate) -> None:
         """The network of a client gives no answer: what it holds counts as released (FD-23)."""
         client = self.client_of(gate)
         if client is not None:
             self._stalled(client)
 
-    def lost(self, gate: Gate) -> None:
+    def lost(self, gate: MessageGate) -> None:
         """A connection is no more: its place is free."""
         self.door.inside.discard(gate)

@@ -23,7 +23,7 @@ class Warden(Protocol):
     silence: float
     """Without an answer for this long a client counts as silent [s]."""
 
-    def client_of(self, gate: "Gate") -> int | None:
+    def client_of(self, gate: "MessageGate") -> int | None:
         """The number that viser gave to the connection."""
         ...
 
@@ -35,16 +35,16 @@ class Warden(Protocol):
         """Count a refusal."""
         ...
 
-    def stalled(self, gate: "Gate") -> None:
+    def stalled(self, gate: "MessageGate") -> None:
         """The client gives no answer."""
         ...
 
-    def lost(self, gate: "Gate") -> None:
+    def lost(self, gate: "MessageGate") -> None:
         """The connection is no more."""
         ...
 
 
-class Gate(ServerConnection):
+class MessageGate(ServerConnection):
     """The connection of one client."""
 
     def __init__(self, warden: Warden, *args: Any, **options: Any) -> None:

@@ -33,14 +33,14 @@ class Update(Message, tag="GuiUpdateMessage"):
     updates: dict[str, bool | int | float | str | Triple]
 
 
-class Hold(Message, tag="GuiButtonHoldMessage"):
+class HoldMessage(Message, tag="GuiButtonHoldMessage"):
     """A button is held: sent again and again."""
 
     uuid: str
     frequency: float
 
 
-class Trigger(Message, tag="CommandTriggerMessage"):
+class CommandTrigger(Message, tag="CommandTriggerMessage"):
     """A key was pressed, or a line of the palette chosen."""
 
     uuid: str
@@ -72,7 +72,7 @@ class Upload(Message, tag="FileTransferStartUpload"):
     size_bytes: int
 
 
-class Part(Message, tag="FileTransferPart"):
+class UploadPart(Message, tag="FileTransferPart"):
     """The content of a file."""
 
     source_component_uuid: str
@@ -81,7 +81,7 @@ class Part(Message, tag="FileTransferPart"):
     content: bytes
 
 
-Admitted = Camera | Update | Hold | Trigger | Drag | Upload | Part
+Admitted = Camera | Update | HoldMessage | CommandTrigger | Drag | Upload | UploadPart
 
 _decoder = msgspec.msgpack.Decoder(Admitted)
 _encoder = msgspec.msgpack.Encoder()

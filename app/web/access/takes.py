@@ -5,7 +5,7 @@ from typing import Any
 
 import viser
 
-from app.web.access.messages import Admitted, Hold, Part, Trigger, Update, Upload
+from app.web.access.messages import Admitted, CommandTrigger, HoldMessage, Update, Upload, UploadPart
 
 MAX_FILE = 48 * 1024
 """Largest file from a client: it comes in one message."""
@@ -38,17 +38,17 @@ def _within(value: Any, most: float) -> bool:
     return all(_within(getattr(value, name), most) for name in getattr(value, "__struct_fields__", ()))
 
 
-def reason_against(control: Any, message: Update | Hold | Trigger | Upload | Part) -> str | None:
+def reason_against(control: Any, message: Update | HoldMessage | CommandTrigger | Upload | UploadPart) -> str | None:
     """Why the control cannot be used like that by anybody, or None."""
-    if isinstance(message, Trigger):
+    if isinstance(message, CommandTrigger):
         return "disabled control" if control.disabled else None
     if control.disabled or not control.visible:
         return "disabled control"
-    if isinstance(message, Upload | Part):
+    if isinstance(message, Upload | UploadPart):
         if not isinstance(control, viser.GuiUploadButtonHandle):
             return "not an upload button"
         return None if _small(message) else "not a small file"
-    if isinstance(message, Hold):
+    if isinstance(message, HoldMessage):
         holdable = isinstance(control, viser.GuiButtonHandle) and message.frequency in control._hold_callback_freqs
         return None if holdable else "not a hold button"
     if set(message.updates) != {"value"}:
@@ -56,9 +56,9 @@ def reason_against(control: Any, message: Update | Hold | Trigger | Upload | Par
     return None if _fits(control, message.updates["value"]) else "value not allowed"
 
 
-def _small(message: Upload | Part) -> bool:
+def _small(message: Upload | UploadPart) -> bool:
     """Whether a file, or its content, comes in one piece that is small enough, under a name that can be printed."""
-    if isinstance(message, Part):
+    if isinstance(message, UploadPart):
         return message.part_index == 0 and len(message.content) <= MAX_FILE
     texts = (message.filename, message.transfer_uuid, message.mime_type)
     return message.part_count == 1 and 0 < message.size_bytes <= MAX_FILE and all(map(_plain, texts))

@@ -6,17 +6,17 @@ from typing import Any
 import viser
 
 from app.web.lab.scenarios import Scenarios
-from app.web.lab.setup import Setup
+from app.web.lab.setup import LabSetup
 from app.web.lab.wires import Wires
 from app.web.running import Running
-from app.web.scene.virtual_hand import FORCE, Hand
+from app.web.scene.virtual_hand import FORCE, VirtualHand
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Load
 from sim.exchange.snapshot import Snapshot
-from sim.plant.changes import AttachPayload, DropPayload, Friction, SensorFault, Temperature
+from sim.plant.changes import AttachPayload, DropPayload, FrictionChange, SensorFault, Temperature
 
 ROOM = 25.0
 """Temperature of the joints that the slider starts with [°C]."""
@@ -25,7 +25,7 @@ ROOM = 25.0
 class Lab:
     """The laboratory's tab."""
 
-    def __init__(self, gui: viser.GuiApi, loop: Running, hand: Hand, arm: Arm) -> None:
+    def __init__(self, gui: viser.GuiApi, loop: Running, hand: VirtualHand, arm: Arm) -> None:
         self._gui, self._loop, self._hand, self._arm = gui, loop, hand, arm
         self._shown: object = None
         self._number = 0  # of the last change of tool or payload
@@ -38,7 +38,7 @@ class Lab:
         self._payload()
         self._faults()
         self.wires = Wires(gui, loop)
-        self.setup = Setup(gui, loop, arm)
+        self.setup = LabSetup(gui, loop, arm)
         self._connect()
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -142,7 +142,7 @@ class Lab:
         by_hand(self.true, lambda: desk.change(AttachPayload(load=Load(mass=float(self.true.value)))))
         by_hand(self.configured, lambda: desk.configure(Load(mass=float(self.configured.value))))
         by_hand(self.celsius, lambda: desk.change(Temperature(celsius=float(self.celsius.value))))
-        by_hand(self.wear, lambda: desk.change(Friction(factor=float(self.wear.value))))
+        by_hand(self.wear, lambda: desk.change(FrictionChange(factor=float(self.wear.value))))
         for control in (self.drift, self.noise, self.outage):
             by_hand(control, self._fault)
 

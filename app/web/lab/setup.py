@@ -8,17 +8,17 @@ import viser
 from app.files.checked import load
 from app.files.library import load_tool, tools
 from app.session.prepare import MOUNTINGS
-from app.session.session_file import World, bundled, folder
+from app.session.session_file import WorldSection, bundled, folder
 from app.web.running import Running
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Scenario, Tool
+from sim.arm.scenario import Scenario, ToolModel
 from sim.simulation import Simulation
 
 AS_IS = "as it is"
 NOTHING = "nothing"
 
 
-class Setup:
+class LabSetup:
     """The set-up's part of the laboratory: takes effect when the simulation begins again."""
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
@@ -26,8 +26,8 @@ class Setup:
         with gui.add_folder("Set-up", expand_by_default=False):
             self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
             self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
-            self.tool = gui.add_dropdown("Tool", (AS_IS, *tools()))
-            self.world = gui.add_dropdown("World", (AS_IS, NOTHING, *bundled("worlds")))
+            self.tool = gui.add_dropdown("ToolModel", (AS_IS, *tools()))
+            self.world = gui.add_dropdown("WorldSection", (AS_IS, NOTHING, *bundled("worlds")))
             self.seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1)
             self.mismatch = gui.add_checkbox("Controller mismatch", True)
             self.begin = gui.add_button("Begin with this", color="gray")
@@ -46,12 +46,14 @@ class Setup:
         if self.world.value == NOTHING:
             world = []
         elif self.world.value != AS_IS:
-            world = load(folder("worlds") / f"{self.world.value}.yaml", World).objects
+            world = load(folder("worlds") / f"{self.world.value}.yaml", WorldSection).objects
         return msgspec.structs.replace(
             now,
             mounting=[mounting[0], mounting[1] + tilt, mounting[2]],
             tool=now.tool if self.tool.value == AS_IS else load_tool(self.tool.value),
-            tools=[tool for tool in self._loop.tools if isinstance(tool, Tool)],  # as they were edited; the app has no others
+            tools=[
+                tool for tool in self._loop.tools if isinstance(tool, ToolModel)
+            ],  # as they were edited; the app has no others
             world=world,
             seed=int(self.seed.value),
             mismatch="on" if self.mismatch.value else "nominal",

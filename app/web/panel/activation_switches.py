@@ -32,7 +32,7 @@ SWITCHES = {
 BUTTONS = {Grip.MIDDLE: Button.ENABLING, Grip.PRESSED: Button.ENABLING_FULL}
 
 
-class Activation:
+class ActivationSwitches:
     """A folder of the pendant. Its controls run on viser's event loop; `show` runs in the painter.
 
     One pointer cannot hold the enabling device and use the pendant. So the page holds the device for a client, where that client

@@ -3,7 +3,7 @@
 import viser
 
 from app.web.access.guard import Guard
-from app.web.panel.activation_switches import Activation
+from app.web.panel.activation_switches import ActivationSwitches
 from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
@@ -66,7 +66,7 @@ class Panel:
         self.numbers = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
-        self.activation = Activation(gui, guard, loop)
+        self.activation = ActivationSwitches(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
         # so that a held button beside it could swallow the stop of a second finger.
         self.safety = gui.add_panel()

@@ -11,7 +11,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from app.web.scene.stage import DARK, LIGHT, lay
-from app.web.scene.wall_pictures import Walls
+from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.exchange.snapshot import Snapshot
@@ -69,7 +69,7 @@ class Scene:
         self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
         self._arrows = [self._arrow(i) for i in range(TOUCHES)]
         self._shown: list[tuple[float, ...]] = [()] * TOUCHES
-        self.walls = Walls(server)
+        self.walls = WallPictures(server)
 
     def show(self, snapshot: Snapshot) -> bool:
         """Draw a snapshot, in one batch that clients apply together; True if anything changed."""

@@ -21,7 +21,7 @@ REACH = 0.25
 
 
 @dataclass(slots=True)
-class Grip:
+class Grasp:
     """Where a client holds the arm."""
 
     part: str
@@ -29,7 +29,7 @@ class Grip:
     turning: bool
 
 
-class Hand:
+class VirtualHand:
     """The hands of all clients; the guard lets only the operator's through. Used on viser's event loop."""
 
     def __init__(self, desk: Desk, latest: Callable[[], Snapshot], frames: dict[str, int]) -> None:
@@ -38,13 +38,13 @@ class Hand:
         self._desk = desk
         self._latest = latest
         self._frames = frames
-        self._grips: dict[int, Grip] = {}
+        self._grips: dict[int, Grasp] = {}
 
     def grab(self, client: int, part: str, point_W: Triple, turning: bool) -> None:
         """`client` takes hold of `part` at a point given in W [m]; to turn it, or to pull it."""
         self.let_go(client)
         pose = self._latest().truth_links[self._frames[part]]
-        self._grips[client] = Grip(part, _into(pose, point_W), turning)
+        self._grips[client] = Grasp(part, _into(pose, point_W), turning)
 
     def move(self, client: int, start_W: Triple, target_W: Triple, eye_W: Triple) -> None:
         """The cursor is at `target_W`, on the plane through the grabbed point `start_W` that faces the eye [m].

@@ -41,7 +41,7 @@ AMBER = (230, 119, 0)
 RED = (201, 42, 42)
 
 
-class Walls:
+class WallPictures:
     """All of them. `show` runs in the painter."""
 
     def __init__(self, server: viser.ViserServer) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 
 from app.web.running import Running
-from app.web.widgets.chart import Array, Line, chart
+from app.web.widgets.chart import Array, Curve, chart
 from app.web.widgets.html import Html
 from pendant.events.event import Event
 from pendant.tick.modes import TICK_RATE
@@ -30,7 +30,7 @@ class View(StrEnum):
     RATE = "Rate"
 
 
-class History:
+class PlotHistory:
     """The last samples of everything, oldest first, in arrays of a fixed size."""
 
     def __init__(self, n: int) -> None:
@@ -64,7 +64,7 @@ class Plots:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._joints = loop, arm.chain.joints
-        self.history = History(arm.n)
+        self.history = PlotHistory(arm.n)
         self._marks: deque[int] = deque(maxlen=20)  # ticks
         self.view = gui.add_dropdown("Plot", tuple(view.value for view in View))
         self.joint = gui.add_dropdown("Joint", tuple(self._joints), visible=False)
@@ -85,7 +85,7 @@ class Plots:
         if 0 <= passed < TICK_RATE // RATE - 4:  # snapshots come every 8 ticks
             return False
         if passed < 0:  # the simulation began again
-            self.history = History(len(self._joints))
+            self.history = PlotHistory(len(self._joints))
             self._marks.clear()
         self.history.add(snapshot, self._loop.actual_rate)
         return self._draw()
@@ -105,25 +105,25 @@ class Plots:
                 force = chart("User force", "N", _xyz(history.force), marks)
                 return force, chart("Acceleration", "m/s²", _xyz(history.acceleration), marks)
             case View.LIMITS:
-                return chart("Nearest to its limit", "%", [Line("share of the limit", history.share)], marks, 100.0), ""
+                return chart("Nearest to its limit", "%", [Curve("share of the limit", history.share)], marks, 100.0), ""
             case View.FRICTION:
                 true, estimated, deviation = history.friction[:, joint]
-                lines = [Line("true", true), Line("estimated", estimated, dashed=True)]
-                return chart("Friction", "N·m", lines), chart("Its uncertainty", "N·m", [Line("standard deviation", deviation)])
+                lines = [Curve("true", true), Curve("estimated", estimated, dashed=True)]
+                return chart("Friction", "N·m", lines), chart("Its uncertainty", "N·m", [Curve("standard deviation", deviation)])
             case View.TORQUE:
                 names = ("true", "dynamics", "deflection", "motor")
-                lines = [Line(name, row, name != "true") for name, row in zip(names, history.torque[:, joint], strict=True)]
-                errors = [Line(line.name, line.values - lines[0].values) for line in lines[1:]]
+                lines = [Curve(name, row, name != "true") for name, row in zip(names, history.torque[:, joint], strict=True)]
+                errors = [Curve(line.name, line.values - lines[0].values) for line in lines[1:]]
                 return chart("Transmission torque", "N·m", lines), chart("Error of each way", "N·m", errors)
             case View.TRACKING:
-                rows = [Line(name, row) for name, row in zip(self._joints, history.tracking, strict=True)]
+                rows = [Curve(name, row) for name, row in zip(self._joints, history.tracking, strict=True)]
                 return chart("Tracking error", "mrad", rows, marks), ""
             case View.RATE:
-                return chart("Rate, simulated over real", "×", [Line("rate", history.rate)]), ""
+                return chart("Rate, simulated over real", "×", [Curve("rate", history.rate)]), ""
 
 
-def _xyz(rows: Array) -> list[Line]:
-    return [Line(name, row) for name, row in zip("xyz", rows, strict=True)]
+def _xyz(rows: Array) -> list[Curve]:
+    return [Curve(name, row) for name, row in zip("xyz", rows, strict=True)]
 
 
 def _sized(values: Array, n: int) -> Array:

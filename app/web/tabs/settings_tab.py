@@ -11,7 +11,7 @@ from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from pendant.all_settings import Settings, describe, limits_checksum, value_of
 from pendant.events.event import Event, Kind
-from pendant.settings.schema import Row, Value
+from pendant.settings.schema import SettingRow, Value
 from pendant.tick.modes import Mode, Phase
 from sim.exchange.snapshot import Snapshot
 
@@ -19,7 +19,7 @@ CHANGED = "● "
 """Stands before the name of a setting that is not at its default."""
 
 
-def section_of(row: Row) -> str:
+def section_of(row: SettingRow) -> str:
     """The section that a setting is shown in."""
     return ".".join(row.name.split(".")[: 2 if row.name.startswith("limits.") else 1])
 
@@ -39,7 +39,7 @@ class SettingsTab:
         self.section = gui.add_dropdown("Section", SECTIONS)
         self.defaults = gui.add_button("Section to defaults", color="gray")
         self.controls: dict[str, Any] = {}
-        self._rows: list[Row] = []
+        self._rows: list[SettingRow] = []
         self._texts: list[viser.GuiHtmlHandle] = []
         self._fill()
 
@@ -83,7 +83,7 @@ class SettingsTab:
         self._let()
         self._refresh(settings)
 
-    def _control(self, row: Row, value: Value) -> Any:
+    def _control(self, row: SettingRow, value: Value) -> Any:
         label = _label(row, value)
         if row.low is None or row.high is None:
             handle: Any = self._gui.add_checkbox(label, bool(value), hint=row.name)
@@ -126,12 +126,12 @@ def round_down(span: float) -> int:
     return next(power for power in range(-6, 4) if 100.0 * 10.0**power * 10.0 >= span)
 
 
-def _label(row: Row, value: Value) -> str:
+def _label(row: SettingRow, value: Value) -> str:
     name = row.name.removeprefix(section_of(row) + ".").replace("_", " ").removesuffix(".max").replace(".", " · ")
     return f"{CHANGED if value != row.default else ''}{name}{f' [{row.unit}]' if row.unit else ''}"
 
 
-def _about(row: Row) -> str:
+def _about(row: SettingRow) -> str:
     if row.low is None or row.high is None:
         return f"{row.id} · {row.text} · default {'on' if row.default else 'off'}"
     return f"{row.id} · {row.text} · {row.low:g} … {row.high:g} {row.unit} · default {row.default:g}"

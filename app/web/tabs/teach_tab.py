@@ -8,7 +8,7 @@ import viser
 import yaml
 
 from app.files.checked import BadInput, parse
-from app.files.taught_program import MOST, MOVES, WAITS, Lesson, Step, Waypoint, program
+from app.files.taught_program import MOST, MOVES, WAITS, Lesson, TaughtStep, Waypoint, program
 from app.web.running import Running
 from app.web.scene.ghost import Ghost
 from app.web.widgets import svg
@@ -41,9 +41,9 @@ class Teach:
         self._loop, self._arm = loop, arm
         self.lesson = Lesson()
         self.ghost = Ghost(server, arm, "/ghost/waypoint", BLUE)
-        self._running: list[Step] = []  # the steps of the program handed over last
+        self._running: list[TaughtStep] = []  # the steps of the program handed over last
         self._first: int | None = None  # place of the first of them in the plan; None: they are none of it
-        self._next = 0  # the step that `Step` does
+        self._next = 0  # the step that `TaughtStep` does
         self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", names_of(Lesson()))
         self.edit = gui.add_button_group("Change", ("Go to", "↑", "↓", "✕"))
@@ -51,10 +51,10 @@ class Teach:
         self.record = gui.add_checkbox("Record a path", False)
         with gui.add_folder("Program"):
             self.list = Html(gui)
-            self.step = gui.add_dropdown("Step", (*MOVABLE, *WAITING))
+            self.step = gui.add_dropdown("TaughtStep", (*MOVABLE, *WAITING))
             self.change = gui.add_button_group("Steps", ("Add", "Undo", "Clear"))
             self.speed = gui.add_slider("Speed [%]", min=10, max=100, step=5, initial_value=50)
-            self.run = gui.add_button_group("Run", ("Run", "Pause", "Step", "Stop"))
+            self.run = gui.add_button_group("Run", ("Run", "Pause", "TaughtStep", "Stop"))
         self.save = gui.add_button("Save as file", color="gray")
         self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
         self.message = Html(gui)
@@ -125,7 +125,7 @@ class Teach:
             self.choice.value = wanted
         self.name.value = "" if wanted == NONE else wanted
 
-    def _hand_over(self, steps: list[Step], first: int | None) -> None:
+    def _hand_over(self, steps: list[TaughtStep], first: int | None) -> None:
         """Load and start a program of these steps; `first` is the place of the first one in the plan."""
         if not steps:
             self.message.show(svg.note("Nothing to run", "Register a waypoint first.", Colour.AMBER))
@@ -188,7 +188,7 @@ class Teach:
         if name == NONE:
             return
         if self.edit.value == "Go to":
-            self._hand_over([Step(do="joint", to=name)], None)
+            self._hand_over([TaughtStep(do="joint", to=name)], None)
         elif self.edit.value == "✕":
             self.lesson = self.lesson.without(name)
         else:
@@ -211,9 +211,9 @@ class Teach:
         elif self.change.value == "Undo":
             steps = steps[:-1]
         elif self.step.value in WAITING:
-            steps = [*steps, Step(do=WAITING[self.step.value])]  # type: ignore[arg-type]
+            steps = [*steps, TaughtStep(do=WAITING[self.step.value])]  # type: ignore[arg-type]
         elif self.choice.value != NONE:
-            steps = [*steps, Step(do=MOVABLE[self.step.value], to=self.choice.value)]  # type: ignore[arg-type]
+            steps = [*steps, TaughtStep(do=MOVABLE[self.step.value], to=self.choice.value)]  # type: ignore[arg-type]
         self.lesson = self.lesson.with_steps(steps[:MOST])
         self._next = 0
 

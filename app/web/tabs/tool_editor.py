@@ -18,7 +18,7 @@ from pendant.equipment.load import FARTHEST
 from pendant.equipment.tools import Tool
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import BARE
-from sim.arm.scenario import Tool as ShapedTool
+from sim.arm.scenario import ToolModel as ShapedTool
 
 
 class Unit(NamedTuple):

@@ -16,7 +16,7 @@ MARGIN = 4  # units above and below the lines
 COLOURS = ("#1971c2", "#e8590c", "#2b8a3e", "#9c36b5", "#0b7285", "#c92a2a", "#868e96")
 
 
-class Line(NamedTuple):
+class Curve(NamedTuple):
     """One line of a chart. A gap is a value that is not a number."""
 
     name: str
@@ -24,7 +24,7 @@ class Line(NamedTuple):
     dashed: bool = False  # what is told apart by more than colour
 
 
-def chart(title: str, unit: str, lines: Sequence[Line], marks: Sequence[int] = (), limit: float | None = None) -> str:
+def chart(title: str, unit: str, lines: Sequence[Curve], marks: Sequence[int] = (), limit: float | None = None) -> str:
     """The picture.
 
     Args:
@@ -57,7 +57,7 @@ def chart(title: str, unit: str, lines: Sequence[Line], marks: Sequence[int] = (
     )
 
 
-def _range(lines: Sequence[Line], limit: float | None) -> tuple[float, float]:
+def _range(lines: Sequence[Curve], limit: float | None) -> tuple[float, float]:
     """Round ends that hold all values, and jump seldom."""
     values = np.concatenate([line.values for line in lines])
     values = values[np.isfinite(values)]

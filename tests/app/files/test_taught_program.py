@@ -3,7 +3,7 @@
 import pytest
 
 from app.files.checked import BadInput, convert
-from app.files.taught_program import Lesson, Step, Waypoint, program
+from app.files.taught_program import Lesson, TaughtStep, Waypoint, program
 from pendant.program.steps import JointMove, LinearMove, SwitchTool, Wait, WaitForContact, ZeroSensor
 
 
@@ -22,8 +22,14 @@ def test_without_steps_the_program_visits_the_waypoints() -> None:
 
 
 def test_every_kind_of_step_becomes_a_move() -> None:
-    steps = [Step(do="line", to="P1"), Step(do="touch", to="P2"), Step(do="wait"), Step(do="contact"), Step(do="tool on")]
-    line, touch, wait, contact, tool, zero = program(LESSON, [*steps, Step(do="zero")], 1.0).steps
+    steps = [
+        TaughtStep(do="line", to="P1"),
+        TaughtStep(do="touch", to="P2"),
+        TaughtStep(do="wait"),
+        TaughtStep(do="contact"),
+        TaughtStep(do="tool on"),
+    ]
+    line, touch, wait, contact, tool, zero = program(LESSON, [*steps, TaughtStep(do="zero")], 1.0).steps
     assert isinstance(line, LinearMove)
     assert isinstance(touch, LinearMove)
     assert (line.position, line.quaternion, line.speed, line.until) == ((0.1, 0.2, 0.3), (0.0, 1.0, 0.0, 0.0), 0.25, None)
@@ -37,7 +43,7 @@ def test_every_kind_of_step_becomes_a_move() -> None:
 
 
 def test_waypoints_are_renamed_moved_and_deleted_with_their_steps() -> None:
-    lesson = LESSON.with_steps([Step(do="joint", to="P2"), Step(do="wait"), Step(do="joint", to="P1")])
+    lesson = LESSON.with_steps([TaughtStep(do="joint", to="P2"), TaughtStep(do="wait"), TaughtStep(do="joint", to="P1")])
     renamed = lesson.renamed("P2", "above")
     assert [step.to for step in renamed.steps] == ["above", None, "P1"]
     assert [w.name for w in renamed.moved("above", -1).waypoints] == ["above", "P1", "P3"]

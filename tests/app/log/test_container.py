@@ -4,13 +4,13 @@ import tracemalloc
 
 from mcap.records import Chunk
 
-from app.log.container import Summary, index_of
+from app.log.container import FileSummary, index_of
 
 HOUR = 14_400
 """Chunks of an hour."""
 
 
-def add(summary: Summary, count: int, as_bytes: bool) -> None:
+def add(summary: FileSummary, count: int, as_bytes: bool) -> None:
     """The indices of so many chunks, as a recording makes them."""
     for k in range(count):
         chunk = Chunk("zstd", bytes(10), 250_000_000 * (k + 1), 250_000_000 * k, 0, 400_000)
@@ -19,7 +19,7 @@ def add(summary: Summary, count: int, as_bytes: bool) -> None:
 
 
 def test_the_index_is_the_same_whether_it_may_still_change_or_not() -> None:
-    kept, packed, empty = Summary(), Summary(), Summary()
+    kept, packed, empty = FileSummary(), FileSummary(), FileSummary()
     add(kept, 5, as_bytes=False)
     add(packed, 5, as_bytes=True)
     assert kept.write(1_000) == packed.write(1_000)
@@ -28,7 +28,7 @@ def test_the_index_is_the_same_whether_it_may_still_change_or_not() -> None:
 
 def test_an_hour_of_recording_keeps_few_megabytes() -> None:
     """In bytes: as objects they took 10 MB an hour, a quarter of a gigabyte in a day."""
-    summary = Summary()
+    summary = FileSummary()
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]
     add(summary, HOUR, as_bytes=True)

@@ -17,7 +17,7 @@ from app.log.recorder import SLOW, Recorder
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.inputs import NOTHING
-from sim.arm.scenario import Box, Load, Scenario
+from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 from tests.app.web.raw_client import until
@@ -93,7 +93,7 @@ def test_a_reset_goes_on_in_the_file_and_another_scenario_in_its_own(loop: Stepp
     loop.simulation = Simulation(ARM, loop.simulation.scenario, Settings())
     loop.tick(10)
     other = Scenario(
-        payload_true=Load(mass=1.0), world=[Box(name="block", position=[0.0, 0.5, 0.1], size=[0.1, 0.1, 0.1])], seed=5
+        payload_true=Load(mass=1.0), world=[BoxObject(name="block", position=[0.0, 0.5, 0.1], size=[0.1, 0.1, 0.1])], seed=5
     )
     loop.simulation = Simulation(ARM, other, Settings())
     loop.tick(15)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.files.checked import BadInput, convert
-from app.log.events_file import Line
+from app.log.events_file import EventLine
 from app.log.reader import Log, read
 from app.report.charts import POINTS, charts, thinned
 from app.report.files import write_report
@@ -73,9 +73,9 @@ def test_margins_are_the_worst_share(log: Log, summary: Summary) -> None:
 
 
 def test_what_ended_a_check_at_once_is_a_margin_too(log: Log) -> None:
-    def told(value: float, t: float) -> Line:
+    def told(value: float, t: float) -> EventLine:
         values: dict[str, Any] = {"parameter": "payload-like force", "part": "flange", "value": value, "limit": -5.3, "unit": "N"}
-        return Line(tick=1, t=t, kind="entry_prevented", severity="WARNING", headline="", guidance="", values=values)
+        return EventLine(tick=1, t=t, kind="entry_prevented", severity="WARNING", headline="", guidance="", values=values)
 
     before = {margin.parameter: margin for margin in summarise(log).margins}
     log.events += [told(-0.001, 0.5), told(-19.6, 0.7), told(-10.0, 0.8)]
@@ -160,7 +160,7 @@ class Page(HTMLParser):
 
 
 def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, tmp_path: Path) -> None:
-    contact = Line(
+    contact = EventLine(
         tick=500,
         t=1.0,
         kind="contact_gained",

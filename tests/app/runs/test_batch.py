@@ -11,7 +11,7 @@ from app import cli
 from app.files.checked import BadInput, convert, load
 from app.runs.batch import Job, run_all
 from app.runs.junit import junit, write
-from app.runs.runner import Outcome
+from app.runs.runner import RunOutcome
 from app.session.expectation_watch import Verdict
 from app.session.json_schema import KINDS, schema_of
 from app.session.session_file import Session, bundled, find, find_all
@@ -87,7 +87,7 @@ def test_what_a_name_means(tmp_path: Path) -> None:
 
 
 def test_junit_has_a_case_for_each_expectation(tmp_path: Path) -> None:
-    outcome = Outcome(verdicts=[Verdict(True, "a < b", "x"), Verdict(False, "c\x01d", "y & z")], took=0.5)
+    outcome = RunOutcome(verdicts=[Verdict(True, "a < b", "x"), Verdict(False, "c\x01d", "y & z")], took=0.5)
     root = ElementTree.fromstring(junit({"one": outcome}))
     cases = root.findall("./testsuite/testcase")
     assert [case.get("name") for case in cases] == ["a < b", "c d"]

@@ -6,7 +6,7 @@ import pytest
 
 from app.files.checked import convert, load
 from app.runs.coverage import claiming
-from app.runs.runner import Outcome, run, simulate
+from app.runs.runner import RunOutcome, run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session, bundled, find
 from benchmarks import determinism
@@ -31,7 +31,7 @@ def made(**fields: Any) -> Session:
     return convert({**SHORT, **fields}, Session, "s.yaml")
 
 
-def really(session: Session, out: Path) -> Outcome:
+def really(session: Session, out: Path) -> RunOutcome:
     prepared = prepare(session, "s.yaml")
     return run(session, prepared, simulate(prepared), out)
 

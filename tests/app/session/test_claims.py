@@ -8,8 +8,8 @@ import pytest
 
 from app.files.checked import BadInput, convert
 from app.runs import coverage
-from app.runs.coverage import Row, claiming, rows_of
-from app.runs.runner import Outcome, run, simulate
+from app.runs.coverage import ClaimRow, claiming, rows_of
+from app.runs.runner import RunOutcome, run, simulate
 from app.session.claims import CLAIMS
 from app.session.expectation_watch import Verdict
 from app.session.prepare import prepare, without
@@ -17,12 +17,12 @@ from app.session.session_file import Session
 from tests import golden
 
 SESSIONS = claiming()
-MET = Outcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s")])
-LATE = Outcome(verdicts=[Verdict(False, "mode STOP", "never came", looked=False)])
-UNMET = Outcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s"), Verdict(False, "mode STOP", "mode TEACH | at 2 s")])
+MET = RunOutcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s")])
+LATE = RunOutcome(verdicts=[Verdict(False, "mode STOP", "never came", looked=False)])
+UNMET = RunOutcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s"), Verdict(False, "mode STOP", "mode TEACH | at 2 s")])
 
 
-def ran(session: Session, out: Path) -> Outcome:
+def ran(session: Session, out: Path) -> RunOutcome:
     prepared = prepare(session, "claim")
     return run(session, prepared, simulate(prepared), out)
 
@@ -88,15 +88,15 @@ def test_rows_say_what_is_shown_and_what_is_missing() -> None:
     assert _states(session, MET, MET) == {"holds without its switch"}
     assert _states(session, UNMET, UNMET) == {"fails"}
     assert _states(session, MET, LATE) == {"holds without its switch"}  # nothing that it expects was looked at
-    assert _states(session, Outcome(), UNMET) == {"fails"}  # one that expects nothing shows nothing
+    assert _states(session, RunOutcome(), UNMET) == {"fails"}  # one that expects nothing shows nothing
 
 
-def _states(session: Session, on: Outcome, off: Outcome) -> set[str]:
+def _states(session: Session, on: RunOutcome, off: RunOutcome) -> set[str]:
     return {row.state for row in rows_of({"s": session}, {"s": (on, off)}) if row.session}
 
 
 def test_claims_are_written_as_a_page_and_as_data(tmp_path: Path) -> None:
-    rows = [Row(CLAIMS["A 4"]), *rows_of({"s": made(claims=["A 3"], switch="FD-7")}, {"s": (UNMET, UNMET)})]
+    rows = [ClaimRow(CLAIMS["A 4"]), *rows_of({"s": made(claims=["A 3"], switch="FD-7")}, {"s": (UNMET, UNMET)})]
     coverage.write(rows, tmp_path / "new")
     page = (tmp_path / "new" / "claims.md").read_text()
     assert "| A 3 | a signal shorter" in page

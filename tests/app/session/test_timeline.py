@@ -7,16 +7,16 @@ from app.session.actions import (
     Action,
     Axes,
     Bump,
+    ChangeSettings,
     Hold,
     Laboratory,
     Lean,
-    Payload,
+    LoadProgram,
     Press,
-    Program,
     Pushing,
     Release,
     SelectTool,
-    Settings,
+    SetPayload,
     Tap,
     Twisting,
 )
@@ -60,18 +60,18 @@ def test_a_tap_of_a_button_presses_and_lets_go() -> None:
 
 
 def test_commands_act_in_one_tick_only() -> None:
-    played = play([Tap(at=0.004, control="emergency_stop"), Program(at=0.004, command="start")], 4)
+    played = play([Tap(at=0.004, control="emergency_stop"), LoadProgram(at=0.004, command="start")], 4)
     assert [wishes.inputs.commands for wishes in played] == [(), (Command.EMERGENCY_STOP, Command.START_PROGRAM), (), ()]
 
 
 def test_settings_and_changes_are_passed_on_once() -> None:
-    played = play([Settings(at=0.0, set={"free_drive.period": 2.0}), Laboratory(at=0.002, change=DropPayload())], 3)
+    played = play([ChangeSettings(at=0.0, set={"free_drive.period": 2.0}), Laboratory(at=0.002, change=DropPayload())], 3)
     assert [wishes.inputs.settings for wishes in played] == [{"free_drive.period": 2.0}, {}, {}]
     assert [wishes.changes for wishes in played] == [(DropPayload(),), (), ()]
 
 
 def test_tool_and_payload_are_passed_on_once() -> None:
-    played = play([SelectTool(at=0.0, tool="gripper"), Payload(at=0.004, load=Load(mass=2.0))], 3)
+    played = play([SelectTool(at=0.0, tool="gripper"), SetPayload(at=0.004, load=Load(mass=2.0))], 3)
     assert [wishes.inputs.tool for wishes in played] == ["gripper", "", ""]
     assert [wishes.inputs.load for wishes in played] == [None, Load(mass=2.0), None]
 

@@ -12,7 +12,7 @@ from pendant.contact.history import SIZE, SUMMED
 from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
-from pendant.tick.source_signal import Signal, Signals
+from pendant.tick.source_signal import ContactSignals, Signal
 from tests.pendant.contacts import USE, ramp, signals
 from tests.pendant.estimates import estimate
 
@@ -27,7 +27,7 @@ def estimates(source: int, stream: list[Signal | None]) -> list[Estimate]:
         now.R_BF, now.q = QUARTER, np.full(6, 0.001 * k)
         now.tcp = np.array([0.0002 * k, 0.0, 0.5, 0.0, 0.0, 0.0])
         valid = tuple(index == source and signal is not None for index in range(len(SOURCES)))
-        now.signals = Signals(np.tile(signal or Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (len(SOURCES), 1)), valid)
+        now.signals = ContactSignals(np.tile(signal or Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (len(SOURCES), 1)), valid)
         result.append(now)
     return result
 
@@ -203,7 +203,7 @@ def test_what_several_sources_find_in_the_same_tick_is_all_told() -> None:
     """CD-2."""
     monitor, found, use = ContactMonitor(), [], msgspec.structs.replace(USE, flange=True)
     for now in estimates(0, [*signals(200, push=ramp(200, START, 8.0, top=40.0))]):
-        now.signals = Signals(now.signals.rows, (True, True, False, False))
+        now.signals = ContactSignals(now.signals.rows, (True, True, False, False))
         found.append([contact.source for contact in monitor.step(now, use, Mode.RUN, on=True)])
     assert [told for told in found if told] == [[SOURCES[0].source, SOURCES[1].source]]
 

@@ -7,7 +7,7 @@ import pytest
 
 from pendant.equipment import payload_fit
 from pendant.equipment.load import Load
-from pendant.equipment.payload_fit import GAIN, LEAST, LIGHT, TOLERATED, Finding, Posture, least_angle, nearest, solve
+from pendant.equipment.payload_fit import GAIN, LEAST, LIGHT, TOLERATED, FittedPayload, Posture, least_angle, nearest, solve
 
 G = 9.81
 WRIST = [(0.0, 0.0, -1.0), (-0.72, 0.0, -0.7), (-0.05, 0.72, -0.7), (0.05, -0.72, -0.7), (0.6, 0.5, 0.62)]
@@ -40,9 +40,9 @@ def posture(a: np.ndarray, w: np.ndarray) -> Posture:
     return Posture((ax, ay, az), (fx, fy, fz), (tx, ty, tz))
 
 
-def found(made: list[Posture], *known: Load) -> Finding:
+def found(made: list[Posture], *known: Load) -> FittedPayload:
     result = solve(made, known)
-    assert isinstance(result, Finding), result
+    assert isinstance(result, FittedPayload), result
     return result
 
 
@@ -138,7 +138,7 @@ def test_a_negative_mass_is_nothing_up_to_three_uncertainties_beyond_what_is_tol
     for _ in range(20):
         wanted = -TOLERATED - deviations * math.hypot(fitted, GAIN * wanted)
     result = solve(noisy(wanted - (one.mass - 1.0)))
-    assert isinstance(result, Finding) is nothing
+    assert isinstance(result, FittedPayload) is nothing
 
 
 def test_too_few_postures_say_how_many_are_missing() -> None:

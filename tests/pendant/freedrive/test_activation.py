@@ -17,7 +17,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import Start
-from pendant.walls.settings import Walls
+from pendant.walls.settings import WallSettings
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_sequence import around
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
@@ -32,7 +32,7 @@ class Begun(Containment):
         super().__init__((), {})
         self.starts: list[Start] = []
 
-    def begin(self, start: Start, walls: Walls) -> None:
+    def begin(self, start: Start, walls: WallSettings) -> None:
         self.starts.append(start)
         super().begin(start, walls)
 

@@ -10,7 +10,7 @@ from msgspec.structs import astuple
 from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
-from pendant.freedrive.sequence import Sequence, Verdict
+from pendant.freedrive.sequence import Sequence, SequenceVerdict
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.parameters import reference
 from pendant.limits.validity import Stillness, WrenchMean
@@ -125,7 +125,7 @@ def test_payload_comes_first_of_several_reasons(force: float, way: str) -> None:
 )
 def test_a_verdict_waits_for_what_stays_of_the_force(left: float, valid: bool, last: bool, kinds: list[Kind] | None) -> None:
     """FD-11: from 10 N, up to half counts as there, up to 1.5 N more or less as the same; `None`: it waits on."""
-    verdict = Verdict()
+    verdict = SequenceVerdict()
     verdict.begin(around(estimate(force=[0.0, 0.0, 10.0])))
     told = verdict.step(around(estimate(force=[3.0, 4.0, left], wrench_valid=valid)), last)
     assert [event.kind for event in told] == (kinds or [])

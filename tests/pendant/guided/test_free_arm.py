@@ -12,7 +12,7 @@ from pendant.guided.free_arm import FreeArm
 from pendant.guided.hidden_drop import LASTS
 from pendant.guided.sensor_bias import Zero
 from pendant.guided.sensor_steps import LATER
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
 from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
@@ -89,7 +89,7 @@ def test_without_joint_values_it_cannot_go_on() -> None:
 def test_the_flange_sensor_tells_the_users_force_while_it_is_used(sensor: bool) -> None:
     free, value = Free(sensor=sensor), estimate(force=[5.0, 20.0, -3.0])
     assert free.see(value) == []
-    expected = Hand(estimate(), (0.0,) * 6)
+    expected = UserForce(estimate(), (0.0,) * 6)
     expected.step(value, sensor)
     assert free.arm.user == expected.user
     assert (free.arm.user != ORIGIN) is sensor

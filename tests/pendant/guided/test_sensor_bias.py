@@ -14,11 +14,11 @@ from pendant.guided.sensor_bias import (
     SLOW_TURN,
     SLOWLY,
     SLOWLY_TURN,
-    Drift,
+    BiasFollower,
     Zero,
 )
 from pendant.guided.sensor_steps import ANSWER, LATER, MOVED
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.validity import WrenchMean
 from pendant.tick.modes import Phase
@@ -40,7 +40,7 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF 
     ],
 )
 def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
-    drift = Drift()
+    drift = BiasFollower()
     start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
     assert drift.step(start, ORIGIN) is None
     assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN) == pytest.approx(gone)
@@ -49,10 +49,10 @@ def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[flo
 
 
 def test_a_mean_is_wanted_once_a_window() -> None:
-    drift = Drift()
+    drift = BiasFollower()
     wanted = [drift.due() for _ in range(151)]
     assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
-    assert drift.memory != Drift().memory
+    assert drift.memory != BiasFollower().memory
 
 
 def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
@@ -70,12 +70,12 @@ def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
 
 
 def test_only_the_last_windows_are_given_back() -> None:
-    drift = Drift()
+    drift = BiasFollower()
     assert drift.give_back() == []
     gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
     for each in gone:
         drift.keep(each)
-    assert drift.memory != Drift().memory
+    assert drift.memory != BiasFollower().memory
     drift.restart()
     assert drift.give_back() == gone[-BEGINS:]
     assert drift.give_back() == []
@@ -102,7 +102,7 @@ def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_
 def test_a_drift_turns_with_the_flange(turned: bool) -> None:
     R_BF = TURNED if turned else np.eye(3)
     before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
-    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero, mean, hand = Zero(), WrenchMean(), UserForce(before, (0.0,) * 6)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
@@ -121,7 +121,7 @@ def test_a_drift_is_followed_through_the_sensors_noise() -> None:
     rng = np.random.default_rng(3)
     rate = np.array([0.0, 0.16, -0.12, 0.04, 0.0, 0.0])
     noise = np.array([0.15] * 3 + [0.015] * 3)
-    drift, gone = Drift(), np.zeros(6)
+    drift, gone = BiasFollower(), np.zeros(6)
     for window in range(300):
         taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN)
         gone += taken or (0.0,) * 6
@@ -131,7 +131,7 @@ def test_a_drift_is_followed_through_the_sensors_noise() -> None:
 @pytest.mark.parametrize(("size", "next_one"), [(0.3, 0.0), (0.5, 0.2), (0.8, 0.3), (1.1, 0.3), (20.0, 0.3)])
 def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
     """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
-    drift = Drift()
+    drift = BiasFollower()
     drift.step((0.0,) * 6, ORIGIN)
     taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size), ORIGIN) for _ in range(4)]
     force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
@@ -195,7 +195,7 @@ def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(spee
     force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
     before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
     after.R_BF = TURNED  # since entry
-    zero, mean, hand = Zero(), WrenchMean(), Hand(before, (0.0,) * 6)
+    zero, mean, hand = Zero(), WrenchMean(), UserForce(before, (0.0,) * 6)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
@@ -223,7 +223,7 @@ def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
 @pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
 @pytest.mark.parametrize(("size", "asked"), [(0.99 * FELT, False), (1.01 * FELT, True), (3.0, True)])
 def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
-    drift = Drift()
+    drift = BiasFollower()
     force, felt = [0.0] * 6, [2.0, 3.0, 4.0]
     drift.step(tuple(force), (2.0, 3.0, 4.0))
     force[axis] += size
@@ -234,12 +234,12 @@ def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answ
 
 @pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
 def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
-    assert (Drift().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
+    assert (BiasFollower().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
 
 
 @pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
 def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
-    drift, tick = Drift(1000), 1000 + round(500 * seconds)
+    drift, tick = BiasFollower(1000), 1000 + round(500 * seconds)
     assert drift.slack(tick) == pytest.approx((SLOWLY * seconds, SLOWLY_TURN * seconds))
     assert (drift.begin((QUIET + SLOWLY * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick) is None) is held
     left = seconds if held else 0.0
@@ -248,10 +248,10 @@ def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(secon
 
 def test_what_the_sensor_drifted_by_while_the_arm_was_moved_goes_into_the_zero() -> None:
     """As much as it can have drifted by in that time: 100 s, 1.33 N and 0.1 N·m."""
-    assert Drift().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
-    taken = Drift().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
+    assert BiasFollower().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
+    taken = BiasFollower().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
     assert taken == pytest.approx((0.0, 100 * SLOWLY, 0.0, 0.0, 0.0, -100 * SLOWLY_TURN))
-    assert Drift().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
+    assert BiasFollower().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
 
 
 def test_a_sensor_that_drifts_while_a_hand_leads_the_arm_is_followed_when_it_goes() -> None:

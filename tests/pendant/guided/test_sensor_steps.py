@@ -19,7 +19,7 @@ from pendant.guided.sensor_steps import (
     STRAY,
     Steps,
 )
-from pendant.guided.user_force import Hand
+from pendant.guided.user_force import UserForce
 from pendant.tick.pose import Vector
 from tests.pendant.estimates import estimate
 
@@ -27,9 +27,9 @@ FIRST = 3
 """Ticks before a step: two are what it begins from, and in one it may come."""
 
 
-def touch(force: Vector, spread: float = 0.0) -> Hand:
+def touch(force: Vector, spread: float = 0.0) -> UserForce:
     """What the flange feels in one tick, and how much it fluctuates [N]: a hand after its step."""
-    hand = Hand(estimate(), (0.0,) * 6)
+    hand = UserForce(estimate(), (0.0,) * 6)
     hand.change = force
     hand._spread = spread * spread
     return hand

@@ -17,7 +17,7 @@ from pendant.guided.user_force import (
     SETTLING,
     STANDS_OUT,
     SWING,
-    Hand,
+    UserForce,
 )
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
@@ -27,7 +27,7 @@ from tests.pendant.estimates import estimate
 ZEROS = (0.0,) * 6
 
 
-def after(hand: Hand, seconds: float, value: Estimate, use_wrench: bool = True) -> Vector:
+def after(hand: UserForce, seconds: float, value: Estimate, use_wrench: bool = True) -> Vector:
     for _ in range(round(seconds / TICK)):
         hand.step(value, use_wrench)
     return hand.user
@@ -35,7 +35,7 @@ def after(hand: Hand, seconds: float, value: Estimate, use_wrench: bool = True) 
 
 def test_what_the_sensor_felt_before_is_nobody_and_turns_with_the_flange() -> None:
     baseline = (3.0, -1.0, 2.0, 0.0, 0.0, 0.0)
-    hand = Hand(estimate(), baseline)
+    hand = UserForce(estimate(), baseline)
     assert after(hand, 1.0, estimate(force=[3.0, -1.0, 2.0])) == pytest.approx((0.0, 0.0, 0.0))
     assert hand.payload == pytest.approx((0.0, 0.0, 2.0))
     turned = estimate(force=[1.0, 3.0, 2.0])  # a quarter about z
@@ -45,21 +45,21 @@ def test_what_the_sensor_felt_before_is_nobody_and_turns_with_the_flange() -> No
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_what_is_too_much_for_an_offset_is_a_payloads_and_does_not_turn(sign: float) -> None:
-    hand = Hand(estimate(), (0.0, 0.0, sign * 30.0, 0.0, 0.0, 0.0))
+    hand = UserForce(estimate(), (0.0, 0.0, sign * 30.0, 0.0, 0.0, 0.0))
     tipped = estimate(force=[sign * OFFSET, 0.0, sign * (30.0 - OFFSET)])
     tipped.R_BF = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # z of F along x of B
     assert after(hand, 1.0, tipped) == pytest.approx((0.0, 0.0, 0.0))
 
 
 def test_a_push_across_gravity_stays_the_users() -> None:
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     assert after(hand, SWING, estimate(force=20.0))[0] == pytest.approx(20.0 * (1.0 - math.exp(-1.0)), rel=1e-6)
     assert hand.change == (20.0, 0.0, 0.0)
     assert after(hand, 10.0, estimate(force=20.0)) == pytest.approx((20.0, 0.0, 0.0))
 
 
 def test_a_change_along_gravity_becomes_payload_like() -> None:
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     down = estimate(force=[0.0, 0.0, -20.0])
     assert after(hand, 0.1, down)[2] < -15.0
     after(hand, SETTLING - 0.1, down)
@@ -69,7 +69,7 @@ def test_a_change_along_gravity_becomes_payload_like() -> None:
 
 def test_while_the_arm_is_led_that_takes_longer() -> None:
     down = {"force": [0.0, 0.0, -2.0]}
-    slow, led = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
+    slow, led = UserForce(estimate(), ZEROS), UserForce(estimate(), ZEROS)
     after(slow, 2.0, estimate(speed=LED, **down))  # type: ignore[arg-type]
     after(led, 2.0, estimate(speed=1.01 * LED, **down))  # type: ignore[arg-type]
     assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
@@ -77,15 +77,15 @@ def test_while_the_arm_is_led_that_takes_longer() -> None:
 
 
 def test_without_a_sensor_the_joints_tell_from_a_size_on() -> None:
-    hand = Hand(estimate(felt=[5.0, 0.0, 0.0]), ZEROS)
+    hand = UserForce(estimate(felt=[5.0, 0.0, 0.0]), ZEROS)
     assert after(hand, 2.0, estimate(felt=[4.0 + FELT_BY_JOINTS, 0.0, 0.0], force=50.0), use_wrench=False) == (0.0, 0.0, 0.0)
     assert after(hand, 2.0, estimate(felt=[25.0, 0.0, 0.0]), use_wrench=False) == pytest.approx((20.0, 0.0, 0.0), abs=1e-3)
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     assert after(hand, JOINTS_SWING, estimate(felt=100.0), use_wrench=False)[0] == pytest.approx(100.0 * (1 - math.exp(-1)))
 
 
 def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=3.0)) == pytest.approx((0.0, 20.0, 0.0), abs=1e-3)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=16.0)) == pytest.approx((16.0, 0.0, 0.0), abs=1e-3)
 
@@ -102,18 +102,18 @@ def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
 )
 def test_a_gentle_push_on_a_link_counts_while_the_sensor_feels_nothing(felt: float, force: float, user: str) -> None:
     """VW-5: the tether follows who leads the arm by its elbow; what falls from the flange, the sensor would feel."""
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     found = after(hand, 2.0, estimate(felt=[0.0, felt, 0.0], force=force))
     assert found == pytest.approx((0.0, felt, 0.0) if user == "joints" else (force, 0.0, 0.0), abs=1e-3)
 
 
 def test_without_a_sensor_a_gentle_push_on_a_link_does_not_count() -> None:
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     assert after(hand, 2.0, estimate(felt=[0.0, 0.9 * FELT_BY_JOINTS, 0.0]), use_wrench=False) == (0.0, 0.0, 0.0)
 
 
 def test_a_payload_that_the_joints_feel_is_payload_like() -> None:
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     after(hand, 20.0, estimate(felt=[0.0, 0.0, -18.0]), use_wrench=False)
     assert hand.payload == pytest.approx((0.0, 0.0, -18.0), abs=1e-3)
     assert hand.user == (0.0, 0.0, 0.0)
@@ -145,7 +145,7 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
     first = estimate(felt=(5.0 * unit()).tolist())
     first.g_B, first.R_BF = -9.81 * up, attitude()
     before = beforehand * up + 2.0 * unit()
-    hand = Hand(first, (*before.tolist(), 0.0, 0.0, 0.0))
+    hand = UserForce(first, (*before.tolist(), 0.0, 0.0, 0.0))
     assert (hand.user, hand.change, hand.payload) == (ORIGIN,) * 3
     residual = before @ up
     payload = residual - np.clip(residual, -OFFSET, OFFSET)
@@ -190,20 +190,20 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
 )
 def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: float, user: str) -> None:
     """In one tick, from rest, which lets the limits themselves be reached."""
-    hand = Hand(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0))
+    hand = UserForce(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0))
     hand.step(estimate(felt=[0.0, felt / share(JOINTS_SWING), 0.0], force=[force, 0.0, before]), True)
     assert hand.user == ((0.0, felt, 0.0) if user == "joints" else (share(SWING) * force, 0.0, 0.0))
 
 
 def test_equal_histories_are_equal() -> None:
-    one, two = Hand(estimate(), ZEROS), Hand(estimate(), ZEROS)
+    one, two = UserForce(estimate(), ZEROS), UserForce(estimate(), ZEROS)
     assert one.memory == two.memory
     one.step(estimate(force=1.0), True)
     assert one.memory != two.memory
 
 
 def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
-    hand = Hand(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
+    hand = UserForce(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
     assert after(hand, 1.0, estimate(force=[9.0, 0.0, -OFFSET - 20.0])) == (0.0, 0.0, 0.0)
     assert after(hand, 1.0, estimate(force=[11.0, 0.0, -OFFSET - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
 
@@ -211,7 +211,7 @@ def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
 @pytest.mark.parametrize("axis", range(3))
 def test_a_step_stands_out_when_it_is_larger_than_the_force_fluctuates(axis: int) -> None:
     """A load that swings by 2 N, some ticks long; nothing is known of a sensor that was quiet."""
-    hand = Hand(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS)
     assert hand.stands_out((0.1, 0.0, 0.0))
     swings = [0.0] * 3
     for tick in range(2000):

@@ -10,7 +10,7 @@ from pendant.events.event import Kind
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.limits.axis_locks import AXES, PRESETS, axis_locks, freeing, from_rpy
 from pendant.limits.nearness import Nearness
-from pendant.limits.settings import Axes
+from pendant.limits.settings import AxisSettings
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Mode
 from sim.arm.frames import rotation_from_rpy
@@ -34,21 +34,21 @@ def test_a_preset_becomes_settings_and_those_locks(name: str) -> None:
 
 
 def test_switched_off_nothing_is_locked() -> None:
-    assert axis_locks(Axes(x=False)) is not None
-    assert axis_locks(Axes(x=False, on=False)) is None
+    assert axis_locks(AxisSettings(x=False)) is not None
+    assert axis_locks(AxisSettings(x=False, on=False)) is None
 
 
 def test_the_frame_is_turned_by_roll_pitch_yaw() -> None:
     for rpy in ((0.3, 0.0, 0.0), (0.0, -0.7, 0.0), (0.0, 0.0, 2.0), (0.4, -1.1, 2.5)):
         np.testing.assert_allclose(np.reshape(from_rpy(rpy), (3, 3)), rotation_from_rpy(rpy), atol=1e-12)
-    locks = axis_locks(Axes(x=False, yaw=0.5, tool=True))
+    locks = axis_locks(AxisSettings(x=False, yaw=0.5, tool=True))
     assert locks is not None
     assert locks.tool
     assert from_rpy((0.0, 0.0, 0.5)) == locks.R_BU
 
 
 def test_without_resistance_singularities_resist_nowhere() -> None:
-    with_it, without = axis_locks(Axes(x=False)), axis_locks(Axes(x=False, resistance=False))
+    with_it, without = axis_locks(AxisSettings(x=False)), axis_locks(AxisSettings(x=False, resistance=False))
     assert with_it is not None
     assert without is not None
     assert (with_it.near, with_it.too_near) == (0.04, 0.01)

@@ -8,7 +8,7 @@ import pytest
 
 from pendant.all_settings import Settings
 from pendant.limits.dynamic_limits import Shares
-from pendant.limits.parameters import PARAMETERS, ZEROS, Monitor, Reference, View, reference
+from pendant.limits.parameters import PARAMETERS, ZEROS, EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import split
 from pendant.settings.schema import Limit, Section
 from pendant.tick.limit_engine import Gauge
@@ -19,9 +19,9 @@ JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
 
 
-def view(value, since: Reference | None = None, scale: tuple[float, ...] = RATED, share: float = 0.0) -> View:
+def view(value, since: EntryValues | None = None, scale: tuple[float, ...] = RATED, share: float = 0.0) -> Observed:
     parts = split(value.F_user.tolist(), (0.0, 0.0, 1.0))
-    return View(value, since or Reference((0.0,) * 3, ZEROS, (0.0,) * 6, (0.0,) * 6), parts, JOINTS, scale, share)
+    return Observed(value, since or EntryValues((0.0,) * 3, ZEROS, (0.0,) * 6, (0.0,) * 6), parts, JOINTS, scale, share)
 
 
 def test_every_limit_of_every_stage_is_of_a_parameter() -> None:
@@ -38,7 +38,7 @@ def test_sizes(seed: int) -> None:
     value.v_F, value.q, value.qd, value.qdd, value.F_user, value.tau_m = rng.normal(size=(6, 6))
     value.R_BF = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     start, angles = rng.normal(size=3), rng.normal(size=6)
-    since = Reference(tuple(start), ZEROS, (0.0,) * 6, tuple(angles))
+    since = EntryValues(tuple(start), ZEROS, (0.0,) * 6, tuple(angles))
     fastest, quickest, furthest = (int(np.abs(each).argmax()) for each in (value.qd, value.qdd, value.q - angles))
     strained = int((np.abs(value.tau_m) / RATED).argmax())
     expected = {
@@ -70,7 +70,7 @@ def test_the_joint_nearest_to_its_own_limit_counts(seed: int, strength: float) -
     value = estimate()
     value.tau_ext, value.tau_J = strength * rng.normal(0.0, 5.0, (2, 6))
     before = strength * rng.normal(0.0, 2.0, 6)
-    since = Reference((0.0,) * 3, ZEROS, tuple(before), (0.0,) * 6)
+    since = EntryValues((0.0,) * 3, ZEROS, tuple(before), (0.0,) * 6)
     gauge = Gauge("joint external torque", "N·m", high=0.04)
     size, part = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), gauge)
     limits = 0.04 * np.array(RATED) + 0.25 * np.abs(value.tau_J)
@@ -144,10 +144,10 @@ def test_a_reference_is_what_is_so_now() -> None:
     value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
     value.q[2] = 0.5
     torques, angles = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.0, 0.5, 0.0, 0.0, 0.0)
-    assert reference(value, tuple(value.F_user.tolist())) == Reference(
+    assert reference(value, tuple(value.F_user.tolist())) == EntryValues(
         (1.0, 2.0, 3.0), (4.0, 5.0, 6.0, 7.0, 0.0, 0.0), torques, angles
     )
-    assert reference(value, None) == Reference((1.0, 2.0, 3.0), ZEROS, torques, angles)
+    assert reference(value, None) == EntryValues((1.0, 2.0, 3.0), ZEROS, torques, angles)
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_a_linear_limit_falls_along_gravity_as_well(name: str, share: float) -> 
     value.tcp = value.elbow = np.append(np.zeros(3), vector)
     shares = Shares(way=0.9, speed=0.8, linear=0.6, vertical=0.5, up=tuple(up))
     gauge = Gauge(name, "", high=2.0)
-    since = Reference(start, ZEROS, (0.0,) * 6, (0.0,) * 6)
+    since = EntryValues(start, ZEROS, (0.0,) * 6, (0.0,) * 6)
     PARAMETERS[name].read(msgspec.structs.replace(view(value, since), shares=shares), gauge)
     vertical = vector @ up / np.linalg.norm(vector)
     assert gauge.high == pytest.approx(2.0 * share / math.sqrt(1.0 + 3.0 * vertical**2))

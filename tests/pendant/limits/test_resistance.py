@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pendant.limits.resistance import Guard, closeness, resisting
+from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.tick.modes import TICK
 
 distances = st.floats(-0.1, 0.1)
@@ -44,7 +44,7 @@ def test_it_is_whole_at_the_wall_and_half_half_way() -> None:
 
 @given(st.lists(distances, min_size=1, max_size=50))
 def test_a_part_is_held_at_the_innermost_place_since_it_went_out(path: list[float]) -> None:
-    guard = Guard(path[0])
+    guard = LimitGuard(path[0])
     innermost = max(path[0], 0.0)
     for distance in path:
         innermost = min(innermost, max(distance, 0.0))
@@ -52,7 +52,7 @@ def test_a_part_is_held_at_the_innermost_place_since_it_went_out(path: list[floa
 
 
 def test_a_wall_that_moves_over_a_part_lets_it_be() -> None:
-    guard = Guard(-0.01)
+    guard = LimitGuard(-0.01)
     assert guard.step(-0.005, 0.005) == -0.005
     assert guard.step(0.02, 0.025) == 0.0  # 0.02 of these count
     assert guard.step(0.03, 0.004) == pytest.approx(0.006)  # the part moved the rest by itself
@@ -60,13 +60,13 @@ def test_a_wall_that_moves_over_a_part_lets_it_be() -> None:
 
 
 def test_a_wall_that_moves_away_from_under_a_part_gives_it_no_room() -> None:
-    guard = Guard(-0.01)
+    guard = LimitGuard(-0.01)
     assert guard.step(0.02, 0.0) == 0.02
     assert guard.step(0.015, -0.005) == 0.015
 
 
 def test_starting_outside_ends_inside() -> None:
-    guard = Guard(0.05)
+    guard = LimitGuard(0.05)
     assert guard.started_outside
     guard.step(0.01, 0.0)
     assert guard.started_outside
@@ -76,14 +76,14 @@ def test_starting_outside_ends_inside() -> None:
 
 @given(st.floats(-0.02, 0.02), speeds)
 def test_beyond_the_border_it_never_pulls_outwards_and_the_way_back_is_free(beyond: float, speed: float) -> None:
-    size = Guard(0.0).resisting(beyond, speed, 4000.0, 200.0)
+    size = LimitGuard(0.0).resisting(beyond, speed, 4000.0, 200.0)
     assert size >= 0.0
     if speed <= 0.0 and beyond <= 0.0:
         assert size == 0.0
 
 
 def test_the_guard_is_a_spring_with_a_damper() -> None:
-    guard = Guard(0.0)
+    guard = LimitGuard(0.0)
     assert guard.resisting(0.01, 0.0, 4000.0, 200.0) == pytest.approx(40.0)
     assert guard.resisting(0.01, -0.1, 4000.0, 200.0) == pytest.approx(20.0)
     assert guard.resisting(0.01, -1.0, 4000.0, 200.0) == 0.0
@@ -102,7 +102,7 @@ def test_a_hand_that_pushes_in_and_comes_out_gets_no_energy(
     """A mass as light as an arm gets, in a springy hand that moves 50 mm beyond a wall and back; the force comes a tick late."""
     stiffness, damping = guard_gains
     mass *= max(damping / 200.0, 1.0)  # a light part rings under a damper that is heavy for it, two ticks late
-    guard = Guard(-depth)
+    guard = LimitGuard(-depth)
     x, v, work, force, step = -depth, 0.0, 0.0, 0.0, TICK / 5
     ticks = 1500
     for k in range(ticks):
@@ -124,7 +124,7 @@ def test_a_hand_that_pushes_in_and_comes_out_gets_no_energy(
 @settings(max_examples=30, deadline=None)
 def test_a_part_that_is_pushed_comes_to_rest_where_the_spring_holds_the_push(mass: float, push: float, band: float) -> None:
     """Without any friction, from 0.3 m/s; the force comes a tick late."""
-    guard = Guard(-0.05)
+    guard = LimitGuard(-0.05)
     x, v, force, step, outermost = -0.05, 0.3, 0.0, TICK / 5, 0.0
     for _ in range(2000):
         beyond = guard.step(x, 0.0)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
-from pendant.guided.endings import Ending, Operation
-from pendant.guided.user_force import Hand
+from pendant.guided.endings import Ending, EndingWatch
+from pendant.guided.user_force import UserForce
 from pendant.limits.dynamic_limits import WHOLE
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import SoftLimits, hard
@@ -124,9 +124,9 @@ def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: li
 def ended(speed: float, **changes: float | bool) -> Ending | None:
     settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
     now = estimate(load_mass=4.0, v_tcp=speed)
-    operation = Operation(now, settings, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6, 0.0)
+    operation = EndingWatch(now, settings, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6, 0.0)
     assert operation.damping is None
-    found = operation.step(now, Hand(now, ZEROS), ZEROS, False)
+    found = operation.step(now, UserForce(now, ZEROS), ZEROS, False)
     assert operation.damping is not None
     return found
 

@@ -7,7 +7,7 @@ import pytest
 
 from pendant.signals.gestures import PatternSignal, StepSignal, TapSignal, TurnSignal
 from pendant.signals.push_signal import PushSignal, TwistSignal
-from pendant.signals.settings import ForceStep, Pattern, Push, Tap, Turn, Twist
+from pendant.signals.settings import ForceStep, PushPattern, PushSettings, TapSettings, Turn, Twist
 from pendant.tick.pose import UNTURNED, flat
 
 SHORT, LONG = 40, 140
@@ -19,7 +19,7 @@ def whole_at(*lengths: int) -> list[int]:
     signal = PatternSignal()
     pushes = itertools.cycle([True, False])
     course = [push for length, push in zip((*lengths, 1), pushes, strict=False) for _ in range(length)]
-    return [tick for tick, push in enumerate(course) if signal.step(push, Pattern())]
+    return [tick for tick, push in enumerate(course) if signal.step(push, PushPattern())]
 
 
 @pytest.mark.parametrize("which", [0, 1, 2])
@@ -36,7 +36,7 @@ def test_however_long_nobody_pushed_before_the_first_push_is_the_first(idle: int
     """FD-5f."""
     signal = PatternSignal()
     course = [False] * idle + [True] * 80 + [False] * 80 + [True] * 80 + [False]
-    assert [tick for tick, push in enumerate(course) if signal.step(push, Pattern())] == [idle + 240]
+    assert [tick for tick, push in enumerate(course) if signal.step(push, PushPattern())] == [idle + 240]
 
 
 def test_a_pattern_that_is_whole_begins_afresh_and_so_does_one_that_is_broken() -> None:
@@ -86,7 +86,7 @@ def tapped(*lengths: int) -> list[int]:
     signal = TapSignal()
     hits = itertools.cycle([True, False])
     course = [hit for length, hit in zip(lengths, hits, strict=False) for _ in range(length)] + [False] * 300
-    return [tick for tick, hit in enumerate(course) if signal.step(6.1 if hit else 6.0, Tap())]
+    return [tick for tick, hit in enumerate(course) if signal.step(6.1 if hit else 6.0, TapSettings())]
 
 
 @pytest.mark.parametrize(
@@ -161,9 +161,9 @@ def test_a_push_passes_its_place_within_the_radius() -> None:
         off = np.cross(f, rng.normal(size=3))
         off /= np.linalg.norm(off)
         x, y, z = place.tolist()
-        use = Push(radius=0.05, place_x=x, place_y=y, place_z=z, torque_limit=20.0)
+        use = PushSettings(radius=0.05, place_x=x, place_y=y, place_z=z, torque_limit=20.0)
         for distance, passes in ((0.0, True), (0.049, True), (0.051, False)):
             point = R_BF @ place + distance * off + rng.normal() * 0.01 * f
             change = [*f.tolist(), *np.cross(point, f).tolist()]
             assert PushSignal().step(change, flat(R_BF), use) is passes
-    assert PushSignal().step((20.0, 0.0, 0.0, 0.0, 0.0, 1.0), UNTURNED, Push(radius=0.05)), "the radius itself is within"
+    assert PushSignal().step((20.0, 0.0, 0.0, 0.0, 0.0, 1.0), UNTURNED, PushSettings(radius=0.05)), "the radius itself is within"

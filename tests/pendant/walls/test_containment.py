@@ -16,7 +16,7 @@ from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import HERE, Pose, from_rpy, turned
 from pendant.walls.containment import NOBODY, Containment, WallState, _measures, facts, tether
 from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
-from pendant.walls.settings import Walls
+from pendant.walls.settings import WallSettings
 from pendant.walls.shapes import Box, HalfSpace, Sphere
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
@@ -79,16 +79,18 @@ def at(x: float, y: float = 0.0, z: float = 0.0, **values: Any) -> Estimate:
 
 
 def test_the_tether_has_the_sizes_of_the_settings() -> None:
-    wall = tether(Walls(operation_radius=0.05, activation_radius=0.01, band=0.2, push_back=6.0, averaging=0.1, safety_period=2.0))
+    wall = tether(
+        WallSettings(operation_radius=0.05, activation_radius=0.01, band=0.2, push_back=6.0, averaging=0.1, safety_period=2.0)
+    )
     assert wall.shape == Sphere(radius=0.05)
     assert wall.activation_size == pytest.approx(0.2)
     assert (wall.band, wall.push_back, wall.averaging_period, wall.safety_period) == (pytest.approx(0.04), 6.0, 0.1, 2.0)
     assert wall.policy is Policy.AVERAGE
-    assert tether(Walls(operation_radius=1.0, activation_radius=0.001)).activation_size == 0.05
-    assert [tether(Walls(leave=leave, stop=stop)).reaction for leave, stop in ((False, False), (True, False), (True, True))] == [
-        Reaction.STAY, Reaction.LEAVE, Reaction.STOP,
-    ]  # fmt: skip
-    assert problem((tether(Walls()),), frozenset({"flange"}), frozenset({"base"})) is None
+    assert tether(WallSettings(operation_radius=1.0, activation_radius=0.001)).activation_size == 0.05
+    cases = ((False, False, Reaction.STAY), (True, False, Reaction.LEAVE), (True, True, Reaction.STOP))
+    for leave, stop, reaction in cases:
+        assert tether(WallSettings(leave=leave, stop=stop)).reaction is reaction
+    assert problem((tether(WallSettings()),), frozenset({"flange"}), frozenset({"base"})) is None
 
 
 def test_beyond_the_activation_shape_entry_is_refused_with_the_way_back() -> None:
@@ -215,8 +217,8 @@ def test_parts_and_references_are_where_the_estimate_says() -> None:
     )
     frames = {"world": Pose((0.0, 0.0, 0.0), quarter), "cart": Pose((0.1, 0.2, 0.25))}
     containment = Containment(borders, frames)
-    containment.begin(Start.ACTIVATION, Walls(tether=False))
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.ACTIVATION, WallSettings(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     assert containment.step(seen, *NOBODY) is None
     found = {state.name: state for state in containment.states()}
     assert found["elbow"].distance == pytest.approx(-0.1)
@@ -240,8 +242,8 @@ def test_a_tool_that_is_turned_in_the_flange_turns_what_lies_in_its_frame() -> N
     containment = Containment((area,), {})
     containment.R_FT = from_rpy(0.0, 0.0, math.pi / 2.0)
     seen = at(0.1, tcp=[0.1, 0.2, 0.3, 0.0, 0.0, 0.0], elbow=[0.4, 0.05, 0.5, 0.0, 0.0, 0.0])
-    containment.begin(Start.ACTIVATION, Walls(tether=False))
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.ACTIVATION, WallSettings(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     containment.step(seen, *NOBODY)
     (state,) = containment.states()
     assert state.distance == pytest.approx(0.05 - 0.2)
@@ -264,7 +266,7 @@ def test_a_size_follows_posture_and_payload(measure: Measure, seen: Estimate, fa
         size=Dependence(measure=measure, low=0.0, high=0.5, at_low=1.0, at_high=0.5),
     )  # fmt: skip
     containment = Containment((wall,), {})
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     containment.step(seen, *NOBODY)
     (state,) = containment.states()
     assert state.distance == pytest.approx(-0.2 * factor)
@@ -280,7 +282,7 @@ def test_without_sizes_the_smallest_holds(reach: float, at_low: float, at_high: 
     )
     for sizes, distance in ((True, -0.2), (False, -0.1)):
         containment = Containment(borders, {})
-        containment.begin(Start.SEQUENCE, Walls(tether=False, sizes=sizes))
+        containment.begin(Start.SEQUENCE, WallSettings(tether=False, sizes=sizes))
         containment.step(at(reach), *NOBODY)
         assert [state.distance for state in containment.states()] == pytest.approx([distance, -0.2])
 
@@ -302,7 +304,7 @@ def test_without_new_anchors_a_hand_reaches_the_tether(anew: bool, law: Law) -> 
 def test_without_new_anchors_every_wall_is_a_fixed_one(anew: bool) -> None:
     """VW-3 to VW-5; an area is one anyhow."""
     containment = Containment((Wall(name="w", shape=Sphere(radius=0.2), policy=Policy.USER), FLOOR), {})
-    containment.enter(Walls(anew=anew))
+    containment.enter(WallSettings(anew=anew))
     containment.step(at(0.0), *NOBODY)
     policies = [border.policy for border, _ in containment.places() if isinstance(border, Wall)]
     assert policies == ([Policy.AVERAGE, Policy.USER] if anew else [Policy.FIXED, Policy.FIXED])
@@ -314,7 +316,7 @@ def test_a_safety_period_alone_follows_the_payload(load: float, ticks: int) -> N
     dependence = Dependence(measure=Measure.PAYLOAD, low=0.0, high=1.0, at_low=1.0, at_high=2.0)
     wall = Wall(name="w", shape=Sphere(radius=0.2), literal=True, safety_period=0.1, safety_dependence=dependence)
     containment = Containment((wall,), {})
-    containment.enter(Walls(tether=False))
+    containment.enter(WallSettings(tether=False))
     containment.step(at(0.0, load_mass=load), *NOBODY)
     distances = []
     for _ in range(101):
@@ -327,7 +329,7 @@ def test_a_safety_period_alone_follows_the_payload(load: float, ticks: int) -> N
 def test_of_every_border_is_told_what_the_law_needs(z: float, near: float, exceeded: bool, force: float) -> None:
     """VW-7, VW-10."""
     containment = Containment((FLOOR,), {})
-    containment.enter(Walls(tether=False))
+    containment.enter(WallSettings(tether=False))
     containment.step(at(0.0), *NOBODY)
     containment.step(at(0.1, 0.2, z), *NOBODY)
     (state,) = containment.states()
@@ -345,7 +347,7 @@ def test_without_resistance_walls_and_areas_have_no_band(resistance: bool, near:
 
 def test_what_cannot_be_told_is_refused_and_not_drawn() -> None:
     containment = Containment((Area(name="gone", reference="nowhere", shape=Sphere(radius=1.0)),), {})
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     reading = containment.step(estimate(), *NOBODY)
     assert reading is not None
     assert facts(reading) == out(0.0, "unknown", (0.0, 0.0, 0.0)) | {"wall": "gone"}
@@ -357,10 +359,10 @@ def test_a_wall_has_no_place_before_its_first_step() -> None:
     """VW-6: joints that are not valid put it off, and pictures ask all the same."""
     early = Wall(name="early", shape=Sphere(radius=0.05), anchored_at=Start.ACTIVATION)
     containment = Containment((early, FLOOR), {})
-    containment.begin(Start.ACTIVATION, Walls(tether=False))
+    containment.begin(Start.ACTIVATION, WallSettings(tether=False))
     assert containment.places() == ()
     containment.step(estimate(), *NOBODY)
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     assert [border.name for border, _ in containment.places()] == ["early"]
     containment.step(estimate(), *NOBODY)
     assert [border.name for border, _ in containment.places()] == ["early", "floor"]
@@ -368,7 +370,7 @@ def test_a_wall_has_no_place_before_its_first_step() -> None:
 
 def test_what_was_left_holds_no_more() -> None:
     containment = Containment((FLOOR,), {})
-    containment.enter(Walls())
+    containment.enter(WallSettings())
     assert containment.step(at(0.0), *NOBODY) is None
     assert containment.step(at(0.0, 0.0, -0.2), *NOBODY) is not None
     containment.leave()
@@ -379,9 +381,9 @@ def test_what_was_left_holds_no_more() -> None:
 def test_without_any_border_it_does_nothing() -> None:
     containment = Containment((), {"world": HERE})
     before = containment.memory
-    containment.begin(Start.ACTIVATION, Walls(tether=False))
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
-    containment.enter(Walls(tether=False))
+    containment.begin(Start.ACTIVATION, WallSettings(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
+    containment.enter(WallSettings(tether=False))
     assert containment.step(estimate(), *NOBODY) is None
     assert containment.memory == before == ((), ())
 
@@ -394,7 +396,7 @@ def test_the_way_back_is_told_in_axes_of_the_base(outward: tuple[float, float, f
     x, y, z = outward
     position = tuple(0.3 * value for value in outward)
     containment = Containment((Area(name="ball", shape=Sphere(radius=0.2)),), {})
-    containment.begin(Start.SEQUENCE, Walls(tether=False))
+    containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     containment.step(estimate(), *NOBODY)
     reading = containment.step(at(*position), *NOBODY)
     assert reading is not None

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pendant.tick.modes import TICK
 from pendant.tick.pose import HERE, ORIGIN, Pose, Quaternion, Vector, rotation
-from pendant.walls.barrier import WRONG_WAY, Around, Barrier, Consequence, Part, Reading, Stage
+from pendant.walls.barrier import WRONG_WAY, Around, Barrier, Consequence, Reading, Stage, WatchedPart
 from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
 from pendant.walls.enclosure import Enclosure, worst
 from pendant.walls.shapes import Box, HalfSpace, Shape, Sphere
@@ -32,7 +32,7 @@ def around(
     **measures: float,
 ) -> Around:
     known = {Measure(name): value for name, value in measures.items()}
-    return Around({"flange": Part(p, v)}, {"base": HERE, **(references or {})}, user, payload, known)
+    return Around({"flange": WatchedPart(p, v)}, {"base": HERE, **(references or {})}, user, payload, known)
 
 
 def entered(*borders: AnyBorder) -> Enclosure:

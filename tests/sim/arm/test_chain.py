@@ -7,7 +7,7 @@ import pytest
 
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body, chain, load_body, plate_body, tool_body
-from sim.arm.scenario import Load, Tool
+from sim.arm.scenario import Load, ToolModel
 from tests.sim.arms import PROBE, TWO_KG, UR5E, arms
 
 
@@ -33,7 +33,7 @@ def test_between_two_bodies_mass_and_moment_lie_on_a_line() -> None:
 
 
 def test_an_inertia_that_is_given_is_taken() -> None:
-    tool = Tool(name="x", mass=1.0, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], inertia=[1.0, 2.0, 2.5, 0.1, 0.0, 0.0])
+    tool = ToolModel(name="x", mass=1.0, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], inertia=[1.0, 2.0, 2.5, 0.1, 0.0, 0.0])
     assert tool_body(tool).inertia == pytest.approx(np.array([[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 2.5]]))
 
 
@@ -73,7 +73,7 @@ def test_a_given_inertia_is_taken_as_it_is() -> None:
 
 
 def test_a_tool_is_a_cylinder_along_z() -> None:
-    body = tool_body(Tool(name="rod", mass=1.2, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], length=0.2, radius=0.02))
+    body = tool_body(ToolModel(name="rod", mass=1.2, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], length=0.2, radius=0.02))
     assert np.allclose(np.diag(body.inertia), [1.2 * (0.02**2 / 4 + 0.2**2 / 12)] * 2 + [1.2 * 0.02**2 / 2])
     assert tool_body(None).mass == 0.0
 

@@ -11,7 +11,7 @@ from pendant.program.steps import JointMove, Program
 from pendant.tick.source_signal import Signal
 from sim.arm.scenario import Load, Scenario
 from sim.exchange.desk import Wishes
-from sim.plant.changes import Friction, SensorFault
+from sim.plant.changes import FrictionChange, SensorFault
 from sim.plant.touch import Push
 from sim.simulation import Simulation
 
@@ -79,7 +79,7 @@ def test_a_load_off_the_axis_that_is_shaken_keeps_its_force_along_its_accelerati
         sim.tick(Wishes(NOTHING, (), (SensorFault(sensor=sensor, noise_factor=0.0),)))
     move(sim, [1.0, 0.3, -0.3, 1.0, 1.0, 1.0])
     rows = []
-    for changes in ((Friction(factor=1.4),), *((),) * 40):
+    for changes in ((FrictionChange(factor=1.4),), *((),) * 40):
         sim.tick(Wishes(NOTHING, (), changes))
         signal = sim.snapshot().estimate.signals.each()[0]
         assert signal is not None

@@ -4,7 +4,7 @@ import threading
 
 from pendant.inputs import Button, Command, Inputs
 from pendant.program.steps import Program, Wait
-from sim.arm.scenario import BARE, Load, Tool
+from sim.arm.scenario import BARE, Load, ToolModel
 from sim.exchange.desk import Desk, Wishes
 from sim.plant.changes import DropPayload, Temperature
 from sim.plant.touch import Push
@@ -12,7 +12,7 @@ from sim.plant.touch import Push
 EMPTY = Wishes(Inputs(), (), ())
 FIRST = Push("flange", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
 SECOND = Push("elbow", (0.0, 0.0, 0.0), (0.0, 2.0, 0.0))
-HOOK = Tool(name="hook", mass=0.3, com=[0.0, 0.0, 0.02], tcp=[0.0, 0.0, 0.08])
+HOOK = ToolModel(name="hook", mass=0.3, com=[0.0, 0.0, 0.02], tcp=[0.0, 0.0, 0.08])
 PROGRAM = Program(steps=(Wait(duration=1.0),))
 
 

@@ -10,7 +10,7 @@ from pendant.program.reaction import Until
 from pendant.program.steps import ApplyForce, LinearMove, Program
 from pendant.tick.modes import Mode
 from sim.arm.frames import quaternion_from_matrix
-from sim.arm.scenario import Box, Load, Scenario
+from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.moves import MoveRefused
 from sim.plant.changes import SensorFault
@@ -23,7 +23,7 @@ DOWN = (0.0, 0.0, -15.0)
 
 def bench(stiffness: float | None) -> Bench:
     """Above a block, or above nothing; the configured payload is wrong by 200 g."""
-    block = Box(name="block", position=[-0.6282, -0.1335, -0.03], size=[0.2, 0.2, 0.2], stiffness=stiffness or 1e4)
+    block = BoxObject(name="block", position=[-0.6282, -0.1335, -0.03], size=[0.2, 0.2, 0.2], stiffness=stiffness or 1e4)
     world = [] if stiffness is None else [block]
     load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
     scenario = Scenario(seed=4, tool=PROBE, payload_true=Load(mass=1.2, com=load.com), payload_configured=load, world=world)

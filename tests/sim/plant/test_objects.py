@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sim.arm.chain import Body, chain, plate_body, tool_body
-from sim.arm.scenario import AnyObject, Box, Moving, Pad, Plane, Scenario, SnapFit, Tool, TwoFrictions
+from sim.arm.scenario import AnyObject, BoxObject, Moving, Pad, Plane, Scenario, SnapFit, ToolModel, TwoFrictions
 from sim.plant.model import Step
 from sim.plant.objects import DAMPING_RATIO
 from sim.plant.touch import Push
@@ -14,7 +14,7 @@ from sim.rigid_body.dynamics import Dynamics
 from tests.sim.arms import UR5E
 
 TIP = 0.25  # length of the probe [m]: so long that nothing but its end ever touches
-PROBE = Tool(name="probe", mass=0.3, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, TIP], length=TIP, radius=0.02)
+PROBE = ToolModel(name="probe", mass=0.3, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, TIP], length=TIP, radius=0.02)
 SIZE = [0.4, 0.4, 0.3]
 LOW = [0.0, -0.6, 1.5, -2.47, -1.57, 0.0]  # the probe points down, its end is below the robot's foot
 
@@ -68,8 +68,8 @@ def pressed(item: AnyObject, forces: tuple[float, ...]) -> list[tuple[float, flo
 
 OBJECTS = [
     (Plane, {"stiffness": 2e5}),
-    (Box, {"stiffness": 2e5}),
-    (Box, {"stiffness": 1e4}),
+    (BoxObject, {"stiffness": 2e5}),
+    (BoxObject, {"stiffness": 1e4}),
     (Pad, {}),
     (TwoFrictions, {"stiffness": 5e4}),
     (SnapFit, {"stiffness": 1e5, "force": 30.0}),
@@ -131,7 +131,7 @@ def test_first_5_ms_of_an_impact_are_those_of_a_penalty_spring(stiffness: float)
 
 def onset(substeps: int) -> float:
     """Time [s] at which the contact force of an approach at 0.1 m/s passes 10 N, interpolated."""
-    item = below(0.003, Box, stiffness=5e4)
+    item = below(0.003, BoxObject, stiffness=5e4)
     plant = Plant(UR5E, Scenario(posture=LOW, tool=PROBE, world=[item]), Step(substeps))
     model, data = plant.model, plant.data
     dofs = np.array([model.joint(f"q/{name}").dofadr[0] for name in UR5E.chain.joints])
@@ -157,7 +157,7 @@ def test_half_the_step_leaves_contact_onset_as_it_is() -> None:
 def test_contact_force_and_acceleration_are_opposite_with_the_arms_effective_mass() -> None:
     """CD-0, docs/contact.md: ratio = - effective mass of the arm behind the sensor, the rotors decoupled by the springs."""
     rigid = chain(UR5E)
-    touching, free = (approach([below(0.001, Box, stiffness=2e4)]), approach([]))
+    touching, free = (approach([below(0.001, BoxObject, stiffness=2e4)]), approach([]))
     normal = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
     links = Dynamics(rigid, rigid.links, Body(0.0, np.zeros(3), np.zeros((3, 3))), [0.0] * 3, 2)
     jacobian = links.update(np.array(LOW))[2].copy()

@@ -17,8 +17,8 @@ from websockets.sync.client import connect
 from app.web.access import message_gate as gate_module
 from app.web.access.door import MAX_CLIENTS
 from app.web.access.guard import VISER_VERSION
-from app.web.access.message_gate import MAX_BYTES, Gate
-from app.web.access.messages import Camera, Drag, Hold, Part, Trigger, Update, Upload
+from app.web.access.message_gate import MAX_BYTES, MessageGate
+from app.web.access.messages import Camera, CommandTrigger, Drag, HoldMessage, Update, Upload, UploadPart
 from app.web.server import Served
 from pendant.inputs import Button, Command
 from sim.plant.touch import Pull
@@ -73,7 +73,7 @@ def test_viser_handles_the_messages_that_the_guard_knows(served: Served, join: J
     assert {message.__name__ for message in own} - HANDLED == {"ViewerCameraMessage"}
 
 
-@pytest.mark.parametrize("ours", [Camera, Update, Hold, Trigger, Drag, Upload, Part])
+@pytest.mark.parametrize("ours", [Camera, Update, HoldMessage, CommandTrigger, Drag, Upload, UploadPart])
 def test_admitted_messages_have_the_fields_of_visers(ours: Any) -> None:
     theirs = getattr(wire, ours.__struct_config__.tag)
     assert list(ours.__struct_fields__) == [field.name for field in fields(theirs)]
@@ -170,7 +170,7 @@ def test_only_the_hold_button_at_its_rate_is_held(served: Served, join: Join, na
 def others() -> dict[str, Any]:
     """All messages that viser, and what is built on it, know and a client may not send, by name."""
     known = {message.__name__: message for message in wire.Message.get_subclasses() if is_dataclass(message)}
-    ours = {message.__struct_config__.tag for message in (Camera, Update, Hold, Trigger, Drag, Upload, Part)}
+    ours = {message.__struct_config__.tag for message in (Camera, Update, HoldMessage, CommandTrigger, Drag, Upload, UploadPart)}
     return {name: message for name, message in sorted(known.items()) if name not in ours}
 
 
@@ -260,14 +260,14 @@ def test_a_closed_connection_releases_at_once(served: Served, join: Join, loop: 
 
 
 def test_a_network_that_stalls_lets_go(served: Served, join: Join, loop: FakeLoop, monkeypatch: pytest.MonkeyPatch) -> None:
-    async def no_answer(gate: Gate) -> asyncio.Future[float]:
+    async def no_answer(gate: MessageGate) -> asyncio.Future[float]:
         return asyncio.get_running_loop().create_future()
 
     client = join()
     client.drag("start")
     client.hold(served.panel.free_drive._impl.uuid)
     until(lambda: loop.advance() is None and bool(loop.wishes[-1].touches), "a touch")
-    monkeypatch.setattr(Gate, "ping", no_answer)
+    monkeypatch.setattr(MessageGate, "ping", no_answer)
     until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release", seconds=2.0)
     assert loop.desk.take().touches == ()
     client.drag("update", to=(0.3, 0.2, 0.1))

@@ -12,7 +12,7 @@ from app.web.server import Served
 from pendant.tick.modes import Mode
 from pendant.tooling.tool_in_use import Fitting
 from sim.arm.scenario import Load, Scenario
-from sim.plant.changes import AnyChange, AttachPayload, DropPayload, Friction, SensorFault, Temperature
+from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, SensorFault, Temperature
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -24,7 +24,7 @@ Join = Callable[[], RawClient]
     [
         ("true", 2.0, [AttachPayload(load=Load(mass=2.0))]),
         ("celsius", 40.0, [Temperature(celsius=40.0)]),
-        ("wear", 1.5, [Friction(factor=1.5)]),
+        ("wear", 1.5, [FrictionChange(factor=1.5)]),
         (
             "outage",
             True,

@@ -8,15 +8,15 @@ import pytest
 
 from app.web.scene.arm_picture import LONGEST, SHORTEST, frames_of
 from app.web.server import Served, serve
-from sim.arm.scenario import Box, Pad, Plane, Scenario, Tool
+from sim.arm.scenario import BoxObject, Pad, Plane, Scenario, ToolModel
 from sim.exchange.snapshot import Snapshot
 from tests.app.web.fake_loop import ARM, FakeLoop, links
 
 WORLD = Scenario(
-    tool=Tool(name="rod", mass=0.5, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], length=0.2),
+    tool=ToolModel(name="rod", mass=0.5, com=[0.0, 0.0, 0.1], tcp=[0.0, 0.0, 0.2], length=0.2),
     world=[
         Plane(name="floor", position=[0.0, 0.0, 0.0]),
-        Box(name="table", position=[0.5, 0.0, 0.2], size=[0.4, 0.6, 0.4]),
+        BoxObject(name="table", position=[0.5, 0.0, 0.2], size=[0.4, 0.6, 0.4]),
         Pad(name="pad", position=[0.5, 0.0, 0.42], size=[0.2, 0.2, 0.04]),
     ],
 )

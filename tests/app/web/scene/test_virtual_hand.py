@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.web.scene.arm_picture import frames_of
-from app.web.scene.virtual_hand import FORCE, LEVER, REACH, Hand
+from app.web.scene.virtual_hand import FORCE, LEVER, REACH, VirtualHand
 from sim.arm.frames import joint_frames
 from sim.plant.touch import Pull, Push
 from tests.app.web.fake_loop import ARM, FakeLoop
@@ -18,12 +18,12 @@ def loop() -> FakeLoop:
 
 
 @pytest.fixture
-def hand(loop: FakeLoop) -> Hand:
-    return Hand(loop.desk, loop.latest, frames_of(ARM))
+def hand(loop: FakeLoop) -> VirtualHand:
+    return VirtualHand(loop.desk, loop.latest, frames_of(ARM))
 
 
 @pytest.mark.parametrize(("part", "row"), [("base", 0), ("elbow", 2), ("wrist_3", 5)])
-def test_the_grabbed_point_stays_where_it_was_on_its_part(loop: FakeLoop, hand: Hand, part: str, row: int) -> None:
+def test_the_grabbed_point_stays_where_it_was_on_its_part(loop: FakeLoop, hand: VirtualHand, part: str, row: int) -> None:
     frame = joint_frames(ARM, loop.q)[row]
     in_part = np.array([0.03, -0.02, 0.05, 1.0])
     start = frame @ in_part
@@ -35,7 +35,7 @@ def test_the_grabbed_point_stays_where_it_was_on_its_part(loop: FakeLoop, hand: 
     assert touch.point == pytest.approx(in_part[:3], abs=1e-9)
 
 
-def test_a_turning_hand_rolls_the_near_side_along_the_cursors_way(loop: FakeLoop, hand: Hand) -> None:
+def test_a_turning_hand_rolls_the_near_side_along_the_cursors_way(loop: FakeLoop, hand: VirtualHand) -> None:
     hand.grab(0, "wrist_3", (0.0, 0.0, 0.5), turning=True)
     hand.move(0, (0.0, 0.0, 0.5), (0.0, REACH / 2, 0.5), EYE)
     (touch,) = loop.desk.take().touches
@@ -45,7 +45,7 @@ def test_a_turning_hand_rolls_the_near_side_along_the_cursors_way(loop: FakeLoop
     assert touch.torque == pytest.approx((0.0, 0.0, FORCE[1] * LEVER / 2))
 
 
-def test_the_torque_has_a_cap(loop: FakeLoop, hand: Hand) -> None:
+def test_the_torque_has_a_cap(loop: FakeLoop, hand: VirtualHand) -> None:
     hand.grab(0, "wrist_3", (0.0, 0.0, 0.5), turning=True)
     hand.move(0, (0.0, 0.0, 0.5), (0.0, 9.0, 3.0), EYE)
     (touch,) = loop.desk.take().touches
@@ -53,7 +53,7 @@ def test_the_torque_has_a_cap(loop: FakeLoop, hand: Hand) -> None:
     assert math.hypot(*touch.torque) == pytest.approx(FORCE[1] * LEVER)
 
 
-def test_a_cursor_on_the_grabbed_point_turns_nothing(loop: FakeLoop, hand: Hand) -> None:
+def test_a_cursor_on_the_grabbed_point_turns_nothing(loop: FakeLoop, hand: VirtualHand) -> None:
     hand.grab(0, "wrist_3", (0.0, 0.0, 0.5), turning=True)
     hand.move(0, (0.0, 0.0, 0.5), (0.0, 0.0, 0.5), EYE)
     (touch,) = loop.desk.take().touches
@@ -61,7 +61,7 @@ def test_a_cursor_on_the_grabbed_point_turns_nothing(loop: FakeLoop, hand: Hand)
     assert touch.torque == (0.0, 0.0, 0.0)
 
 
-def test_who_lets_go_moves_nothing_until_it_grabs_again(loop: FakeLoop, hand: Hand) -> None:
+def test_who_lets_go_moves_nothing_until_it_grabs_again(loop: FakeLoop, hand: VirtualHand) -> None:
     hand.grab(0, "elbow", (0.0, 0.0, 0.5), turning=False)
     hand.move(0, (0.0, 0.0, 0.5), (0.1, 0.2, 0.3), EYE)
     assert hand.holds(0)
@@ -72,7 +72,7 @@ def test_who_lets_go_moves_nothing_until_it_grabs_again(loop: FakeLoop, hand: Ha
     assert not hand.holds(0)
 
 
-def test_a_touch_is_its_clients_own(loop: FakeLoop, hand: Hand) -> None:
+def test_a_touch_is_its_clients_own(loop: FakeLoop, hand: VirtualHand) -> None:
     hand.grab(0, "elbow", (0.0, 0.0, 0.5), turning=False)
     hand.move(0, (0.0, 0.0, 0.5), (0.1, 0.2, 0.3), EYE)
     assert not hand.let_go(1)

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from app.files.taught_program import Lesson, Step
+from app.files.taught_program import Lesson, TaughtStep
 from app.web.access.takes import MAX_FILE
 from app.web.scene.ghost import limbs
 from app.web.server import Served
@@ -49,7 +49,9 @@ def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) 
     for _ in range(3):
         teach.mark()
     if own:
-        teach.lesson = teach.lesson.with_steps([Step(do="joint", to="P2"), Step(do="joint", to="P2"), Step(do="joint", to="P1")])
+        teach.lesson = teach.lesson.with_steps(
+            [TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P1")]
+        )
     texts = [step.text for step in teach.lesson.plan]
     teach.run.value = "Run"
     teach._run()
@@ -60,7 +62,7 @@ def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) 
         items = teach.list.shown.split("<li")[1:]
         assert [number for number, item in enumerate(items, 1) if "pd-now" in item] == [number]
         assert f"{texts[number - 1]} <em>running</em>" in items[number - 1]
-    teach.lesson = teach.lesson.with_steps([Step(do="joint", to="P3")])
+    teach.lesson = teach.lesson.with_steps([TaughtStep(do="joint", to="P3")])
     teach.show(loop.latest())
     assert "pd-now" not in teach.list.shown  # the plan is another one by now
     teach.edit.value = "Go to"
@@ -76,7 +78,7 @@ def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop:
     for text in ("P1", "P2", "P1"):
         loop.program, loop.step = ProgramState.STOPPED, 0
         until(lambda: "pd-now" not in teach.list.shown, "nothing runs")
-        client.set(teach.run._impl.uuid, value="Step")
+        client.set(teach.run._impl.uuid, value="TaughtStep")
         until(lambda text=text: [step.to for step in teach._running] == [text], "handed over")
         loop.program, loop.step = ProgramState.RUNNING, 1
         until(lambda text=text: f'class="pd-now">Move to {text} ' in teach.list.shown, text)

@@ -6,7 +6,7 @@ import pytest
 
 from app.files.library import load_tool
 from app.web.server import Served
-from pendant.equipment.payload_fit import Finding
+from pendant.equipment.payload_fit import FittedPayload
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Phase
@@ -18,7 +18,7 @@ from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
 GRIPPER, SPHERE = load_tool("gripper"), load_tool("sphere")
-FOUND = Finding(1.987, 0.012, (0.02, 0.0, 0.061), 0.0004, 0.05, 0.002, (1.0, -2.0, 3.0), (0.1, 0.2, 0.3), 4)
+FOUND = FittedPayload(1.987, 0.012, (0.02, 0.0, 0.061), 0.0004, 0.05, 0.002, (1.0, -2.0, 3.0), (0.1, 0.2, 0.3), 4)
 
 
 def equip(loop: FakeLoop) -> None:

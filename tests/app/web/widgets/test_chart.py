@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from app.web.widgets.chart import HEIGHT, MARGIN, STEP, Line, chart
+from app.web.widgets.chart import HEIGHT, MARGIN, STEP, Curve, chart
 
 
 def ys(html: str) -> list[int]:
@@ -20,29 +20,29 @@ def ys(html: str) -> list[int]:
     [([0.0, 3.0], "0 … 5 N"), ([-0.3, 0.1], "-0.5 … 0.5 N"), ([-7.0, -1.0], "-10 … 0 N"), ([0.0, 1.0], "0 … 1 N")],
 )
 def test_the_ends_are_round(values: list[float], ends: str) -> None:
-    assert ends in chart("t", "N", [Line("a", np.array(values))])
+    assert ends in chart("t", "N", [Curve("a", np.array(values))])
 
 
 def test_a_line_goes_from_the_bottom_to_the_top_of_its_range() -> None:
-    assert ys(chart("t", "N", [Line("a", np.array([0.0, 2.5, 5.0]))])) == [HEIGHT - MARGIN, HEIGHT // 2, MARGIN]
+    assert ys(chart("t", "N", [Curve("a", np.array([0.0, 2.5, 5.0]))])) == [HEIGHT - MARGIN, HEIGHT // 2, MARGIN]
 
 
 def test_a_gap_breaks_the_line_and_nothing_at_all_draws_none() -> None:
-    html = chart("t", "N", [Line("a", np.array([1.0, 1.0, np.nan, 1.0, 1.0]))])
+    html = chart("t", "N", [Curve("a", np.array([1.0, 1.0, np.nan, 1.0, 1.0]))])
     assert len(re.findall(r"M\d+ \d+l", html)) == 2
-    assert "l2" not in chart("t", "N", [Line("a", np.full(5, np.nan))])
+    assert "l2" not in chart("t", "N", [Curve("a", np.full(5, np.nan))])
 
 
 def test_marks_and_limits_are_drawn() -> None:
-    html = chart("t", "N", [Line("a", np.array([1.0, 2.0]))], marks=[1], limit=10.0)
+    html = chart("t", "N", [Curve("a", np.array([1.0, 2.0]))], marks=[1], limit=10.0)
     assert f"M{STEP} 0v{HEIGHT}" in html
     assert f"M0 {MARGIN}h{STEP}" in html
 
 
 def test_texts_are_escaped() -> None:
-    assert "<b>x" not in chart("<b>x", "<b>x", [Line("<b>x", np.zeros(2))])
+    assert "<b>x" not in chart("<b>x", "<b>x", [Curve("<b>x", np.zeros(2))])
 
 
 def test_six_noisy_lines_of_ten_seconds_stay_below_ten_kilobytes() -> None:
     noise = np.random.default_rng(1).standard_normal((6, 200))
-    assert len(chart("t", "N", [Line(f"{i}", row) for i, row in enumerate(noise)])) < 10_000
+    assert len(chart("t", "N", [Curve(f"{i}", row) for i, row in enumerate(noise)])) < 10_000
