@@ -108,7 +108,7 @@ soak soak-quick: $(VENV)/dev.stamp
 mutate: $(VENV)/dev.stamp
 	$(PIP) --editable '.[dev,mutate]'
 	$(BIN)/mutmut run --max-children $(WORKERS)
-	$(BIN)/python -m tests.mutants
+	$(BIN)/python -m tools.mutants
 
 clean:
 	rm -rf mutants $(VENV) build dist out .pytest_cache .ruff_cache .hypothesis .import_linter_cache .coverage

@@ -1,5 +1,6 @@
 """The documentation: what it names is there, and its examples work as they stand."""
 
+import ast
 import inspect
 import math
 import re
@@ -18,7 +19,6 @@ from app.files.library import load_arm
 from app.session import actions
 from app.session.session_file import Session
 from app.web.scene import surfaces
-from docs import modules
 from pendant.contact import contact_rules
 from pendant.contact import settings as contact_settings
 from pendant.contact.history import History
@@ -29,19 +29,20 @@ from pendant.tick.source_signal import Signal
 from pendant.walls import shapes, solids
 from tests.pendant.contacts import limit
 from tests.pendant.estimates import estimate
+from tools import modules
 
 ROOT = Path(__file__).parent.parent
-PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
-RECIPES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")])
+CHANGES = ROOT / "docs" / "how-to" / "change.md"
+RECIPES = sorted(set((ROOT / "docs" / "how-to").glob("*.md")) - {CHANGES})
 BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+NAMED = re.compile(r"(app|sim|pendant|assets|docs|tests|tools|benchmarks|examples)/[\w./-]*")
 SPAN = re.compile(r"`([^`\n]+)`")
 
 
 def named(page: Path) -> list[str]:
     """The files and folders of the repository that a page names; those of the user have no folder."""
-    spans = SPAN.findall(BLOCK.sub("", page.read_text()))
-    tops = "app|sim|pendant|assets|docs|tests|benchmarks|examples|tools"
-    return [each for each in spans if re.fullmatch(rf"({tops})/[\w./-]*", each)]
+    return [each for each in SPAN.findall(BLOCK.sub("", page.read_text())) if NAMED.fullmatch(each)]
 
 
 def blocks(name: str, kind: str = "python") -> list[str]:
@@ -94,6 +95,74 @@ def test_what_a_recipe_names_in_the_code_is_in_its_files(page: Path) -> None:
     names = [each.split(".")[-1] for each in SPAN.findall(prose) if re.fullmatch(r"_?[A-Za-z]\w*(\.\w+)?", each)]
     assert len(names) >= 3
     assert [name for name in names if name not in code and name not in example] == []
+
+
+def places() -> list[tuple[str, Path, list[str], str]]:
+    """The table of what one may want to change: wish, file, names to look for, test."""
+    rows = [
+        [cell.strip() for cell in line.strip("|").split("|")] for line in CHANGES.read_text().splitlines() if line.startswith("|")
+    ]
+    found: list[tuple[str, Path, list[str], str]] = []
+    for wish, room, file, names, test in rows[2:]:
+        found.append((wish, ROOT / room.strip("`") / file.strip("`"), SPAN.findall(names), test.strip("`")))
+    return found
+
+
+def defined(path: Path) -> set[str]:
+    """What a module defines, members of its classes by a dotted name; of a file of values, their dotted names."""
+    if path.suffix == ".yaml":
+        return set(keys(yaml.safe_load(path.read_text())))
+    found: set[str] = set()
+    for node in ast.parse(path.read_text()).body:
+        found |= names_of(node)
+        if isinstance(node, ast.ClassDef):
+            found |= {f"{node.name}.{name}" for member in node.body for name in names_of(member)}
+    return found
+
+
+def names_of(node: ast.stmt) -> set[str]:
+    """The names that a statement gives to something."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return {node.name}
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+    return {name.id for target in targets for name in ast.walk(target) if isinstance(name, ast.Name)}
+
+
+def keys(values: dict[str, Any]) -> list[str]:
+    """Dotted names of everything in a file of values."""
+    inner = [f"{key}.{name}" for key, value in values.items() if isinstance(value, dict) for name in keys(value)]
+    return [*values, *inner]
+
+
+def test_there_are_many_wishes_and_each_only_once() -> None:
+    wishes = [wish for wish, *_ in places() if not wish.startswith("→")]
+    assert len(wishes) >= 25
+    assert len(set(wishes)) == len(wishes)
+
+
+@pytest.mark.parametrize(("wish", "path", "names", "test"), places(), ids=lambda part: part if isinstance(part, str) else "")
+def test_what_one_may_want_to_change_is_where_the_table_says(wish: str, path: Path, names: list[str], test: str) -> None:
+    assert path.is_file(), wish
+    assert names, wish
+    assert set(names) <= defined(path), wish
+    assert re.fullmatch(r"tests/(\w+/)*test_\w+\.py", test), wish
+    assert (ROOT / test).is_file(), wish
+
+
+def test_the_glossary_has_each_term_once_in_order_with_a_known_source_and_a_name_in_the_code() -> None:
+    lines = [line for line in (ROOT / "docs/reference/glossary.md").read_text().splitlines() if line.startswith("| ")]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    known = {source for row in rows if len(row) == 2 for source in row[0].split(", ")}
+    terms = [row for row in rows if len(row) == 4][1:]
+    assert len(terms) >= 45
+    assert [row[0] for row in terms] == sorted({row[0] for row in terms}, key=str.lower)
+    code = "".join(path.read_text() for top in ("pendant", "sim", "app") for path in (ROOT / top).rglob("*.py"))
+    words = set(re.findall(r"\w+", code))
+    for term, _, source, name in terms:
+        assert set(source.split(", ")) <= known, term
+        names = SPAN.findall(name)
+        assert names or "conventions" in name, term
+        assert {part for each in names for part in each.split(".")} <= words, term
 
 
 def test_the_parameter_of_the_example_is_read() -> None:
@@ -168,7 +237,7 @@ def test_the_action_of_the_example_shakes() -> None:
 
 
 def test_the_list_of_modules_is_up_to_date() -> None:
-    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m docs.modules"
+    assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m tools.modules"
 
 
 def test_a_module_that_says_nothing_of_itself_is_named(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from tests.mutant_detours import standing
 from tests.mutant_order import FIRST, chosen
-from tests.mutants import TABLES, main, second_trial, summary
+from tools.mutants import TABLES, main, second_trial, summary
 
 CODES = {
     "pendant.a.x_f__mutmut_1": 1,

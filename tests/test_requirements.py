@@ -62,7 +62,7 @@ def test_the_page_of_who_cites_them_is_up_to_date() -> None:
 
 
 def test_no_docstring_comment_or_page_cites_a_file_that_is_not_there() -> None:
-    names = {path.name for path in files(*TOPS, ends=(".py",))}
+    names = {path.name for path in files(*TOPS, ends=(".py", ".md"))}
     gone: list[tuple[str, str]] = []
     for path in files(*TOPS, ends=(".py", ".yaml", ".md")):
         found = missing(said(path), path.parent, names)
@@ -76,7 +76,7 @@ def test_no_docstring_comment_or_page_cites_a_file_that_is_not_there() -> None:
     ("text", "found"),
     [
         ("see notes/limits.md 3", ["notes/limits.md"]),
-        ("see `limits.py` and docs/walls.md", ["limits.py"]),
+        ("see `limits.py` and docs/README.md", ["limits.py"]),
         ("writes log.mcap, in out", []),
         ("of traceability.py", []),
     ],

@@ -1,1 +1,1 @@
-"""Programs for those who work on the project: they read it and write pages about it."""
+"""Generators of pages and pictures, and the mutation run."""

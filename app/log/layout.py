@@ -1,7 +1,7 @@
 """The packed messages of a tick: which numbers, in which order, under which names. One place for writer, reader and schema.
 
 They are CDR, the binary form of ROS 2 messages: fixed arrays of numbers without padding, which numpy lays out for many ticks
-at once. Frames, units and signs as in docs/conventions.md.
+at once. Frames, units and signs as in docs/reference/conventions.md.
 """
 
 from typing import NamedTuple

@@ -31,7 +31,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     mismatch: Literal["on", "nominal"] = "on"
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     world: list[AnyObject] | str = []  # objects, or the name of a bundled world
-    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether (docs/walls.md)
+    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
 
 
 class Session(Setup, frozen=True, kw_only=True):

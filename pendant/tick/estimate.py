@@ -27,7 +27,7 @@ GRAVITY = 9.81
 class Estimate:
     """The estimator's result for one tick, n joints. Arrays are owned by the estimator and valid until its next update.
 
-    Frames as in docs/conventions.md: W world, B base, F flange. Wrenches are (6,): force [N], then torque [N·m].
+    Frames as in docs/reference/conventions.md: W world, B base, F flange. Wrenches are (6,): force [N], then torque [N·m].
     """
 
     tick: int

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 class Signal(NamedTuple):
     """One tick of one source. All in the same axes, those of the part; at the carried load's centre, or at the contact point.
 
-    Signs as docs/conventions.md says of `w_sensor`: what the arm exerts on what it carries or touches. Force and acceleration
-    both contain gravity, so that in free motion they stay parallel: force = mass·acceleration (docs/contact.md).
+    Signs as docs/reference/conventions.md says of `w_sensor`: what the arm exerts on what it carries or touches. Force and
+    acceleration both contain gravity, so that in free motion they stay parallel: force = mass·acceleration
+    (docs/guide/contact.md).
     """
 
     fx: float  # force [N]

@@ -1,4 +1,4 @@
-"""One operator at a time; everybody else watches (docs/network.md)."""
+"""One operator at a time; everybody else watches (docs/guide/network.md)."""
 
 from dataclasses import dataclass
 

@@ -227,7 +227,7 @@ def test_a_missing_session_names_the_bundled_ones() -> None:
 
 
 def test_the_example_of_the_tools_page_is_a_session() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "tools.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "guide" / "tools.md").read_text(encoding="utf-8")
     example = page.split("```yaml\n")[1].split("```")[0]
     session = parse("title: example\nduration: 4.0\n" + example, Session, "tools.md")
     prepared = prepare(session, "tools.md")

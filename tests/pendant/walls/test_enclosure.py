@@ -422,7 +422,7 @@ def test_any_stream_gives_finite_readings_and_the_same_again(stream: list[tuple[
 
 
 def test_the_walls_of_the_page_are_accepted() -> None:
-    page = (Path(__file__).parents[3] / "docs" / "walls.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "guide" / "walls.md").read_text(encoding="utf-8")
     text = page.split("```json")[1].split("```")[0]
     borders = msgspec.json.decode(text, type=tuple[AnyBorder, ...])
     assert len(borders) == 5

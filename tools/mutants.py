@@ -1,4 +1,4 @@
-"""Sums up a run of mutmut: survivors of each module, and whether they are few enough. Run as `python -m tests.mutants`.
+"""Sums up a run of mutmut: survivors of each module, and whether they are few enough. Run as `python -m tools.mutants`.
 
 mutmut imports the pendant once and forks for each mutant. What runs only on import, as do the tables of settings and events, has
 run by then, mutant or no mutant: its survivors are tried again, each in a process that imports with the mutant set.

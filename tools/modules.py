@@ -1,10 +1,10 @@
-"""Writes docs/modules.md: every module in a line, from the first line that it says of itself. Run as `python -m docs.modules`."""
+"""Writes docs/reference/modules.md: every module in a line, the first that it says of itself. Run: `python -m tools.modules`."""
 
 import ast
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "modules.md"
+PAGE = ROOT / "docs" / "reference" / "modules.md"
 TOPS = ("pendant", "sim", "app", "benchmarks", "examples", "tools")
 
 
@@ -28,12 +28,12 @@ def first_line(path: Path) -> str:
 
 def page() -> str:
     """The page as it should be."""
-    lines = ["# Modules", "", "Written by `python -m docs.modules` from the modules themselves.", ""]
+    lines = ["# Modules", "", "Written by `python -m tools.modules` from the modules themselves.", ""]
     for room in rooms():
         lines += [f"## {room}/", "", first_line(ROOT / room / "__init__.py"), ""]
         for path in sorted((ROOT / room).glob("*.py")):
             if path.stem != "__init__":
-                lines.append(f"- [{path.stem}](../{room}/{path.name}): {first_line(path)}")
+                lines.append(f"- [{path.stem}](../../{room}/{path.name}): {first_line(path)}")
         lines.append("")
     return "\n".join(lines)
 

@@ -1,4 +1,4 @@
-"""Makes the pictures in docs/images: python -m docs.screenshots, from the repository's root. Needs Chromium."""
+"""Makes the pictures in docs/images: python -m tools.screenshots, from the repository's root. Needs Chromium."""
 
 import io
 import shutil
@@ -30,7 +30,7 @@ from tests.e2e.conftest import FLAGS
 from tests.e2e.first_use import FirstUse
 from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_until
 
-IMAGES = Path(__file__).parent / "images"
+IMAGES = Path(__file__).parent.parent / "docs" / "images"
 
 
 def guided(page: Page, cell: Cell) -> None:
