@@ -4,7 +4,7 @@ from pendant.events.event import Kind
 from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, denied, info, protected, refused
 
 ENTRY: dict[Kind, EventRow] = {
-    # Activation and entry (FD-7, FD-8a, FD-12)
+    # The signal (FD-7, FD-8a)
     Kind.ACTIVATION_STARTED: info(
         "Free-drive: keep holding", "Hold the button for {period:.1f} s, hands off the arm.", ("period",)
     ),
@@ -14,6 +14,7 @@ ENTRY: dict[Kind, EventRow] = {
         ("value", "limit"),
     ),
     Kind.SIGNAL_SEEN: info("Free-drive: {source}", "Go on for {period:.1f} s.", ("source", "period")),
+    # Its confirmation (FD-8)
     Kind.CONFIRM_ASKED: info(
         "Free-drive: confirm",
         "Let go; after {feedback:.1f} s, push it or press the button within {window:.0f} s.",
@@ -22,6 +23,7 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.REFUSED_UNCONFIRMED: refused(
         "Free-drive refused: not confirmed", "Nobody confirmed the {source} within {limit:.0f} s.", ("source", "limit")
     ),
+    # The hand that gave it must leave the arm (FD-8a)
     Kind.LET_GO_ASKED: info(
         "Free-drive: let go",
         "{force:.0f} N; hands off, to below {limit:.0f} N in {within:.1f} s.",
@@ -36,9 +38,11 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.PUSHED: info(
         "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
     ),
+    # Entry (FD-9)
     Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),
+    # Refused before the check (FD-1, FD-12)
     Kind.REFUSED_MODE: refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
     Kind.REFUSED_SENSORS: refused("Free-drive refused: joint sensors not valid", "Check {sensor}, then try again.", ("sensor",)),
     Kind.REFUSED_MOVING: refused(
@@ -49,6 +53,7 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.REFUSED_CHANGING: refused(
         "Free-drive refused: the payload is being changed", "{mass:.2f} kg by now. Wait until it is done.", ("mass",)
     ),
+    # The check (FD-9)
     Kind.REFUSED_SHORT: refused(
         "Free-drive refused: the check is too short",
         "{value:.3f} s; below {limit:.2f} s only with the handshake or a stored state.",
@@ -62,6 +67,7 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.SEQUENCE_STARTED: EventRow(
         Effect.TRY, Severity.INFO, "Free-drive: hands off", "Checking for {period:.1f} s that the arm stays.", ("period",)
     ),
+    # What it finds (FD-10, FD-11)
     Kind.ENTRY_PREVENTED: denied(
         "Beyond its limit: {parameter}",
         "{part}: {value:.3f} {unit}, limit {limit:.3f} {unit}, {time:.2f} s into the check.",
@@ -82,11 +88,13 @@ ENTRY: dict[Kind, EventRow] = {
             "{force:.0f} N: {mass:+.1f} kg, the sensor's zero, or a push {way}. Let go; zero it with nothing touching.",
         )
     ),
+    # A wall exceeded in it (VW-6)
     Kind.REFUSED_WALL: refused(
         "Free-drive refused: {part} beyond {wall}",
         "{distance:.1f} mm out; back is {way} of the base. Let go; check the payload.",
         WALL,
     ),
+    # Instead of holding the arm at once (FD-10)
     Kind.SEQUENCE_STOPPED: protected(
         "Protective stop: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Let go, check the payload, then reset.",
@@ -114,6 +122,7 @@ ENTRY: dict[Kind, EventRow] = {
         "{mass:+.2f} kg at the flange, or a steady {force:.0f} N push {way}.",
         ("mass", "force", "way"),
     ),
+    # Payload or hand: what was felt, after a refusal (FD-11)
     Kind.RESIDUAL_GONE: EventRow(
         Effect.INFO,
         Severity.NOTICE,
@@ -132,6 +141,7 @@ ENTRY: dict[Kind, EventRow] = {
             "{force:.0f} N, as of {mass:+.1f} kg or of the sensor's zero. Hands off? Zero it, or correct the payload.",
         ),
     ),
+    # A signal that does not count yet (FD-7, FD-12c)
     Kind.NOT_YET: EventRow(
         Effect.INFO,
         Severity.NOTICE,

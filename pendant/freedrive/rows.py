@@ -4,15 +4,17 @@ from pendant.events.event import Kind
 from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, info, left, refused, stopped
 
 FREE_DRIVE: dict[Kind, EventRow] = {
-    # While it lasts (FD-13, FD-15, FD-23)
+    # While it lasts: the hand (FD-13)
     Kind.MANIPULATION: info(
         "The arm is guided",
         "{parameter}, {part}: {value:.2f} {unit}, limit {limit:.2f} {unit}.",
         EXCESS,
     ),
     Kind.WAYPOINT: info("Waypoint registered", "In free-drive this counts as guiding the arm."),
+    # Its periods (FD-15, FD-16)
     Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
     Kind.PERIOD_ANEW: info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
+    # Walls and areas (VW-6, VW-9)
     Kind.WALL_REACHED: EventRow(
         Effect.INFO,
         Severity.NOTICE,
@@ -20,6 +22,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "{distance:.1f} mm out. Push it back, {way} of the base.",
         WALL,
     ),
+    # Locked axes (FD-4)
     Kind.SINGULARITY: EventRow(
         Effect.INFO,
         Severity.NOTICE,
@@ -27,6 +30,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "Value {value:.3f} m, near below {limit:.3f} m. Locked axes: turn back, or free them.",
         ("status", "value", "limit"),
     ),
+    # The flange sensor (FD-3a, FD-19)
     Kind.WRENCH_LOST: EventRow(
         Effect.INFO,
         Severity.WARNING,
@@ -47,6 +51,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "Gone by {force:.1f} N, {torque:.1f} N·m while nobody moved the arm: no help from it any more. Leave, and check it.",
         ("force", "torque"),
     ),
+    # The button (FD-23)
     Kind.HOLD_SILENT: EventRow(
         Effect.INFO,
         Severity.WARNING,
@@ -54,17 +59,19 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s. Check the connection.",
         ("value", "limit"),
     ),
-    # Leaving (FD-8a, FD-12, FD-14, FD-15, FD-17)
+    # Leaving: nobody moves the arm (FD-14, FD-15)
     Kind.LEFT_PERIOD: left(
         "Free-drive ended: nobody moved the arm", "No motion for {limit:.1f} s. Hold the button to start again.", ("limit",)
     ),
     Kind.LEFT_RESTART: left(
         "Free-drive ended: the arm stood still", "Still for {limit:.1f} s. Hold the button to start again.", ("limit",)
     ),
+    # By the button (FD-8a)
     Kind.LEFT_PRESS: left(
         "Free-drive ended by a short press", "Pressed for {value:.2f} s, under {limit:.2f} s.", ("value", "limit")
     ),
     Kind.LEFT_RELEASE: left("Free-drive ended: button let go", "Hold-to-run is on: keep the button held."),
+    # A limit (FD-18)
     Kind.LEFT_LIMIT: left(
         "Free-drive ended: {parameter}",
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. Guide it more gently.",
@@ -76,6 +83,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. See what happened, then reset.",
         EXCESS,
     ),
+    # What nobody causes (FD-19)
     Kind.STOPPED_MOTION: stopped(
         "Stopped: the arm moved and nobody moved it",
         "{distance:.0f} mm on its own, at last {time:.2f} s above {limit:.3f} m/s. Check payload and mounting, then reset.",
@@ -86,12 +94,16 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "{mass:+.1f} kg, {force:.0f} N at once. Correct the payload, then reset.",
         ("mass", "force"),
     ),
+    # The way back (FD-22)
     Kind.WAY_BACK: info("Back to the posture at activation", "{joints}.", ("joints", "posture")),
+    # A wall or area (VW-6, VW-9)
     Kind.LEFT_WALL: left(
         "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
     ),
     Kind.STOPPED_WALL: stopped("Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL),
+    # Asked for (FD-17)
     Kind.DEACTIVATED: EventRow(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
+    # Without joint sensors nothing can be decided (FD-12)
     Kind.SENSORS_LOST: EventRow(
         Effect.LEAVE_TO_STOP,
         Severity.STOP,
@@ -101,7 +113,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         Clears.RESET,
         cool_down=True,
     ),
-    # Enabling device: released and fully pressed both stop
+    # Enabling device: released and fully pressed both stop (FD-23)
     Kind.REFUSED_ENABLING: refused(
         "Free-drive refused: enabling device {grip}", "Hold the enabling device in its middle position.", ("grip",)
     ),

@@ -1,4 +1,4 @@
-"""What the user's hand, the pendant's button and digital inputs call for in a tick: the activation signal, and commands."""
+"""What a hand, the pendant's button (FD-5a) and digital inputs (FD-5b, FD-17) call for in a tick: activation signal, commands."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A stop from its cause to standstill: stop category, drive power, time and way (IEC 60204-1; facts/free-drive.md 1.8)."""
+"""A stop from its cause to standstill: stop category, drive power, time and way (IEC 60204-1)."""
 
 from pendant.events.event import Event, Kind, Values
 from pendant.settings.schema import ticks

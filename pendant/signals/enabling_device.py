@@ -1,4 +1,4 @@
-"""Three-position enabling device: released and fully pressed both stop, only the middle enables (facts/free-drive.md 3)."""
+"""Three-position enabling device: released and fully pressed both stop, only the middle enables (IEC 60204-1)."""
 
 from enum import StrEnum
 

@@ -5,7 +5,7 @@ from enum import IntEnum
 from pendant.tick.words import Word
 
 TICK_RATE = 500
-"""Control ticks a second, as the flange sensor of a UR e-Series (facts/contact-and-joints.md 1.7)."""
+"""Control ticks a second: the rate at which a UR e-Series gives the values of its flange sensor (RTDE, 500 Hz)."""
 
 TICK = 1.0 / TICK_RATE
 """Length of a control tick in s."""

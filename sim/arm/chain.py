@@ -14,7 +14,7 @@ from sim.arm.scenario import Load, ToolModel
 Array = NDArray[np.float64]
 
 WATER = 1000.0
-"""Density of a load whose inertia nobody gave [kg/m³]; a UR assumes a sphere too (facts/free-drive.md 1.6)."""
+"""Density of a load whose inertia nobody gave [kg/m³]; a UR, too, assumes a sphere of even density."""
 
 
 @dataclass(frozen=True, slots=True)

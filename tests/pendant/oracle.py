@@ -54,7 +54,7 @@ TOOLING = frozenset(
     }
 )
 """Of the tools, the payload wizard and the sensor's zero, which change no mode; tests/pendant/tooling/test_tool_in_use.py and
-test_tare_run.py say when they come."""
+tests/pendant/test_zeroing.py say when they come."""
 
 
 def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:

@@ -140,8 +140,8 @@ def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> No
 
 
 def test_stop_categories_are_those_of_the_robots() -> None:
-    """facts/free-drive.md 1.8: an emergency stop removes the power at standstill, a safeguard stop leaves it on; 1.3: beyond
-    REDUCED is category 0."""
+    """UR5e user manual, 8.2: an emergency stop removes the power at standstill, a safeguard stop leaves it on; beyond the
+    limits of REDUCED is category 0."""
     others = {Kind.EMERGENCY_STOP: 1, Kind.REDUCED_EXCEEDED: 0}
     assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 

@@ -199,7 +199,7 @@ def test_a_very_light_load_has_no_centre(mass: float, has_centre: bool) -> None:
 
 @pytest.mark.parametrize(("count", "degrees"), [(1, 22.5), (2, 22.5), (4, 22.5), (5, 18.0), (6, 15.0), (9, 10.0)])
 def test_the_least_angle_is_that_of_the_robots(count: int, degrees: float) -> None:
-    """facts/free-drive.md 1.6: pi / (2 n)."""
+    """pi / (2 n) with n postures, as `estimate_payload` of URScript asks; never more than pi / 8."""
     assert math.degrees(least_angle(count)) == pytest.approx(degrees)
 
 

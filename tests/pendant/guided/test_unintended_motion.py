@@ -1,4 +1,4 @@
-"""How far an arm goes on its own (FD-19); test_operation.py has for how long any arm does."""
+"""How far an arm goes on its own (FD-19); test_endings.py has for how long any arm does."""
 
 from collections.abc import Iterable
 

@@ -37,7 +37,7 @@ def test_the_input_is_a_safety_mode_with_limits() -> None:
 
 
 def test_the_arm_has_half_a_second_to_slow_down() -> None:
-    """facts/free-drive.md 1.5: within limits in 0.5 s after the trigger, else stop category 0."""
+    """UR5e user manual, 8.2.1: within limits in 0.5 s after the trigger, else stop category 0."""
     bench = reduced_bench()
     fast = estimate(qd=0.5, v_tcp=0.4)
     bench.run(249, NOTHING, fast)

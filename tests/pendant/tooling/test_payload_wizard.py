@@ -95,7 +95,7 @@ def test_what_is_found_is_told_in_millimetres_with_its_uncertainty() -> None:
 
 
 def test_the_more_postures_there_are_the_nearer_another_may_be() -> None:
-    """facts/free-drive.md 1.6: with the fifth, pi / 10 is enough."""
+    """pi / (2 n) with n postures, as `estimate_payload` of URScript asks: with the fifth, pi / 10 is enough."""
     wizard = PayloadWizard()
     for R in WRIST:
         measure(wizard, standing(R))
