@@ -66,7 +66,19 @@ class Alone:
     A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`).
     """
 
-    __slots__ = ("_allowed", "_at_rest", "_doubted", "_felt", "_helped", "_on", "_stretch", "_ticks", "_whole", "doubtful", "led")
+    __slots__ = (
+        "_allowed",
+        "_at_rest",
+        "_caused",
+        "_doubted",
+        "_helped",
+        "_on",
+        "_stretch",
+        "_ticks",
+        "_whole",
+        "doubtful",
+        "led",
+    )
 
     def __init__(self, on: Unexplained, since: EntryValues) -> None:
         """
@@ -76,7 +88,7 @@ class Alone:
         """
         self._on, self._allowed = on, ticks(on.time)
         self._ticks = 0  # of the stretch
-        self._felt = False  # a hand, in it
+        self._caused = False  # a hand is felt in it, or a wall or another device drives the arm
         self._doubted = 0  # ticks of the doubt
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
@@ -87,7 +99,7 @@ class Alone:
     @property
     def memory(self) -> tuple[object, ...]:
         """All of its state, to compare."""
-        own = (self._ticks, self._felt, self._doubted, self._at_rest, self._helped, self.doubtful, self.led)
+        own = (self._ticks, self._caused, self._doubted, self._at_rest, self._helped, self.doubtful, self.led)
         return (*own, self._stretch.memory, self._whole.memory)
 
     def step(
@@ -103,26 +115,21 @@ class Alone:
             slack: what may be the sensor's drift.
             torque: of the hand at the flange, axes of B [N·m].
         """
-        if driven:
-            self._ticks, self._at_rest = 0, False
-            self._end_doubt()
-            self.led = False
-            return None
         x, y, z = hand.user
         least = self._on.force + slack.force
-        felt = x * x + y * y + z * z >= least * least
+        caused = driven or x * x + y * y + z * z >= least * least
         # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
         usual = norm(hand.usual)
         by_link = use_wrench and usual < CARRIED + slack.force
         wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
         vx, vy, vz = estimate.v_F.tolist()[:3]
-        way = self._too_long(estimate, wrench, norm((vx, vy, vz)), felt, use_wrench, by_link)
+        way = self._too_long(estimate, wrench, norm((vx, vy, vz)), caused, use_wrench, by_link)
         if way is None:
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
     def _too_long(
-        self, estimate: Estimate, wrench: tuple[Vector, Vector], speed: float, felt: bool, use_wrench: bool, by_link: bool
+        self, estimate: Estimate, wrench: tuple[Vector, Vector], speed: float, caused: bool, use_wrench: bool, by_link: bool
     ) -> Way | None:
         """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
 
@@ -130,14 +137,14 @@ class Alone:
         """
         stretch, whole = self._stretch, self._whole
         moves = speed >= self._on.speed
-        if felt is not self._felt or not moves:
-            self._felt, self._ticks = felt, 0
+        if caused is not self._caused or not moves:
+            self._caused, self._ticks = caused, 0
         if moves:
             if self._ticks == 0:
                 stretch.begin(estimate)
             self._ticks += 1
             stretch.work.step(estimate, *wrench)
-        if felt:
+        if caused:
             self._at_rest = False
             self.led = moves and by_link and stretch.work.settled
             self._end_doubt()

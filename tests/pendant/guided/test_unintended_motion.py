@@ -269,6 +269,14 @@ def test_who_is_felt_leads_the_arm_where_the_motion_is_paid_for(pays: float) -> 
     assert not bench.alone.led, "it does not move"
 
 
+@pytest.mark.parametrize("pays", [0.99, 1.01])
+def test_who_leads_an_arm_that_is_held_back_before_a_joint_limit_is_known(pays: float) -> None:
+    """The spring there is the motors' own: it does no external work."""
+    bench = Bench()
+    bench.see(at(0.0, 0.1, turns=1.0, felt=pays * PAYS), driven=True)
+    assert bench.alone.led is (pays > 1.0)
+
+
 def test_what_was_paid_while_a_hand_was_felt_does_not_count_later() -> None:
     bench = Bench()
     bench.hand.user = (0.0, 0.0, 40.0)
