@@ -76,7 +76,7 @@ class Miss(NamedTuple):
         return self.digest, self.bench, self.size, self.seed, self.figure
 
     def name(self) -> str:
-        """Its key in led_to.yaml."""
+        """Its key in docs/results/led_to.yaml."""
         return f"{self.digest} {self.bench} {self.seed} {self.figure}"
 
 
