@@ -61,7 +61,7 @@ ENTRY: dict[Kind, EventRow] = {
     ),
     Kind.REFUSED_NOT_STORED: refused(
         "Free-drive refused: no stored state",
-        "None of {age:.1f} s ago to compare with. Leave the arm untouched for so long, then try again.",
+        "None from {age:.1f} s ago. Leave the arm untouched for that time, then try again.",
         ("age",),
     ),
     Kind.SEQUENCE_STARTED: EventRow(
@@ -101,7 +101,7 @@ ENTRY: dict[Kind, EventRow] = {
         EXCESS,
     ),
     Kind.COMPENSATING: info(
-        "Free-drive is refused: the arm is balanced", "Hands off. When it stands, within {period:.1f} s, it is held.", ("period",)
+        "Free-drive is refused: the arm is balanced", "Hands off. It is held when it stands, within {period:.1f} s.", ("period",)
     ),
     Kind.COMPENSATED: EventRow(
         Effect.INFO,
@@ -118,7 +118,7 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.LOAD_FOUND: EventRow(
         Effect.INFO,
         Severity.NOTICE,
-        "What the arm bears beyond its payload",
+        "Load beyond the configured payload",
         "{mass:+.2f} kg at the flange, or a steady {force:.0f} N push {way}.",
         ("mass", "force", "way"),
     ),
@@ -133,12 +133,12 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.RESIDUAL_STAYED: EventRow(
         Effect.INFO,
         Severity.WARNING,
-        "The force has stayed: check the payload",
-        "{force:.0f} N, as of {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
+        "The force stays: check the payload",
+        "{force:.0f} N: {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
-            "{force:.0f} N, as of {mass:+.1f} kg or of the sensor's zero. Hands off? Zero it, or correct the payload.",
+            "{force:.0f} N: {mass:+.1f} kg, or the sensor's zero. Hands off? Zero it, or correct the payload.",
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)

@@ -13,7 +13,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
     Kind.WAYPOINT: info("Waypoint registered", "In free-drive this counts as guiding the arm."),
     # Its periods (FD-15, FD-16)
     Kind.RESTARTED: info("The arm stands still", "Free-drive ends in {period:.1f} s unless you move it.", ("period",)),
-    Kind.PERIOD_ANEW: info("The period begins anew", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
+    Kind.PERIOD_ANEW: info("The period starts again", "Free-drive ends in {period:.1f} s unless you move the arm.", ("period",)),
     # Walls and areas (VW-6, VW-9)
     Kind.WALL_REACHED: EventRow(
         Effect.INFO,
@@ -41,14 +41,14 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor stepped",
-        "{force:.1f} N at once that the joints do not feel: no help from it any more. Leave, and check it.",
+        "A step of {force:.1f} N without joint torque: it is not used any more. End free-drive and check it.",
         ("force",),
     ),
     Kind.SENSOR_DRIFTED: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "The flange force sensor drifts",
-        "Gone by {force:.1f} N, {torque:.1f} N·m while nobody moved the arm: no help from it any more. Leave, and check it.",
+        "Its bias moved by {force:.1f} N, {torque:.1f} N·m: it is not used any more. End free-drive and check it.",
         ("force", "torque"),
     ),
     # The button (FD-23)
@@ -83,15 +83,15 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "{part}: {value:.2f} {unit}, limit {limit:.2f}. See what happened, then reset.",
         EXCESS,
     ),
-    # What nobody causes (FD-19)
+    # Unintended motion (FD-19)
     Kind.STOPPED_MOTION: stopped(
-        "Stopped: the arm moved and nobody moved it",
-        "{distance:.0f} mm on its own, at last {time:.2f} s above {limit:.3f} m/s. Check payload and mounting, then reset.",
+        "Stopped: unintended motion",
+        "{distance:.0f} mm without a hand, {time:.2f} s above {limit:.3f} m/s. Check payload and mounting, then reset.",
         ("distance", "time", "limit"),
     ),
     Kind.STOPPED_PAYLOAD: stopped(
         "Stopped: the payload dropped or changed",
-        "{mass:+.1f} kg, {force:.0f} N at once. Correct the payload, then reset.",
+        "{mass:+.1f} kg, a step of {force:.0f} N. Correct the payload, then reset.",
         ("mass", "force"),
     ),
     # The way back (FD-22)

@@ -30,7 +30,7 @@ def _touched(headline: str) -> EventRow:
         Effect.INFO,
         Severity.NOTICE,
         headline,
-        "{force:.1f} N more or less; rule {rule}, {steps} ticks after it began. Action: {action}.",
+        "Change of {force:.1f} N; rule {rule}, {steps} ticks after it began. Action: {action}.",
         keys,
     )
 
@@ -88,7 +88,7 @@ PROGRAM: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.NOTICE,
         "Zero the force sensor",
-        "{force:.1f} N, {torque:.2f} N·m that nothing explains. Zero it with nothing touching; check the payload.",
+        "It shows {force:.1f} N, {torque:.2f} N·m too much. Zero it with nothing touching, or check the payload.",
         ("force", "torque"),
     ),
     # Settings
