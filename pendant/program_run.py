@@ -38,20 +38,21 @@ class ProgramRun:
         self,
         estimate: Estimate,
         inputs: Inputs,
-        monitor: ContactMonitor,
-        changing: bool,
         settings: Settings,
         events: list[Event],
+        *,
+        monitor: ContactMonitor,
+        changing: bool,
     ) -> None:
         """One tick.
 
         Args:
             estimate: of this tick.
             inputs: of this tick.
-            monitor: knows where the arm is.
-            changing: the configured payload is being changed.
             settings: as they are now.
             events: of this tick; more are added.
+            monitor: knows where the arm is.
+            changing: the configured payload is being changed.
         """
         robot = self._robot
         sequencer = robot.sequencer

@@ -39,6 +39,7 @@ class Publisher:
         self,
         law: Law,
         events: list[Event],
+        *,
         contacts: tuple[Contact, ...],
         speeds: SpeedLimits | None,
         shake: Shake | None,

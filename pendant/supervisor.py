@@ -38,7 +38,7 @@ from pendant.tooling.tool_in_use import Fitting, Tooling
 from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder
-from pendant.zeroing import TareRun
+from pendant.zeroing import ForceReaders, TareRun
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
 RESTING = frozenset(SWITCHABLE.values())
@@ -57,6 +57,7 @@ class Supervisor:
         self,
         settings: Settings,
         n_joints: int,
+        *,
         joints: tuple[str, ...] | None = None,
         rated: tuple[float, ...] | None = None,
         borders: tuple[AnyBorder, ...] = (),
@@ -96,8 +97,8 @@ class Supervisor:
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
-        felt = (self._haptics, self._calls, self._monitor, self._mean)
-        self._tare = TareRun(sensor or SensorSpec(), self._robot, self._run, self._tooling, *felt)
+        run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
+        self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
         self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, settings)
         self._turn_tool()
         self._refresh()
@@ -129,10 +130,7 @@ class Supervisor:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """All that the next decision depends on, besides its arguments and the buffers of the contact detectors.
-
-        Equal states decide equally.
-        """
+        """All that decides, besides arguments and the buffers of the contact detectors: equal states decide equally."""
         button = (self._button.held, self._button.silent)
         devices = (self._haptics.memory, self._enabling.memory, self._safety.memory, self._sensors.lost, self._mean.memory)
         own = (button, self._calls.memory, self._holding, self._tooling.memory, self._tare.taring.memory)
@@ -147,13 +145,13 @@ class Supervisor:
             inputs = replace(inputs, commands=inputs.commands + self._calls.commands)
         commands = inputs.commands
         if commands:
-            self._safety.step(estimate, commands, self._button.held, self.settings, events)
+            self._safety.step(estimate, commands, self.settings, events, held=self._button.held)
             self._obey(estimate, commands, events)
         self._safety.watch(estimate, self.settings, events)
-        self._run.step(estimate, inputs, self._monitor, self._tooling.changing, self.settings, events)
+        self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
         self._equip(estimate, inputs, events)
-        self._tare.step(estimate, commands, wrench_ok, self.settings, events)
+        self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
@@ -177,10 +175,10 @@ class Supervisor:
         robot.static = robot.still.count >= self._static_ticks
         events += robot.stopping.step(estimate, robot.still.count, self._static_ticks)
         wrench = self._mean.step(estimate)
-        calls, state = self._calls, self._sequencer.state
-        events += calls.step(estimate, inputs, wrench, self._holding, self.settings, state, self._button.held)
+        calls, state, held = self._calls, self._sequencer.state, self._button.held
+        events += calls.step(estimate, inputs, self.settings, wrench=wrench, holding=self._holding, state=state, button=held)
         asks = robot.mode is _RUN and not calls.signal.source and self._asks_for_a_hand
-        self._free.sense(self._button.held, PROGRAM if asks else calls.signal)
+        self._free.sense(held, PROGRAM if asks else calls.signal)
         return wrench
 
     def _grip(self) -> None:
@@ -241,7 +239,7 @@ class Supervisor:
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
         robot, tooling = self._robot, self._tooling
-        events += tooling.step(estimate, inputs, robot.mode, self._free.phase, robot.static, self.settings.tools)
+        events += tooling.step(estimate, inputs, self.settings.tools, mode=robot.mode, phase=self._free.phase, still=robot.static)
         if tooling.changing:
             self._calls.relearn()
             self._free.forget()
@@ -262,11 +260,11 @@ class Supervisor:
 
     def _publish(self, events: list[Event]) -> Decision:
         """What follows from all of it."""
-        law, haptics = self._robot.law(), self._haptics
+        law, haptics, speeds = self._robot.law(), self._haptics, self._safety.speed_limits(self.settings)
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
-        return self._publisher.step(law, events, self._contacts, self._safety.speed_limits(self.settings), haptics.shake)
+        return self._publisher.step(law, events, contacts=self._contacts, speeds=speeds, shake=haptics.shake)
 
     def _shake(self, law: Law, events: list[Event]) -> None:
         """What is to be felt in this tick (HF-1)."""

@@ -91,11 +91,18 @@ class Simulation:
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
-        joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
         fixed = Load(mass=plate.mass, com=plate.com.tolist())
-        equipment = Equipment(tools, used, scenario.payload_configured, arm.payload, fixed)
-        walls, frames = tuple(scenario.walls), known_frames(scenario)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment, _sensor_spec(arm))
+        self.supervisor = Supervisor(
+            settings,
+            arm.n,
+            joints=tuple(arm.chain.joints),
+            rated=tuple(arm.limits.torque),
+            ranges=tuple(arm.limits.position),
+            borders=tuple(scenario.walls),
+            frames=known_frames(scenario),
+            equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
+            sensor=_sensor_spec(arm),
+        )
         self.zero, self._zero = self.supervisor.zero, np.zeros(6)
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)

@@ -180,7 +180,7 @@ class Activation:
         self._attempt = None
         self.phase = Phase.SEQUENCE
         self._total = self._left = ticks(use.period)
-        sequence = self._sequence = Sequence(around, settings, self._joints, self._rated, stored)
+        sequence = self._sequence = Sequence(around, settings, joints=self._joints, rated=self._rated, stored=stored)
         self._zero.begin(around.estimate, around.wrench_ok, around.mean)
         self._containment.begin(Start.SEQUENCE, settings.walls)
         return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(sequence, around, settings)]

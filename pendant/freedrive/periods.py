@@ -47,13 +47,13 @@ class Periods:
     )
 
     def __init__(
-        self, held: bool, around: Surroundings, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]
+        self, around: Surroundings, settings: Settings, *, held: bool, wrench: Wrench | None, joints: tuple[str, ...]
     ) -> None:
         """
         Args:
-            held: the button is, so that no period runs yet.
             around: the tick of entry.
             settings: as they are now.
+            held: the button is, so that no period runs yet.
             wrench: F_user without what the sensor drifted by, axes of B [N, N·m]; None: the flange sensor is not used.
             joints: names, base to flange.
         """
@@ -99,7 +99,7 @@ class Periods:
         """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
         self._registered = True
 
-    def step(self, around: Surroundings, settings: Settings, gate: Gate, user: Vector, wrench: Wrench | None) -> list[Event]:
+    def step(self, around: Surroundings, settings: Settings, gate: Gate, *, user: Vector, wrench: Wrench | None) -> list[Event]:
         """One tick, with valid joints. Returns what happened; free-drive is left where the last of it says so.
 
         Args:
@@ -118,7 +118,7 @@ class Periods:
             self._pressed = 0
             return []
         if self.phase is not Phase.GUIDED:
-            return self._count(around, settings, anew, registered, wrench)
+            return self._count(around, settings, anew=anew, registered=registered, wrench=wrench)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
         if settings.free_drive.maintained and self._left == 0 and self._rests(around, settings):
@@ -142,7 +142,7 @@ class Periods:
         return []
 
     def _count(
-        self, around: Surroundings, settings: Settings, anew: bool, registered: bool, wrench: Wrench | None
+        self, around: Surroundings, settings: Settings, *, anew: bool, registered: bool, wrench: Wrench | None
     ) -> list[Event]:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick

@@ -57,6 +57,7 @@ class Sequence:
         self,
         around: Surroundings,
         settings: Settings,
+        *,
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         stored: EntryValues | None = None,

@@ -186,7 +186,7 @@ class FreeDrive:
         """One tick of free-drive."""
         events = arm.step(around, settings, periods.waits)
         if not events or TABLE[events[-1].kind].effect not in ENDING:
-            events += periods.step(around, settings, self._gate, arm.user, self._zero.felt(around.estimate))
+            events += periods.step(around, settings, self._gate, user=arm.user, wrench=self._zero.felt(around.estimate))
             self.phase = periods.phase
         return events
 
@@ -204,8 +204,17 @@ class FreeDrive:
         zero = self._zero
         self._activation.end()
         zero.begin(around.estimate, around.wrench_ok, around.mean)
-        self._periods = Periods(self._gate.held, around, settings, zero.felt(around.estimate), self._joints)
-        self.arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
+        joints, wrench = self._joints, zero.felt(around.estimate)
+        self._periods = Periods(around, settings, held=self._gate.held, wrench=wrench, joints=joints)
+        self.arm = FreeArm(
+            around,
+            settings,
+            zero=zero,
+            containment=self._containment,
+            zones=self._zones,
+            joints=joints,
+            rated=self._rated,
+        )
         self.phase = self._periods.phase
 
     def _tell_way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings, events: list[Event]) -> None:

@@ -47,6 +47,7 @@ class FreeArm:
         self,
         around: Surroundings,
         settings: Settings,
+        *,
         zero: Zero,
         containment: Containment,
         zones: JointZones,
@@ -66,7 +67,7 @@ class FreeArm:
         estimate = around.estimate
         self._zero, self._containment, self._zones = zero, containment, zones
         self._hand = UserForce(estimate, around.mean.mean())
-        self._operation = EndingWatch(estimate, settings, joints, rated, around.payload)
+        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -118,7 +119,7 @@ class FreeArm:
         self.singularity = self._singularity.status
         baseline = zero.baseline if zero.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        ending = operation.step(estimate, hand, baseline, driven, zero.slack(estimate))
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=zero.slack(estimate))
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         if ending is not None:
             events.append(Event(ending.kind, tick, ending.values))

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from pendant.all_settings import Settings
 from pendant.limits.residual import upward
+from pendant.limits.settings import Soft
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import Vector
@@ -66,30 +67,45 @@ class Rules(NamedTuple):
 
 def in_operation(settings: Settings) -> Rules:
     """The rules in free-drive."""
-    soft = settings.soft
-    return _rules(settings, soft.acceleration, soft.payload, soft.drift, soft.pushed, soft.vertical, DRIFTING)
+    on = settings.soft
+    return _rules(
+        on,
+        acceleration=on.acceleration,
+        payload=on.payload,
+        drift=on.drift,
+        pushed=on.pushed,
+        vertical=on.vertical,
+        drift_speed=DRIFTING,
+    )
 
 
 def in_activation(settings: Settings) -> Rules:
     """The rules in the activation sequence."""
     on = settings.sequence.dynamic
-    return _rules(settings, on.acceleration, on.payload, on.drift, on.pushed, on.vertical, CREEPING)
+    return _rules(
+        settings.soft,
+        acceleration=on.acceleration,
+        payload=on.payload,
+        drift=on.drift,
+        pushed=on.pushed,
+        vertical=on.vertical,
+        drift_speed=CREEPING,
+    )
 
 
 def _rules(
-    settings: Settings, acceleration: bool, payload: bool, drift: bool, pushed: bool, vertical: bool, from_: float
+    soft: Soft, *, acceleration: bool, payload: bool, drift: bool, pushed: bool, vertical: bool, drift_speed: float
 ) -> Rules:
-    soft = settings.soft
     return Rules(
-        soft.acceleration_share if acceleration else 0.0,
-        soft.payload_share if payload else 0.0,
-        drift,
-        ticks(soft.drift_time),
-        soft.drift_share,
-        from_,
-        soft.force_share if pushed else 0.0,
-        soft.torque_share if pushed else 0.0,
-        soft.vertical_share if vertical else 1.0,
+        acceleration=soft.acceleration_share if acceleration else 0.0,
+        payload=soft.payload_share if payload else 0.0,
+        drift=drift,
+        drift_ticks=ticks(soft.drift_time),
+        drift_share=soft.drift_share,
+        drift_speed=drift_speed,
+        force=soft.force_share if pushed else 0.0,
+        torque=soft.torque_share if pushed else 0.0,
+        vertical=soft.vertical_share if vertical else 1.0,
     )
 
 

@@ -143,7 +143,7 @@ class Sequencer:
         until: Until | None = getattr(self.program.steps[self.index], "until", None)
         assert contact is not None
         assert until is not None
-        there = goal(until, contact, self._from or now, now, self.R_FT)
+        there = goal(until, contact, begun=self._from or now, now=now, R_FT=self.R_FT)
         if there is None:
             return self._next()
         self._begun += 1

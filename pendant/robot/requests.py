@@ -46,9 +46,10 @@ class Calls:
         self,
         estimate: Estimate,
         inputs: Inputs,
+        settings: Settings,
+        *,
         wrench: bool,
         holding: bool,
-        settings: Settings,
         state: ProgramState,
         button: bool,
     ) -> list[Event]:
@@ -57,9 +58,9 @@ class Calls:
         Args:
             estimate: of this tick.
             inputs: of this tick.
+            settings: as they are.
             wrench: the user's wrench is valid and finite.
             holding: the arm is held in its posture.
-            settings: as they are.
             state: of the program.
             button: the pendant's button is held.
         """
@@ -68,8 +69,8 @@ class Calls:
         self.commands = ()
         self.signal = NONE
         if self.feeling:
-            running = state is ProgramState.RUNNING
-            self.signal = self._sources.step(estimate, wrench, joints_ok(estimate), holding, running, use)
+            joints, running = joints_ok(estimate), state is ProgramState.RUNNING
+            self.signal = self._sources.step(estimate, use, wrench_ok=wrench, joints_ok=joints, holding=holding, running=running)
             self.hand_off = self._sources.hand_off(settings.let_go, wrench)
             self.touched = self._sources.touched
             self.force = self._sources.force()

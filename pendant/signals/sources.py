@@ -103,17 +103,17 @@ class Sources:
             self._held_at, self._quiet = [], 0  # nobody looks at postures and motions meanwhile
 
     def step(
-        self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: SignalSettings
+        self, estimate: Estimate, use: SignalSettings, *, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool
     ) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.
 
         Args:
             estimate: of this tick.
+            use: settings.
             wrench_ok: the user's wrench is valid and finite.
             joints_ok: the joint values are valid and finite.
             holding: the arm is held in its posture; only then is a change a hand's for sure.
             running: a program runs.
-            use: settings.
         """
         self._quiet = self._quiet + 1 if holding else 0
         if joints_ok:

@@ -58,7 +58,7 @@ class Parts:
             setattr(owner, name, value)
 
     def step(self, *events: Event, contacts: tuple[Contact, ...] = ()) -> Decision:
-        return self.publisher.step(Law.FREE, list(events), contacts, SPEEDS, SHAKE)
+        return self.publisher.step(Law.FREE, list(events), contacts=contacts, speeds=SPEEDS, shake=SHAKE)
 
     def expected(self, **changes: object) -> dict[str, object]:
         """Of a tick of held free-drive."""

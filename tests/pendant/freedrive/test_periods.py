@@ -34,12 +34,14 @@ class Alone:
         self.settings = apply(Settings(), {name.replace("__", "."): change for name, change in changes.items()})
         self.tick, self.gate, self.held = 0, Gate(), held
         self.gate.sense(held, BUTTON if held else NONE)
-        self.periods = Periods(held, self._around(value), self.settings, tuple(value.F_user.tolist()), JOINTS)
+        wrench = tuple(value.F_user.tolist())
+        self.periods = Periods(self._around(value), self.settings, held=held, wrench=wrench, joints=JOINTS)
 
     def step(self, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
         self.tick += 1
         self.gate.sense(self.held, BUTTON if self.held else NONE)
-        return self.periods.step(self._around(value), self.settings, self.gate, user, tuple(value.F_user.tolist()))
+        wrench = tuple(value.F_user.tolist())
+        return self.periods.step(self._around(value), self.settings, self.gate, user=user, wrench=wrench)
 
     def run(self, count: int, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
         return [event for _ in range(count) for event in self.step(value, user)]

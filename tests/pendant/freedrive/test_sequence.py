@@ -55,9 +55,9 @@ def sequence(start: Estimate, stored: Estimate | None = None, **changes: float |
     return Sequence(
         around(start),
         settings,
-        JOINTS,
-        (100.0,) * 6,
-        None if stored is None else reference(stored, tuple(stored.F_user.tolist())),
+        joints=JOINTS,
+        rated=(100.0,) * 6,
+        stored=None if stored is None else reference(stored, tuple(stored.F_user.tolist())),
     )
 
 

@@ -29,7 +29,7 @@ class Bench:
 
     def __init__(self, **changes: float | bool) -> None:
         names = {name.replace("__", "."): value for name, value in {"sequence__on": False, **changes}.items()}
-        self.supervisor = Supervisor(apply(Settings(), names), 6, JOINTS)
+        self.supervisor = Supervisor(apply(Settings(), names), 6, joints=JOINTS)
         self.tick = -1
         self.last: Decision
         self.events: list[Event] = []

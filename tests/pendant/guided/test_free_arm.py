@@ -41,7 +41,15 @@ class Free:
         self.zero, self.mean, self.payload, self.tick = Zero(), WrenchMean(), payload, 0
         self.zero.begin(estimate(), sensor, self.mean)
         containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
-        self.arm = FreeArm(self.around(estimate()), self.settings, self.zero, containment, zones, JOINTS, RATED)
+        self.arm = FreeArm(
+            self.around(estimate()),
+            self.settings,
+            zero=self.zero,
+            containment=containment,
+            zones=zones,
+            joints=JOINTS,
+            rated=RATED,
+        )
 
     def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
         value.tick = self.tick

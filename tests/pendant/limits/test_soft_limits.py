@@ -124,9 +124,9 @@ def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: li
 def ended(speed: float, **changes: float | bool) -> Ending | None:
     settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
     now = estimate(load_mass=4.0, v_tcp=speed)
-    operation = EndingWatch(now, settings, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6, 0.0)
+    operation = EndingWatch(now, settings, joints=tuple("abcdef"), rated=(100.0,) * 6, held=0.0)
     assert operation.damping is None
-    found = operation.step(now, UserForce(now, ZEROS), ZEROS, False)
+    found = operation.step(now, UserForce(now, ZEROS), baseline=ZEROS, driven=False)
     assert operation.damping is not None
     return found
 

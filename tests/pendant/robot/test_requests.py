@@ -41,7 +41,7 @@ class Bench:
     ) -> tuple[Presence, tuple[Command, ...], list[Event]]:
         self.tick += 1
         value = estimate(self.tick, force=force, tau_ext=tau_ext)
-        events = self.calls.step(value, inputs, wrench, holding, self.settings, state, button)
+        events = self.calls.step(value, inputs, self.settings, wrench=wrench, holding=holding, state=state, button=button)
         return self.calls.signal, self.calls.commands, whole(events, self.tick)
 
     def quiet(self) -> "Bench":

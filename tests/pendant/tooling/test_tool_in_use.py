@@ -48,7 +48,8 @@ class Bench:
 
     def step(self, *commands: Command, tool: str = "", load: Load | None = None, tools: Table = ()) -> list[Event]:
         inputs = Inputs(commands=commands, tool=tool, load=load, tools=tools)
-        return whole(self.tooling.step(self.value, inputs, self.mode, self.phase, self.still, self.use), self.value.tick)
+        events = self.tooling.step(self.value, inputs, self.use, mode=self.mode, phase=self.phase, still=self.still)
+        return whole(events, self.value.tick)
 
     def run(self, count: int) -> list[Event]:
         return [event for _ in range(count) for event in self.step()]
