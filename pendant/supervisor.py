@@ -11,6 +11,7 @@ from pendant.context import Surroundings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Transition
 from pendant.freedrive.periods import RUNNING
 from pendant.freedrive.state_machine import FreeDrive
 from pendant.haptics import Haptics, Moment
@@ -43,8 +44,8 @@ from pendant.zeroing import ForceReaders, TareRun
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
 RESTING = frozenset(SWITCHABLE.values())
 
-STILL_OFF = frozenset({Kind.NOT_YET, Kind.RESIDUAL_GONE, Kind.RESIDUAL_STAYED})
-"""What is told while free-drive has not been begun."""
+NOT_ENTERED = frozenset({Transition.CANCELLED, Transition.REFUSED})
+"""Transitions with which an attempt to enter free-drive is over."""
 
 ENDING = frozenset(RUNNING.values())
 """Periods that end free-drive."""
@@ -230,11 +231,10 @@ class Supervisor:
         felt = (calls.hand_off, calls.touched, calls.force, changing)
         besides = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
         around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *besides)
-        trying = free.phase is not _OFF
-        for event in free.step(around, self.settings):
+        happened = free.step(around, self.settings)
+        for event in happened.events:
             robot.follow(event, events)
-            trying = trying or event.kind not in STILL_OFF
-        if trying and free.phase is _OFF and self._sequencer.guiding:
+        if happened.transition in NOT_ENTERED and self._sequencer.guiding:
             self._run.fail("free-drive was not entered", estimate.tick, events)
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:

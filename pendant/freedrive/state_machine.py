@@ -3,8 +3,8 @@
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.event_table import TABLE
-from pendant.events.event import Event, Kind, posture_text
-from pendant.events.event_row import LEAVING, Effect
+from pendant.events.event import Event, Kind, Values, posture_text
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.activation import Activation
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.gate import Gate
@@ -28,12 +28,12 @@ IN_FREE_DRIVE = frozenset({Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART
 KNOWN = IN_FREE_DRIVE | {Phase.SEQUENCE}
 """Phases in which the posture at activation is remembered."""
 
-ENDING = LEAVING | {Effect.NO_ENTRY}
-"""Effects of events with which free-drive or its activation is over."""
+OVER = frozenset({Transition.REFUSED, Transition.LEFT})
+"""Transitions after which free-drive is off, and its cool-down runs."""
 
 
 class FreeDrive:
-    """State machine of the phases. Its events say what becomes of the mode; it changes no mode itself.
+    """State machine of the phases. Each tick says what becomes of free-drive; it changes no mode itself.
 
     Attributes:
         phase: of now.
@@ -152,52 +152,60 @@ class FreeDrive:
         self._verdict.waiting = False
         self._gate.close(ticks(settings.free_drive.cool_down) if TABLE[kind].cool_down else 0)
 
-    def step(self, around: Surroundings, settings: Settings) -> list[Event]:
-        """Decide the tick that `sense` began. Returns what happened, in order."""
+    def step(self, around: Surroundings, settings: Settings) -> Happened:
+        """Decide the tick that `sense` began, and become what comes of it."""
         activation = self._activation
         if settings.sequence.stored:
             activation.keep(around, self.phase in KNOWN)
-        events = self._decide(around, settings)
-        if events:
-            self._follow(events[-1].kind, around, settings)
+        happened = self._decide(around, settings)
+        if happened.transition is not _STAYS:
+            self._become(happened, around, settings)
         if activation.posture is not None and self.phase not in KNOWN:
-            if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
-                self._tell_way_back(activation.posture, around, settings, events)
+            if happened.transition in OVER and happened.cause not in ASKED_FOR:
+                self._tell_way_back(activation.posture, around, settings, happened.events)
             activation.posture = None
-        return events
+        return happened
 
-    def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
-        """What happens; what it does to the phase, unless the next period begins, is decided by its effect."""
+    def _decide(self, around: Surroundings, settings: Settings) -> Happened:
+        """What happens. Activation and periods go through their phases themselves; `_become` does every other transition."""
         phase = self.phase
         if phase is not _OFF and not around.enabled:
-            kind = Kind.LEFT_ENABLING if phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
-            return [Event(kind, around.estimate.tick, {"grip": around.grip or ""})]
+            grip: Values = {"grip": around.grip or ""}
+            if phase in IN_FREE_DRIVE:
+                return becomes(Transition.LEFT, Event(Kind.LEFT_ENABLING, around.estimate.tick, grip))
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_ENABLING, around.estimate.tick, grip))
         if self.arm is not None and self._periods is not None:
             return self._stay(self.arm, self._periods, around, settings)
         gate = self._gate
         told = self._verdict.step(around, gate.left <= 1) if self._verdict.waiting else []
         if phase is Phase.OFF and not gate.signal.source:
-            return told
-        events = told + self._activation.step(around, settings, gate)
+            return Happened(told)
+        events, transition, cause = self._activation.step(around, settings, gate)
         self.phase = self._activation.phase
-        return events
+        return Happened(told + events, transition, cause)
 
-    def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> list[Event]:
+    def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> Happened:
         """One tick of free-drive."""
-        events = arm.step(around, settings, periods.waits)
-        if not events or TABLE[events[-1].kind].effect not in ENDING:
-            events += periods.step(around, settings, self._gate, user=arm.user, wrench=self._zero.felt(around.estimate))
-            self.phase = periods.phase
-        return events
+        seen = arm.step(around, settings, periods.waits)
+        if seen.transition is Transition.LEFT:
+            return seen
+        wrench = self._zero.felt(around.estimate)
+        events, transition, cause = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
+        self.phase = periods.phase
+        return Happened(seen.events + events, transition, cause)
 
-    def _follow(self, kind: Kind, around: Surroundings, settings: Settings) -> None:
-        """Do what an event of `kind` asks for."""
-        effect = TABLE[kind].effect
-        if effect is Effect.ENTER:
+    def _become(self, happened: Happened, around: Surroundings, settings: Settings) -> None:
+        """Do the transition of a tick in which free-drive does not stay as it is."""
+        _, transition, cause = happened
+        if transition is Transition.ENTERED:
             self._enter(around, settings)
-        elif effect in ENDING:
-            self.stop(kind, settings)
-            if kind is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
+        elif transition is Transition.CANCELLED:
+            self.phase = Phase.OFF
+            self._activation.end()
+            self._containment.leave()
+        elif cause is not None:
+            self.stop(cause, settings)
+            if cause is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
                 self._verdict.begin(around)
 
     def _enter(self, around: Surroundings, settings: Settings) -> None:
@@ -224,4 +232,4 @@ class FreeDrive:
             events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)}))
 
 
-_OFF = Phase.OFF  # looked up in every tick
+_OFF, _STAYS = Phase.OFF, Transition.STAYS  # looked up in every tick

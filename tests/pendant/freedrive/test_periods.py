@@ -15,6 +15,7 @@ from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
+from tests.pendant.telling import whole_transition
 
 ANEW = Inputs(commands=(Command.RESTART_PERIOD,))
 STILL, MOVING, PUSHED = estimate(), estimate(qd=0.5), estimate(force=20.0)
@@ -41,7 +42,8 @@ class Alone:
         self.tick += 1
         self.gate.sense(self.held, BUTTON if self.held else NONE)
         wrench = tuple(value.F_user.tolist())
-        return self.periods.step(self._around(value), self.settings, self.gate, user=user, wrench=wrench)
+        happened = self.periods.step(self._around(value), self.settings, self.gate, user=user, wrench=wrench)
+        return whole_transition(happened, self.tick)
 
     def run(self, count: int, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
         return [event for _ in range(count) for event in self.step(value, user)]

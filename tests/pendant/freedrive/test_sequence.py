@@ -97,7 +97,8 @@ def test_payload_comes_first_of_several_reasons(force: float, way: str) -> None:
     """FD-11: as what explains them best."""
     begun = sequence(estimate())
     now = around(estimate(position=0.003, speed=0.1, force=[0.0, 0.0, force], torque=[0.0, 1.6, 0.0]), 50)
-    events = begun.reasons(begun.check(now), now, Settings())
+    beyond = begun.check(now)
+    events = [*begun.reasons(beyond, now), begun.refusal(beyond, now, Settings())]
     assert [event.values["parameter"] for event in events[:-1]] == ["flange displacement", "flange speed", "payload-like torque"]
     values = {
         "mass": pytest.approx(-force / 9.81, abs=1e-12),
