@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
-from pendant.limits.parameters import ZEROS
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
@@ -103,7 +102,7 @@ class Simulation:
             equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
             sensor=_sensor_spec(arm),
         )
-        self.zero, self._zero = self.supervisor.zero, np.zeros(6)
+        self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
@@ -154,7 +153,7 @@ class Simulation:
             self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
             self.contact_sources.set_zero(self._zero)
         sample = self.sensors.read(plant, self._current)
-        if self.zero is not ZEROS:
+        if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
         done, refusal = references.move_done, references.refusal

@@ -30,6 +30,12 @@ class Shares(NamedTuple):
     angular: float = 1.0  # of angular accelerations
     vertical: float = 1.0  # of linear quantities along gravity, beside the others
     up: Vector = (0.0, 0.0, 1.0)  # axes of B
+    lowered: bool = True  # a rule may lower them; else all are 1 and stay so
+
+    @property
+    def isotropic(self) -> bool:
+        """The limits are the same in every direction."""
+        return self.vertical == 1.0
 
     def along(self, x: float, y: float, z: float) -> float:
         """What is left of the limit of a linear quantity in the direction of (x, y, z), axes of B.
@@ -47,7 +53,7 @@ class Shares(NamedTuple):
         return 1.0 / math.sqrt(1.0 + along * along / square * (1.0 / (least * least) - 1.0))
 
 
-WHOLE = Shares()
+WHOLE = Shares(lowered=False)
 """Nothing is lowered."""
 
 

@@ -130,15 +130,15 @@ class Sources:
         if use.joints.on:
             if not joints_ok:
                 self._joints.restart()
-            elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and found is NONE:
+            elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and not found.source:
                 found = Presence("push felt by joints", by_hand=True)
         if use.turn.on and joints_ok and int(use.turn.joint) <= len(self._held_at):
             angle = float(estimate.q[int(use.turn.joint) - 1])
-            if self._turn.step(angle, holding, use.turn) and found is NONE:
+            if self._turn.step(angle, holding, use.turn) and not found.source:
                 found = Presence("turned joint", by_hand=True)
         if use.tap.on and estimate.acceleration_valid:
             acceleration = beyond_gravity(estimate)
-            if math.isfinite(acceleration) and self._tap.step(acceleration, use.tap) and found is NONE:
+            if math.isfinite(acceleration) and self._tap.step(acceleration, use.tap) and not found.source:
                 found = Presence("tap", by_hand=True, whole=True)
         return found if holding else NONE
 
@@ -206,9 +206,9 @@ class Sources:
                 found = Presence("push", by_hand=True)
             if use.pattern.on and self._pattern.step(present, use.pattern):
                 found = Presence("pushes in a row", by_hand=True, whole=True)
-        if use.twist.on and self._twist.step(change, use.twist) and found is NONE:
+        if use.twist.on and self._twist.step(change, use.twist) and not found.source:
             found = Presence("twist", by_hand=True)
-        if use.force_step.on and self._step.step(self.force(), self._quiet, use.force_step) and found is NONE:
+        if use.force_step.on and self._step.step(self.force(), self._quiet, use.force_step) and not found.source:
             found = Presence("force step", by_hand=True)
         return found
 

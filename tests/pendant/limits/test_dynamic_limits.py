@@ -110,7 +110,7 @@ def test_along_gravity_is_along_the_bases_gravity_with_another_rule_and_without(
     up, now = np.array([2.0, -3.0, 6.0]) / 7.0, estimate(load_mass=2.0)
     now.g_B = -9.81 * up
     found = shares(now, soft__payload=payload, soft__payload_share=0.5, soft__vertical=True, soft__vertical_share=0.25)
-    assert found == (1.0, left, left, left, left, 0.25, pytest.approx(tuple(up)))
+    assert found == (1.0, left, left, left, left, 0.25, pytest.approx(tuple(up)), True)
     assert found.along(*up) == pytest.approx(0.25)
 
 
