@@ -22,7 +22,7 @@ from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.containment import WallState
 
 
-class Decision(msgspec.Struct, frozen=True):
+class Decision(msgspec.Struct, frozen=True, gc=False):
     """The supervisor's decision for one tick."""
 
     mode: Mode

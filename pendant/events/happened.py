@@ -1,7 +1,8 @@
 """What a state machine of free-drive makes of a tick: what it tells, and what becomes of free-drive."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+
+import msgspec
 
 from pendant.events.event import Event, Kind
 from pendant.tick.words import Word
@@ -17,12 +18,16 @@ class Transition(Word):
     LEFT = "left"  # free-drive is over: off
 
 
-class Happened(NamedTuple):
+class Happened(msgspec.Struct, frozen=True, gc=False):
     """The events of a tick, in order, and what becomes of free-drive in it."""
 
     events: list[Event]
     transition: Transition = Transition.STAYS
     cause: Kind | None = None  # of the transition: the kind of the event that tells it; None: it stays
+
+    def after(self, noticed: list[Event]) -> "Happened":
+        """The same, and what was `noticed` before."""
+        return Happened(noticed + self.events, self.transition, self.cause)
 
 
 def becomes(transition: Transition, event: Event, noticed: Sequence[Event] = ()) -> Happened:

@@ -154,8 +154,7 @@ class Activation:
             if reading is not None:
                 return becomes(Transition.REFUSED, _behind(reading, tick, settings), events)
         if outcome is Outcome.READY:
-            told, transition, cause = self._ready(attempt.confirmed, around, settings)
-            return Happened(events + told, transition, cause)
+            return self._ready(attempt.confirmed, around, settings).after(events)
         if outcome is Outcome.GOES_ON:
             return Happened(events)
         asked = _asked(outcome, attempt, around, settings)
@@ -189,8 +188,7 @@ class Activation:
         self._zero.begin(around.estimate, around.wrench_ok, around.mean)
         self._containment.begin(Start.SEQUENCE, settings.walls)
         started = Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK})
-        told, transition, cause = self._judge(sequence, around, settings)
-        return Happened([started, *told], transition, cause)
+        return self._judge(sequence, around, settings).after([started])
 
     def _check(self, around: Surroundings, settings: Settings) -> Happened:
         """The sequence runs; the button does not matter any more (FD-8a)."""

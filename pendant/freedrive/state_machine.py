@@ -180,9 +180,9 @@ class FreeDrive:
         told = self._verdict.step(around, gate.left <= 1) if self._verdict.waiting else []
         if phase is Phase.OFF and not gate.signal.source:
             return Happened(told)
-        events, transition, cause = self._activation.step(around, settings, gate)
+        happened = self._activation.step(around, settings, gate)
         self.phase = self._activation.phase
-        return Happened(told + events, transition, cause)
+        return happened.after(told) if told else happened
 
     def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> Happened:
         """One tick of free-drive."""
@@ -190,13 +190,13 @@ class FreeDrive:
         if seen.transition is Transition.LEFT:
             return seen
         wrench = self._zero.felt(around.estimate)
-        events, transition, cause = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
+        happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
         self.phase = periods.phase
-        return Happened(seen.events + events, transition, cause)
+        return happened.after(seen.events) if seen.events else happened
 
     def _become(self, happened: Happened, around: Surroundings, settings: Settings) -> None:
         """Do the transition of a tick in which free-drive does not stay as it is."""
-        _, transition, cause = happened
+        transition, cause = happened.transition, happened.cause
         if transition is Transition.ENTERED:
             self._enter(around, settings)
         elif transition is Transition.CANCELLED:
