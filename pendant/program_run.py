@@ -29,11 +29,6 @@ class ProgramRun:
         self._robot, self._mean, self._n = robot, mean, n_joints
         self._origin = Mode.TEACH  # where the program was started from
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; the robot's is compared elsewhere."""
-        return (self._origin,)
-
     def step(
         self,
         estimate: Estimate,

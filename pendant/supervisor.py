@@ -35,6 +35,7 @@ from pendant.signals.sources import PROGRAM
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
 from pendant.tick.pose import Pose, Wrench, from_rpy
+from pendant.tick.state import State, state_of
 from pendant.tooling.tool_in_use import Fitting, Tooling
 from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
@@ -52,7 +53,7 @@ ENDING = frozenset(RUNNING.values())
 
 
 class Supervisor:
-    """Decides every tick from the estimate and the inputs; keeps all of its memory in `state`."""
+    """Decides every tick from the estimate and the inputs; all that it remembers is its `state`."""
 
     def __init__(
         self,
@@ -130,12 +131,12 @@ class Supervisor:
         return self._containment.every_place(self.settings.walls)
 
     @property
-    def state(self) -> tuple[object, ...]:
-        """All that decides, besides arguments and the buffers of the contact detectors: equal states decide equally."""
-        button = (self._button.held, self._button.silent)
-        devices = (self._haptics.memory, self._enabling.memory, self._safety.memory, self._sensors.lost, self._mean.memory)
-        own = (button, self._calls.memory, self._holding, self._tooling.memory, self._tare.taring.memory)
-        return (self.settings, *own, *devices, self._run.memory, self._robot.memory)
+    def state(self) -> State:
+        """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
+
+        Equal states decide equally. It is as of now: later steps do not change it.
+        """
+        return state_of(self)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""

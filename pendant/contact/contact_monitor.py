@@ -69,6 +69,9 @@ class ContactMonitor:
     While nothing is to be detected, signals are merely kept; the detectors get them when they are asked again.
     """
 
+    # The last samples of all sources and poses: more than all the rest of a state, and the same again after as many equal ticks.
+    NOT_STATE = ("detectors", "_poses", "_kept", "_limits", "_keys", "_use", "_on_links", "_used")
+
     def __init__(self) -> None:
         self.detectors = tuple(Detector() for _ in SOURCES)
         self._limits: list[ContactLimits | None] = [None] * len(SOURCES)

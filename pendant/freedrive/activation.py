@@ -75,13 +75,6 @@ class Activation:
         self._stored = Stored()  # for the sequence to compare with
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what it was given is compared elsewhere."""
-        parts = (self._attempt, self._sequence, self._compensation, self._stored)
-        memories = [None if part is None else part.memory for part in parts]
-        return (self.phase, self.posture, self._left, self._total, *memories)
-
-    @property
     def remaining(self) -> Remaining | None:
         """Of the running period (FD-20)."""
         attempt = self._attempt

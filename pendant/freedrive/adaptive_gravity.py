@@ -53,11 +53,6 @@ class Compensation:
         self.left = self.total = ticks(LONGEST)
         self._least = ticks(LONGEST) - ticks(SETTLES)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._refusal, self._origin, self.balance, self.left)
-
     def begun(self, tick: int) -> Event:
         """That it begins."""
         return Event(Kind.COMPENSATING, tick, {"period": self.total * TICK})

@@ -71,12 +71,6 @@ class Periods:
             self._begin(Phase.PERIOD, around, settings, wrench)
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([getattr(value, "memory", value) for value in values])
-
-    @property
     def runs(self) -> bool:
         """A period runs that ends free-drive."""
         return self.phase in RUNNING

@@ -86,13 +86,6 @@ class Sequence:
         self._start = estimate.tick
         self._dynamic = DynamicLimits(in_activation(settings), estimate)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (self._since, self._wrench, self._acceleration, self._up, self._start, self._share)
-        against = None if self._against is None else (self._against[0], self._against[1].memory)
-        return (*own, self._monitor.memory, against, self._dynamic.memory)
-
     def missing(self, around: Surroundings) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
         if not joints_ok(around.estimate):
@@ -159,11 +152,6 @@ class SequenceVerdict:
         self.waiting = False
         self._force = 0.0
         self._up: Vector = (0.0, 0.0, 1.0)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.waiting, self._force, self._up)
 
     def begin(self, around: Surroundings) -> None:
         """A refusal that may be payload or push."""

@@ -73,12 +73,6 @@ class FreeDrive:
         self._periods: Periods | None = None  # from entry to leaving
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([getattr(value, "memory", value) for value in values])
-
-    @property
     def idle(self) -> bool:
         """Nothing runs that would have to be published."""
         return self.phase is _OFF and self._gate.left == 0

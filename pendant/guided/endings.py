@@ -128,20 +128,6 @@ class EndingWatch:
         """It may be that nobody leads the moving arm: nothing helps it on (FD-19)."""
         return self._alone.doubtful
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (
-            tuple(self._missed),
-            self._calm,
-            self._level,
-            self._stepped,
-            self._followed,
-            self.suspect,
-            self._since,
-        )
-        return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
-
     def step(
         self, estimate: Estimate, hand: UserForce, *, baseline: Wrench | None, driven: bool, slack: Slack = SURE
     ) -> Ending | None:

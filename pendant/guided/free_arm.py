@@ -78,11 +78,6 @@ class FreeArm:
         containment.enter(settings.walls)
         containment.step(estimate, *NOBODY)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what it was given is compared elsewhere."""
-        return (self._hand.memory, self._operation.memory, self._singularity.memory, self.caught)
-
     def step(self, around: Surroundings, settings: Settings, waits: bool) -> Happened:
         """One tick.
 

@@ -81,11 +81,6 @@ class BiasFollower:
         """It follows an arm at rest."""
         return self._followed is not None
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._quiet, self._count, self._followed, self._began, self._felt, tuple(self.lately))
-
     def restart(self) -> None:
         """The arm may be moved, held by a hand, or the sensor is not used."""
         self._followed = None
@@ -178,11 +173,6 @@ class Zero:
         self._drift, self._steps = BiasFollower(), Steps()
         self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt, self._since)
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""

@@ -41,11 +41,6 @@ class Way:
         self._began = since.position
         self.work = Work(since.torques)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._began, self.work.memory)
-
     def begin(self, estimate: Estimate) -> None:
         """It begins here."""
         self._began = tuple(estimate.p_BF.tolist())
@@ -95,12 +90,6 @@ class Alone:
         self._whole = Way(since)  # since it has been at rest
         self._helped = 0.0  # so much of it was not doubtful [m]
         self.led = self.doubtful = False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (self._ticks, self._caused, self._doubted, self._at_rest, self._helped, self.doubtful, self.led)
-        return (*own, self._stretch.memory, self._whole.memory)
 
     def step(
         self,

@@ -140,11 +140,6 @@ class DynamicLimits:
         self.pushed = bool(rules.force or rules.torque)
         self.shares = WHOLE if rules.vertical == 1.0 else Shares(vertical=rules.vertical, up=self._up)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._heading, self._same, self._asked, self.shares)
-
     def step(self, estimate: Estimate, force: float = 0.0, torque: float = 0.0) -> Shares:
         """One tick; its joint values are finite. Without an accelerometer, acceleration lowers nothing.
 

@@ -226,11 +226,6 @@ class Monitor:
         # Written out, for it is asked for in every tick of the sequence: as `Gauge.monitored`.
         return tuple([Monitored(g.name, g.part, g.value, g.low, g.high, g.unit) for _, g in self._gauges if g.part])
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([gauge.memory for _, gauge in self._gauges])
-
 
 def reference(estimate: Estimate, wrench: Wrench | None) -> EntryValues:
     """What is stored when a period begins, with this F_user, axes of B [N, N·m]; None is without it."""

@@ -65,11 +65,6 @@ class SoftLimits:
         self.shares = WHOLE
         self.pushed = self._dynamic.pushed
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._origin, self._dynamic.memory, self.damping, self.shares)
-
     def step(self, estimate: Estimate, force: float = 0.0, torque: float = 0.0) -> None:
         """One tick; its joint values are finite.
 

@@ -191,12 +191,6 @@ class Sequencer:
         self._begin()
         return False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of the sequencer's state, to compare."""
-        own = (self.program, self.state, self.index, self.move, self._begun, self._left)
-        return (*own, self._from, self.contact, self.guided, self._untouched, self.tool_on)
-
     def _drop(self) -> None:
         self.move, self.contact, self.guided = None, None, False
 

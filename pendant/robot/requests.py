@@ -28,11 +28,6 @@ class Calls:
         self.touched = False  # one is in this tick, be it less than a signal
         self.force = 0.0  # change of the force at the flange from the untouched state [N]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._sources.memory, self._leaving, self.hand_off, self.touched, self.force)
-
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         use = settings.signals

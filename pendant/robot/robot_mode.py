@@ -68,13 +68,6 @@ class Robot:
         self._freed = False  # the law was FREE in the last tick
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what every tick finds anew is left out."""
-        modes = (self.mode, self.safety, self._remembered, self.braking, self._freed)
-        still = (self.still.count, self.still.joint, self.still.speed)
-        return (*modes, still, self.stopping.memory, self.sequencer.memory, self.free.memory)
-
-    @property
     def enabled(self) -> bool:
         """No enabling device forbids motion."""
         return enables(self.grip)

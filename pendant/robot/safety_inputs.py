@@ -25,11 +25,6 @@ class SafetyInputs:
         self._reduced = Reduced()
         self._safeguard = False  # it is open
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; the robot is compared elsewhere."""
-        return (self._reduced.memory, self._safeguard)
-
     def speed_limits(self, settings: Settings) -> SpeedLimits | None:
         """What holds in REDUCED, None outside of it."""
         return self._reduced.limits(settings.reduced) if self._reduced.on else None

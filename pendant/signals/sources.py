@@ -74,12 +74,6 @@ class Sources:
         self._off = 0  # ticks for which no hand is felt
         self._told = 0  # ticks of the push, for FD-6a
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([tuple(value) if isinstance(value, list) else getattr(value, "memory", value) for value in values])
-
     def refresh(self, use: SignalSettings) -> None:
         """The settings are new: what a source felt that is off is over, and it begins afresh when it is on again."""
         pushing, by_wrench = _asked(use)

@@ -43,11 +43,6 @@ class Tooling:
         self._age = 0  # ticks of it that are over
         self._from = 0.0  # mass beyond the tool, before [kg]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.fitting, self.tools, self.changing, self._ramp, self._age, self._from, self.wizard.memory)
-
     def step(self, estimate: Estimate, inputs: Inputs, use: ToolUse, *, mode: Mode, phase: Phase, still: bool) -> list[Event]:
         """One tick.
 

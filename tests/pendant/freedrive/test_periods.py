@@ -13,6 +13,7 @@ from pendant.signals.sources import BUTTON, NONE
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
 from tests.pendant.telling import whole_transition
@@ -338,10 +339,10 @@ def test_the_press_that_entered_may_be_short_without_leaving() -> None:
 
 def test_held_for_long_suspends_everything() -> None:
     alone = Alone(True)
-    entered = alone.periods.memory
+    entered = state_of(alone.periods)
     assert alone.run(2000) == []
     assert (alone.periods.phase, alone.periods.remaining, alone.periods.waits) == (Phase.HELD, None, False)
-    assert alone.periods.memory == entered
+    assert state_of(alone.periods) == entered
     assert pressed(alone, 0) == []
     assert (alone.periods.phase, alone.periods.waits) == (Phase.PERIOD, True)
 

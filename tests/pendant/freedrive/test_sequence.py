@@ -16,6 +16,7 @@ from pendant.limits.parameters import reference
 from pendant.limits.validity import Stillness, WrenchMean
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
 
@@ -87,8 +88,8 @@ def test_the_hands_force_and_torque_lower_the_limits_by_their_whole_sizes() -> N
 
 def test_what_it_is_compared_with_is_part_of_its_state() -> None:
     states = [None, estimate(), estimate(position=0.001)]
-    memories = [sequence(estimate(), stored).memory for stored in states]
-    assert memories == [sequence(estimate(), stored).memory for stored in states]
+    memories = [state_of(sequence(estimate(), stored)) for stored in states]
+    assert memories == [state_of(sequence(estimate(), stored)) for stored in states]
     assert all(one != other for one, other in combinations(memories, 2))
 
 

@@ -23,6 +23,7 @@ from pendant.supervisor import Supervisor
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import Vector, Wrench
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -556,9 +557,9 @@ def test_an_involuntary_leaving_tells_the_way_back_and_one_that_was_asked_for_do
 
 def test_equal_histories_are_equal() -> None:
     one, two = Free(), Free()
-    assert one.operation.memory == two.operation.memory
+    assert state_of(one.operation) == state_of(two.operation)
     one.see(loaded(force=[0.0, 0.0, 3.0]))
-    assert one.operation.memory != two.operation.memory
+    assert state_of(one.operation) != state_of(two.operation)
 
 
 FULL, LOW, HIGH = 2.0 * G, 14.0**2, 25.0**2

@@ -13,6 +13,7 @@ from pendant.guided.work import ASKED, LEFT
 from pendant.limits.parameters import reference
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
@@ -179,13 +180,13 @@ def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(se
     assert told[150] is not None
 
 
-def test_its_memory_tells_all_of_it() -> None:
+def test_its_state_tells_all_of_it() -> None:
     one, other = Bench(), Bench()
     for value in (at(0.0, 0.1), at(0.001, 0.015, turns=1.0, felt=1.0)):
         one.see(value)
-        assert one.alone.memory != other.alone.memory
+        assert state_of(one.alone) != state_of(other.alone)
         other.see(value)
-        assert one.alone.memory == other.alone.memory
+        assert state_of(one.alone) == state_of(other.alone)
 
 
 def test_who_leads_a_link_is_known_and_half_of_the_time_without_is_doubtful() -> None:

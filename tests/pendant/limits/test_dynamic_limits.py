@@ -15,6 +15,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.dynamic_limits import CREEPING, WHOLE, DynamicLimits, Shares, in_activation, in_operation
 from pendant.limits.parameters import ZEROS
 from pendant.tick.estimate import Estimate
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, Bench
 
@@ -272,10 +273,10 @@ def test_in_the_sequence_each_rule_lowers_its_limit(rule: str, off: float, on: b
         assert refused[0].values["limit"] == pytest.approx(limit)
 
 
-def test_memory_tells_states_apart() -> None:
+def test_its_state_tells_histories_apart() -> None:
     one, other = (DynamicLimits(in_operation(Settings()), STILL) for _ in range(2))
     other.step(STILL)
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
     one.step(estimate(speed=0.1))
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
     assert math.isclose(one.step(STILL).speed, 1.0)

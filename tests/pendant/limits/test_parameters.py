@@ -11,6 +11,7 @@ from pendant.limits.dynamic_limits import Shares
 from pendant.limits.parameters import PARAMETERS, ZEROS, EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import split
 from pendant.settings.schema import Limit, Section
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.test_all_settings import LIMITS, OFF
 
@@ -126,7 +127,7 @@ def test_limits_carry_reaction_and_time() -> None:
     assert (shown.value, shown.low, shown.limit, shown.high) == (-5.1, -5.0, -5.0, 5.0)
     within = view(estimate(force=[50.0, 0.0, -5.0]))
     assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time begins anew"
-    assert monitor.memory != Monitor(Few()).memory
+    assert state_of(monitor) != state_of(Monitor(Few()))
     monitor.step(view(estimate(force=[50.0, 0.0, 2.5])))
     monitor.step(view(estimate(force=[50.0, 0.0, 3.0])))
     assert [shown.value for shown in monitor.monitored()] == [3.0], "what is within is shown as well"
