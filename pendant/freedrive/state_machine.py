@@ -156,7 +156,8 @@ class FreeDrive:
             self._become(happened, around, settings)
         if activation.posture is not None and self.phase not in KNOWN:
             if happened.transition in OVER and happened.cause not in ASKED_FOR:
-                self._tell_way_back(activation.posture, around, settings, happened.events)
+                way = self._way_back(activation.posture, around, settings)
+                happened = Happened(happened.events + way, happened.transition, happened.cause)
             activation.posture = None
         return happened
 
@@ -219,11 +220,12 @@ class FreeDrive:
         )
         self.phase = self._periods.phase
 
-    def _tell_way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings, events: list[Event]) -> None:
-        """From where the arm is to the `posture` at activation (FD-22)."""
+    def _way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings) -> list[Event]:
+        """From where the arm is to the `posture` at activation, if it is told (FD-22)."""
         joints = way_back(posture, tuple(around.estimate.q.tolist()), self._joints)
-        if joints and settings.free_drive.way_back:
-            events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)}))
+        if not (joints and settings.free_drive.way_back):
+            return []
+        return [Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)})]
 
 
 _OFF, _STAYS = Phase.OFF, Transition.STAYS  # looked up in every tick
