@@ -61,7 +61,8 @@ def put(given: Estimate, estimate: Estimate) -> None:
 def timed(estimates: list[Estimate], inputs: Inputs, used: Settings, counts: Callable[[Supervisor], bool]) -> list[int]:
     """CPU time of each step in which the supervisor is in the state asked for [ns]."""
     arm = load_arm("ur5e")
-    supervisor = Supervisor(used, arm.n, tuple(arm.chain.joints), tuple(arm.limits.torque), (WALL,))
+    joints, rated = tuple(arm.chain.joints), tuple(arm.limits.torque)
+    supervisor = Supervisor(used, arm.n, joints=joints, rated=rated, borders=(WALL,))
     times = []
     given = estimates[0].copy()
     for estimate in estimates:

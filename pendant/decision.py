@@ -22,7 +22,7 @@ from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.containment import WallState
 
 
-class Decision(msgspec.Struct, frozen=True):
+class Decision(msgspec.Struct, frozen=True, gc=False):
     """The supervisor's decision for one tick."""
 
     mode: Mode
@@ -55,3 +55,8 @@ class Decision(msgspec.Struct, frozen=True):
     zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
     zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
     limits: str = ""  # checksum of all limits
+
+    @property
+    def amplified(self) -> bool:
+        """The user's force is amplified, where its sensor is valid."""
+        return self.gain > 0.0

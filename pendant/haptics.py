@@ -133,11 +133,6 @@ class Haptics:
         self._beyond = False  # a wall was near in the tick before
         self._mode = Mode.TEACH  # in the tick before
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
     def step(self, moment: Moment, use: HapticUse) -> None:
         """One tick, while patterns are on or the last one settles."""
         freed = moment.law is Law.FREE

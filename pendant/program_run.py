@@ -29,29 +29,25 @@ class ProgramRun:
         self._robot, self._mean, self._n = robot, mean, n_joints
         self._origin = Mode.TEACH  # where the program was started from
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; the robot's is compared elsewhere."""
-        return (self._origin,)
-
     def step(
         self,
         estimate: Estimate,
         inputs: Inputs,
-        monitor: ContactMonitor,
-        changing: bool,
         settings: Settings,
         events: list[Event],
+        *,
+        monitor: ContactMonitor,
+        changing: bool,
     ) -> None:
         """One tick.
 
         Args:
             estimate: of this tick.
             inputs: of this tick.
-            monitor: knows where the arm is.
-            changing: the configured payload is being changed.
             settings: as they are now.
             events: of this tick; more are added.
+            monitor: knows where the arm is.
+            changing: the configured payload is being changed.
         """
         robot = self._robot
         sequencer = robot.sequencer

@@ -11,6 +11,7 @@ from pendant.context import Surroundings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Transition
 from pendant.freedrive.periods import RUNNING
 from pendant.freedrive.state_machine import FreeDrive
 from pendant.haptics import Haptics, Moment
@@ -34,29 +35,31 @@ from pendant.signals.sources import PROGRAM
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
 from pendant.tick.pose import Pose, Wrench, from_rpy
+from pendant.tick.state import State, state_of
 from pendant.tooling.tool_in_use import Fitting, Tooling
 from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder
-from pendant.zeroing import TareRun
+from pendant.zeroing import ForceReaders, TareRun
 
 SWITCHABLE = {Command.NORMAL: Mode.NORMAL, Command.TEACH: Mode.TEACH, Command.REMOTE: Mode.REMOTE}
 RESTING = frozenset(SWITCHABLE.values())
 
-STILL_OFF = frozenset({Kind.NOT_YET, Kind.RESIDUAL_GONE, Kind.RESIDUAL_STAYED})
-"""What is told while free-drive has not been begun."""
+NOT_ENTERED = frozenset({Transition.CANCELLED, Transition.REFUSED})
+"""Transitions with which an attempt to enter free-drive is over."""
 
 ENDING = frozenset(RUNNING.values())
 """Periods that end free-drive."""
 
 
 class Supervisor:
-    """Decides every tick from the estimate and the inputs; keeps all of its memory in `state`."""
+    """Decides every tick from the estimate and the inputs; all that it remembers is its `state`."""
 
     def __init__(
         self,
         settings: Settings,
         n_joints: int,
+        *,
         joints: tuple[str, ...] | None = None,
         rated: tuple[float, ...] | None = None,
         borders: tuple[AnyBorder, ...] = (),
@@ -96,8 +99,8 @@ class Supervisor:
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
-        felt = (self._haptics, self._calls, self._monitor, self._mean)
-        self._tare = TareRun(sensor or SensorSpec(), self._robot, self._run, self._tooling, *felt)
+        run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
+        self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
         self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, settings)
         self._turn_tool()
         self._refresh()
@@ -128,15 +131,12 @@ class Supervisor:
         return self._containment.every_place(self.settings.walls)
 
     @property
-    def state(self) -> tuple[object, ...]:
-        """All that the next decision depends on, besides its arguments and the buffers of the contact detectors.
+    def state(self) -> State:
+        """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
 
-        Equal states decide equally.
+        Equal states decide equally. It is as of now: later steps do not change it.
         """
-        button = (self._button.held, self._button.silent)
-        devices = (self._haptics.memory, self._enabling.memory, self._safety.memory, self._sensors.lost, self._mean.memory)
-        own = (button, self._calls.memory, self._holding, self._tooling.memory, self._tare.taring.memory)
-        return (self.settings, *own, *devices, self._run.memory, self._robot.memory)
+        return state_of(self)
 
     def step(self, estimate: Estimate, inputs: Inputs) -> Decision:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
@@ -147,13 +147,13 @@ class Supervisor:
             inputs = replace(inputs, commands=inputs.commands + self._calls.commands)
         commands = inputs.commands
         if commands:
-            self._safety.step(estimate, commands, self._button.held, self.settings, events)
+            self._safety.step(estimate, commands, self.settings, events, held=self._button.held)
             self._obey(estimate, commands, events)
         self._safety.watch(estimate, self.settings, events)
-        self._run.step(estimate, inputs, self._monitor, self._tooling.changing, self.settings, events)
+        self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
         self._equip(estimate, inputs, events)
-        self._tare.step(estimate, commands, wrench_ok, self.settings, events)
+        self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
@@ -177,10 +177,10 @@ class Supervisor:
         robot.static = robot.still.count >= self._static_ticks
         events += robot.stopping.step(estimate, robot.still.count, self._static_ticks)
         wrench = self._mean.step(estimate)
-        calls, state = self._calls, self._sequencer.state
-        events += calls.step(estimate, inputs, wrench, self._holding, self.settings, state, self._button.held)
+        calls, state, held = self._calls, self._sequencer.state, self._button.held
+        events += calls.step(estimate, inputs, self.settings, wrench=wrench, holding=self._holding, state=state, button=held)
         asks = robot.mode is _RUN and not calls.signal.source and self._asks_for_a_hand
-        self._free.sense(self._button.held, PROGRAM if asks else calls.signal)
+        self._free.sense(held, PROGRAM if asks else calls.signal)
         return wrench
 
     def _grip(self) -> None:
@@ -232,16 +232,15 @@ class Supervisor:
         felt = (calls.hand_off, calls.touched, calls.force, changing)
         besides = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
         around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *besides)
-        trying = free.phase is not _OFF
-        for event in free.step(around, self.settings):
+        happened = free.step(around, self.settings)
+        for event in happened.events:
             robot.follow(event, events)
-            trying = trying or event.kind not in STILL_OFF
-        if trying and free.phase is _OFF and self._sequencer.guiding:
+        if happened.transition in NOT_ENTERED and self._sequencer.guiding:
             self._run.fail("free-drive was not entered", estimate.tick, events)
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
         robot, tooling = self._robot, self._tooling
-        events += tooling.step(estimate, inputs, robot.mode, self._free.phase, robot.static, self.settings.tools)
+        events += tooling.step(estimate, inputs, self.settings.tools, mode=robot.mode, phase=self._free.phase, still=robot.static)
         if tooling.changing:
             self._calls.relearn()
             self._free.forget()
@@ -262,11 +261,11 @@ class Supervisor:
 
     def _publish(self, events: list[Event]) -> Decision:
         """What follows from all of it."""
-        law, haptics = self._robot.law(), self._haptics
+        law, haptics, speeds = self._robot.law(), self._haptics, self._safety.speed_limits(self.settings)
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
-        return self._publisher.step(law, events, self._contacts, self._safety.speed_limits(self.settings), haptics.shake)
+        return self._publisher.step(law, events, contacts=self._contacts, speeds=speeds, shake=haptics.shake)
 
     def _shake(self, law: Law, events: list[Event]) -> None:
         """What is to be felt in this tick (HF-1)."""

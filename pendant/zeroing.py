@@ -1,5 +1,7 @@
 """Zeroing the flange sensor in the running robot: by command and by a program's step, unnoticed by all that feels forces."""
 
+from typing import NamedTuple
+
 from pendant.all_settings import Settings
 from pendant.contact.contact_monitor import ContactMonitor
 from pendant.events.event import Event, Kind
@@ -21,6 +23,14 @@ STANDING = (Wait, ZeroSensor)
 """Steps of a program in which the arm stands and nobody is to touch it."""
 
 
+class ForceReaders(NamedTuple):
+    """What reads the sensor in every tick, besides the robot's own parts: a new zero is no hand and no contact to any of it."""
+
+    calls: Calls  # which feel the user's hand
+    monitor: ContactMonitor
+    mean: WrenchMean  # of F_user
+
+
 class TareRun:
     """Steers `Taring` by what the robot does."""
 
@@ -32,10 +42,9 @@ class TareRun:
         robot: Robot,
         run: ProgramRun,
         tooling: Tooling,
+        *,
         haptics: Haptics,
-        calls: Calls,
-        monitor: ContactMonitor,
-        mean: WrenchMean,
+        readers: ForceReaders,
     ) -> None:
         """
         Args:
@@ -44,25 +53,23 @@ class TareRun:
             run: of its program.
             tooling: of tool and payload.
             haptics: that may shake the arm.
-            calls: that feel the user's hand.
-            monitor: of contacts.
-            mean: of F_user.
+            readers: of forces.
         """
         self.taring = Taring(sensor)
         self._robot, self._run, self._tooling, self._haptics = robot, run, tooling, haptics
-        self._calls, self._monitor, self._mean = calls, monitor, mean
+        self._calls, self._monitor, self._mean = readers
 
     def step(
-        self, estimate: Estimate, commands: tuple[Command, ...], wrench_ok: bool, settings: Settings, events: list[Event]
+        self, estimate: Estimate, commands: tuple[Command, ...], settings: Settings, events: list[Event], *, wrench_ok: bool
     ) -> None:
         """One tick, after everything else that was decided in it.
 
         Args:
             estimate: of this tick.
             commands: of this tick.
-            wrench_ok: the user's wrench is valid and finite.
             settings: as they are now.
             events: of this tick; more are added.
+            wrench_ok: the user's wrench is valid and finite.
         """
         robot, taring = self._robot, self.taring
         move = robot.sequencer.move

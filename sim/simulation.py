@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
-from pendant.limits.parameters import ZEROS
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
@@ -91,12 +90,19 @@ class Simulation:
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
-        joints, rated, ranges = tuple(arm.chain.joints), tuple(arm.limits.torque), tuple(arm.limits.position)
         fixed = Load(mass=plate.mass, com=plate.com.tolist())
-        equipment = Equipment(tools, used, scenario.payload_configured, arm.payload, fixed)
-        walls, frames = tuple(scenario.walls), known_frames(scenario)
-        self.supervisor = Supervisor(settings, arm.n, joints, rated, walls, frames, ranges, equipment, _sensor_spec(arm))
-        self.zero, self._zero = self.supervisor.zero, np.zeros(6)
+        self.supervisor = Supervisor(
+            settings,
+            arm.n,
+            joints=tuple(arm.chain.joints),
+            rated=tuple(arm.limits.torque),
+            ranges=tuple(arm.limits.position),
+            borders=tuple(scenario.walls),
+            frames=known_frames(scenario),
+            equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
+            sensor=_sensor_spec(arm),
+        )
+        self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
@@ -147,7 +153,7 @@ class Simulation:
             self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
             self.contact_sources.set_zero(self._zero)
         sample = self.sensors.read(plant, self._current)
-        if self.zero is not ZEROS:
+        if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
         done, refusal = references.move_done, references.refusal

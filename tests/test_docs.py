@@ -24,7 +24,6 @@ from pendant.contact import settings as contact_settings
 from pendant.contact.history import History
 from pendant.limits import parameters
 from pendant.limits import settings as limit_settings
-from pendant.tick.limit_engine import Gauge
 from pendant.tick.source_signal import Signal
 from pendant.walls import shapes, solids
 from tests.pendant.contacts import limit
@@ -172,7 +171,7 @@ def test_the_parameter_of_the_example_is_read() -> None:
     value = estimate()
     value.v_F = np.array([9.0, 9.0, 9.0, 1.0, -2.0, 2.0])
     view = parameters.Observed(value, parameters.EntryValues((0.0,) * 3, (0.0,) * 6, (0.0,) * 6, (0.0,) * 6), None, (), (), 0.0)
-    assert made["flange_turn"].read(view, Gauge("t", "")) == (3.0, "flange")
+    assert made["flange_turn"].read(view, 4.0) == (3.0, "flange", 4.0)
     assert set(made["flange_turn"]._fields) == set(parameters.Parameter._fields)
     section = within(limit_settings, f"class Made(Section, frozen=True):\n    {cell}")["Made"]()
     assert (section.flange_turn.max, section.flange_turn.on) == (4.0, True)

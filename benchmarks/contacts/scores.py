@@ -66,7 +66,9 @@ def alone(recording: Recording, rule: Rule, times: np.ndarray) -> float:
     for row, (signal, *_) in enumerate(recording.signals):
         assert signal is not None
         detector.sense(signal)
-        limit = limits(use, signal.mass, signal.effective_mass, recording.speed[row], Mode.RUN, lever=signal.lever)
+        limit = limits(
+            use, Mode.RUN, mass=signal.mass, effective_mass=signal.effective_mass, speed=recording.speed[row], lever=signal.lever
+        )
         if detector.step(use, limit) is not None:
             return delay_of([float(times[row])])
     return math.inf
@@ -152,7 +154,7 @@ def cost(case: Approach) -> float:
     signals = [signals[0] for signals in recording.signals]
     first = signals[0]
     assert first is not None
-    limit = limits(use, first.mass, first.effective_mass, 0.0, Mode.RUN, lever=first.lever)
+    limit = limits(use, Mode.RUN, mass=first.mass, effective_mass=first.effective_mass, speed=0.0, lever=first.lever)
     times = []
     for _ in range(9):
         detector = Detector()

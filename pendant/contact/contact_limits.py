@@ -38,16 +38,16 @@ class ContactLimits(NamedTuple):
 
 
 def limits(
-    use: ContactUse, mass: float, effective_mass: float, speed: float, mode: Mode, link: bool = False, lever: float = 0.0
+    use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, speed: float, link: bool = False, lever: float = 0.0
 ) -> ContactLimits:
     """The thresholds of one source now.
 
     Args:
         use: the settings.
+        mode: robot mode.
         mass: configured, that the force carries [kg].
         effective_mass: of the arm behind the part [kg].
         speed: of the tool centre point [m/s].
-        mode: robot mode.
         link: the source is the joints and the part a link.
         lever: of the carried mass: the angular acceleration's noise counts with it [m].
     """
@@ -66,23 +66,23 @@ def limits(
     mismatch = scale * use.hard_payload * mass
     margin = use.link_margin if link else use.payload_error * mass
     return ContactLimits(
-        (noisy * noise_f) ** 2,
-        (noisy * noise_a) ** 2,
-        use.opposite,
-        use.angle**2,
-        (hard * noise_f + mismatch) ** 2,
-        (hard * noise_a) ** 2,
-        (1.0 + 1.0 / OLDER) * (use.clear_limit * scale) ** 2,
-        (use.clear_acceleration * scale) ** 2,
-        scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
-        (use.ratio_acceleration * scale) ** 2,
-        scale * use.value_force,
-        use.value_acceleration * scale,
-        (use.confidence * scale) ** 2,
-        noise_f * noise_f,
-        noise_a * noise_a,
-        slow_force * scale,
-        margin,
-        use.clamping_ratio + margin,
-        mass,
+        noise_force_sq=(noisy * noise_f) ** 2,
+        noise_acceleration_sq=(noisy * noise_a) ** 2,
+        opposite=use.opposite,
+        cosine_sq=use.angle**2,
+        force_sq=(hard * noise_f + mismatch) ** 2,
+        acceleration_sq=(hard * noise_a) ** 2,
+        clear_sq=(1.0 + 1.0 / OLDER) * (use.clear_limit * scale) ** 2,
+        clear_acceleration_sq=(use.clear_acceleration * scale) ** 2,
+        ratio=scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
+        ratio_acceleration_sq=(use.ratio_acceleration * scale) ** 2,
+        value_force=scale * use.value_force,
+        value_acceleration=use.value_acceleration * scale,
+        confidence_sq=(use.confidence * scale) ** 2,
+        force_variance=noise_f * noise_f,
+        acceleration_variance=noise_a * noise_a,
+        slow_force=slow_force * scale,
+        payload_margin=margin,
+        clamping=use.clamping_ratio + margin,
+        mass=mass,
     )

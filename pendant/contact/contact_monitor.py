@@ -69,6 +69,9 @@ class ContactMonitor:
     While nothing is to be detected, signals are merely kept; the detectors get them when they are asked again.
     """
 
+    # The last samples of all sources and poses: more than all the rest of a state, and the same again after as many equal ticks.
+    NOT_STATE = ("detectors", "_poses", "_kept", "_limits", "_keys", "_use", "_on_links", "_used")
+
     def __init__(self) -> None:
         self.detectors = tuple(Detector() for _ in SOURCES)
         self._limits: list[ContactLimits | None] = [None] * len(SOURCES)
@@ -112,7 +115,7 @@ class ContactMonitor:
                 detector.forget()
             elif signal is not None:
                 rules = self._on_links if SOURCES[index].in_base else use
-                finding = detector.step(rules, self._limit(index, signal, estimate.v_tcp, use, mode))
+                finding = detector.step(rules, self._limit(index, signal, use, mode, speed=estimate.v_tcp))
                 if finding is not None:
                     contacts += (self._contact(finding, SOURCES[index], estimate.tick, use.look_back),)
         return contacts
@@ -128,12 +131,13 @@ class ContactMonitor:
                 detector.sense(signal)
         self._kept.clear()
 
-    def _limit(self, index: int, signal: Signal, speed: float, use: ContactUse, mode: Mode) -> ContactLimits:
+    def _limit(self, index: int, signal: Signal, use: ContactUse, mode: Mode, *, speed: float) -> ContactLimits:
         key = (use, mode, signal.mass, signal.lever, signal.effective_mass, speed if use.speed_share else 0.0)
         limit = self._limits[index]
         if limit is None or key != self._keys[index]:
             links = SOURCES[index].in_base
-            limit = limits(use, signal.mass, signal.effective_mass, speed, mode, links, signal.lever)
+            mass, effective = signal.mass, signal.effective_mass
+            limit = limits(use, mode, mass=mass, effective_mass=effective, speed=speed, link=links, lever=signal.lever)
             self._keys[index], self._limits[index] = key, limit
         return limit
 

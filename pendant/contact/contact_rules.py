@@ -109,11 +109,14 @@ def _lies_against(f: Vector, a: Vector, least: float, limit: ContactLimits) -> b
     """`_clear` of a change of the force and one of the acceleration that is large enough."""
     aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
     ff, dot = f[0] * f[0] + f[1] * f[1] + f[2] * f[2], f[0] * a[0] + f[1] * a[1] + f[2] * a[2]
-    return aa > limit.clear_acceleration_sq and _clear(ff, aa, dot, least, limit)
+    return aa > limit.clear_acceleration_sq and _clear(limit, least, ff=ff, aa=aa, dot=dot)
 
 
-def _clear(ff: float, aa: float, dot: float, least: float, limit: ContactLimits) -> bool:
-    """The change of the contact force, F - m·A, lies against A and is beyond `least` [N] and what a wrong payload explains."""
+def _clear(limit: ContactLimits, least: float, *, ff: float, aa: float, dot: float) -> bool:
+    """The change of the contact force, F - m·A, lies against A and is beyond `least` [N] and what a wrong payload explains.
+
+    `ff`, `aa` and `dot` are the inner products F·F, A·A and F·A of the two changes.
+    """
     mass = limit.mass
     against = dot - mass * aa  # F - m·A along A
     if against >= 0.0 and limit.opposite:
@@ -175,7 +178,7 @@ def statistical(history: History, limit: ContactLimits) -> bool:
     if (dot < 0.0 or not limit.opposite) and dot * dot >= limit.cosine_sq * ff * aa and ff > error * force:
         return True
     mass = limit.mass
-    return _clear(ff, aa, dot, OBJECT * (error * (force + mass * mass * acceleration)) ** 0.5, limit)
+    return _clear(limit, OBJECT * (error * (force + mass * mass * acceleration)) ** 0.5, ff=ff, aa=aa, dot=dot)
 
 
 class Slow(NamedTuple):

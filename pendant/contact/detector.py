@@ -181,19 +181,19 @@ class Detector:
         if settled or self._age >= SILENCE:
             self.silent = False
             self.history.shorten(SETTLED + NEW)
-            if self.touching and self._rest is not None and self._size(self.history.mean(0, NEW), self._rest, limit) == 0.0:
+            if self.touching and self._rest is not None and self._alike(self.history.mean(0, NEW), self._rest, limit):
                 self.touching, self._rest = False, None
         return finding
 
     def _settled(self, limit: ContactLimits) -> bool:
         history = self.history
-        return self._size(history.mean(0, NEW), history.mean(SETTLED, NEW), limit) == 0.0
+        return self._alike(history.mean(0, NEW), history.mean(SETTLED, NEW), limit)
 
     def _watch_rest(self, limit: ContactLimits) -> None:
         """A contact that went too gently to be seen is over when its force has been gone for a while."""
         if self._rest is None:
             return
-        gone = self._size(self.history.mean(0, NEW), self._rest, limit) == 0.0
+        gone = self._alike(self.history.mean(0, NEW), self._rest, limit)
         self._gone = self._gone + 1 if gone else 0
         if self._gone >= GONE:
             self.touching, self._rest = False, None
@@ -215,6 +215,10 @@ class Detector:
         gx, gy, gz = contact_force(rest, mass)
         change = math.dist(sample[3:], rest[3:])
         return max(0.0, math.dist((fx, fy, fz), (gx, gy, gz)) - limit.slow_force - limit.payload_margin * change)
+
+    def _alike(self, sample: Six, rest: Six, limit: ContactLimits) -> bool:
+        """Noise and a wrong payload may explain all of the contact force between the two."""
+        return self._size(sample, rest, limit) == 0.0
 
     def _clear(self) -> None:
         for count in self._counts.values():

@@ -3,6 +3,7 @@
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.adaptive_gravity import Balance, Compensation
 from pendant.freedrive.attempt import Attempt, Outcome
 from pendant.freedrive.gate import Gate
@@ -28,9 +29,12 @@ NAMES = {
 }
 """Of the periods before the sequence, for interfaces."""
 
+FAILED = frozenset({Outcome.UNCONFIRMED, Outcome.STILL_HELD})
+"""Outcomes that refuse free-drive."""
+
 
 class Activation:
-    """One attempt after the other. Its events say what comes of them; whoever follows their effects calls `end`.
+    """One attempt after the other. Each tick says what becomes of free-drive; who follows a transition calls `end`.
 
     Attributes:
         phase: OFF, one of an attempt, or SEQUENCE.
@@ -69,13 +73,6 @@ class Activation:
         self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
         self._left = self._total = 0  # ticks of the sequence
         self._stored = Stored()  # for the sequence to compare with
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what it was given is compared elsewhere."""
-        parts = (self._attempt, self._sequence, self._compensation, self._stored)
-        memories = [None if part is None else part.memory for part in parts]
-        return (self.phase, self.posture, self._left, self._total, *memories)
 
     @property
     def remaining(self) -> Remaining | None:
@@ -120,18 +117,18 @@ class Activation:
         self._sequence = None
         self._compensation = None
 
-    def step(self, around: Surroundings, settings: Settings, gate: Gate) -> list[Event]:
-        """One tick with a signal, or of an attempt. Returns what happened, in order."""
+    def step(self, around: Surroundings, settings: Settings, gate: Gate) -> Happened:
+        """One tick with a signal, or of an attempt."""
         if self.phase is Phase.SEQUENCE:
             return self._check(around, settings)
         tick, signal, attempt = around.estimate.tick, gate.signal, self._attempt
         if attempt is None and gate.shut:
-            return [Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.appeared else []
+            return Happened([Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.appeared else [])
         counting = self.phase is Phase.ACTIVATION and not signal.source
         if not counting and not around.guided and not may_enter(around.mode, settings):
-            return [_not_from(around.mode, tick, settings)]
+            return _not_from(around.mode, tick, settings)
         if not around.enabled:
-            return [Event(Kind.REFUSED_ENABLING, tick, {"grip": around.grip or ""})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_ENABLING, tick, {"grip": around.grip or ""}))
         events: list[Event] = []
         if attempt is None:
             attempt = self._attempt = Attempt(signal, settings)
@@ -143,84 +140,86 @@ class Activation:
             outcome = attempt.step(signal, around.touched, around.hand_off and static)
         self.phase = attempt.phase
         if outcome is Outcome.CANCELLED:
-            self.end()
-            self._containment.leave()
-            limit = attempt.total * TICK
-            return [*events, Event(Kind.ACTIVATION_CANCELLED, tick, {"value": attempt.present, "limit": limit})]
+            values: Values = {"value": attempt.present, "limit": attempt.total * TICK}
+            return becomes(Transition.CANCELLED, Event(Kind.ACTIVATION_CANCELLED, tick, values))
         if joints_ok(around.estimate):  # a wall may be anchored here already (VW-6)
             reading = self._containment.step(around.estimate, *NOBODY)
             if reading is not None:
-                events.append(_behind(reading, tick, settings))
-                return events
+                return becomes(Transition.REFUSED, _behind(reading, tick, settings), events)
         if outcome is Outcome.READY:
-            events += self._ready(attempt.confirmed, around, settings)
-        elif outcome is not Outcome.GOES_ON:
-            events.append(_asked(outcome, attempt, around, settings))
-        return events
+            return self._ready(attempt.confirmed, around, settings).after(events)
+        if outcome is Outcome.GOES_ON:
+            return Happened(events)
+        asked = _asked(outcome, attempt, around, settings)
+        return becomes(Transition.REFUSED, asked, events) if outcome in FAILED else Happened([*events, asked])
 
-    def _ready(self, confirmed: bool, around: Surroundings, settings: Settings) -> list[Event]:
+    def _ready(self, confirmed: bool, around: Surroundings, settings: Settings) -> Happened:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
-            return [Event(Kind.REFUSED_SENSORS, tick, {"sensor": JOINTS_SENSED})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_SENSORS, tick, {"sensor": JOINTS_SENSED}))
         if around.changing is not None:
-            return [Event(Kind.REFUSED_CHANGING, tick, {"mass": around.changing})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_CHANGING, tick, {"mass": around.changing}))
         if around.still.count < ticks(settings.static.time):
-            return [Event(Kind.REFUSED_MOVING, tick, around.still.moves(self._joints, settings.static))]
+            return becomes(
+                Transition.REFUSED, Event(Kind.REFUSED_MOVING, tick, around.still.moves(self._joints, settings.static))
+            )
         self.posture = tuple(around.estimate.q.tolist())
         if not settings.sequence.on:
-            return [_entered(around, settings)]
+            return _entered(around, settings)
         use, stored = settings.sequence, None
         if use.stored:
             stored = self._stored.of(tick, ticks(use.age), around.wrench_ok)
             if stored is None:
-                return [Event(Kind.REFUSED_NOT_STORED, tick, {"age": use.age})]
+                return becomes(Transition.REFUSED, Event(Kind.REFUSED_NOT_STORED, tick, {"age": use.age}))
         elif use.period < SHORTEST and not confirmed:
-            return [Event(Kind.REFUSED_SHORT, tick, {"value": use.period, "limit": SHORTEST})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_SHORT, tick, {"value": use.period, "limit": SHORTEST}))
         self._attempt = None
         self.phase = Phase.SEQUENCE
         self._total = self._left = ticks(use.period)
-        sequence = self._sequence = Sequence(around, settings, self._joints, self._rated, stored)
+        sequence = self._sequence = Sequence(around, settings, joints=self._joints, rated=self._rated, stored=stored)
         self._zero.begin(around.estimate, around.wrench_ok, around.mean)
         self._containment.begin(Start.SEQUENCE, settings.walls)
-        return [Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}), *self._judge(sequence, around, settings)]
+        started = Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK})
+        return self._judge(sequence, around, settings).after([started])
 
-    def _check(self, around: Surroundings, settings: Settings) -> list[Event]:
+    def _check(self, around: Surroundings, settings: Settings) -> Happened:
         """The sequence runs; the button does not matter any more (FD-8a)."""
         sequence, balancing = self._sequence, self._compensation
         if not around.guided and not may_enter(around.mode, settings):
-            return [_not_from(around.mode, around.estimate.tick, settings)]
+            return _not_from(around.mode, around.estimate.tick, settings)
         if balancing is not None:
             return self._balance(balancing, around, settings)
         assert sequence is not None
         self._left -= 1
         return self._judge(sequence, around, settings)
 
-    def _judge(self, sequence: Sequence, around: Surroundings, settings: Settings) -> list[Event]:
+    def _judge(self, sequence: Sequence, around: Surroundings, settings: Settings) -> Happened:
         """One tick of the sequence: what refuses free-drive, or entry at its end."""
         tick = around.estimate.tick
         missing = sequence.missing(around)
         if missing:
-            return [Event(Kind.REFUSED_SENSORS, tick, {"sensor": missing})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_SENSORS, tick, {"sensor": missing}))
         beyond = sequence.check(around)
         reading = self._containment.step(around.estimate, *NOBODY)
         if not beyond and reading is None:
-            return [_entered(around, settings)] if self._left == 0 else []
+            return _entered(around, settings) if self._left == 0 else Happened([])
+        reasons = sequence.reasons(beyond, around)
         if beyond:
-            events = sequence.reasons(beyond, around, settings)
+            refusal = sequence.refusal(beyond, around, settings)
         else:
             assert reading is not None
-            events = [_behind(reading, tick, settings)]
-        if settings.sequence.compensate and not settings.sequence.protective_stop:
-            balancing = self._compensation = Compensation(events.pop(), around)
-            self._sequence = None
-            events.append(balancing.begun(tick))
-        return events
+            refusal = _behind(reading, tick, settings)
+        if settings.sequence.protective_stop or not settings.sequence.compensate:
+            return becomes(Transition.REFUSED, refusal, reasons)
+        balancing = self._compensation = Compensation(refusal, around)
+        self._sequence = None
+        return Happened([*reasons, balancing.begun(tick)])
 
-    def _balance(self, balancing: Compensation, around: Surroundings, settings: Settings) -> list[Event]:
+    def _balance(self, balancing: Compensation, around: Surroundings, settings: Settings) -> Happened:
         """One tick after a limit of the sequence was exceeded: the arm is balanced (FD-10)."""
         if not joints_ok(around.estimate):
-            return [Event(Kind.REFUSED_SENSORS, around.estimate.tick, {"sensor": JOINTS_SENSED})]
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_SENSORS, around.estimate.tick, {"sensor": JOINTS_SENSED}))
         self._containment.step(around.estimate, *NOBODY)
         return balancing.step(around, settings.static)
 
@@ -244,9 +243,9 @@ def _asked(outcome: Outcome, attempt: Attempt, around: Surroundings, settings: S
     return Event(Kind.LET_GO_ASKED if outcome is Outcome.LET_GO else Kind.REFUSED_STILL_HELD, tick, values)
 
 
-def _not_from(mode: Mode, tick: int, settings: Settings) -> Event:
+def _not_from(mode: Mode, tick: int, settings: Settings) -> Happened:
     """Free-drive cannot be entered from `mode`."""
-    return Event(Kind.REFUSED_MODE, tick, {"mode": mode, "allowed": origins(settings)})
+    return becomes(Transition.REFUSED, Event(Kind.REFUSED_MODE, tick, {"mode": mode, "allowed": origins(settings)}))
 
 
 def _behind(reading: Reading, tick: int, settings: Settings) -> Event:
@@ -259,6 +258,6 @@ def _behind(reading: Reading, tick: int, settings: Settings) -> Event:
     return Event(Kind.REFUSED_WALL, tick, values)
 
 
-def _entered(around: Surroundings, settings: Settings) -> Event:
+def _entered(around: Surroundings, settings: Settings) -> Happened:
     gain = settings.free_drive.gain if around.wrench_ok else 0.0
-    return Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain})
+    return becomes(Transition.ENTERED, Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain}))

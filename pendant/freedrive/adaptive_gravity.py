@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.limits.residual import mass_error, split, upward
 from pendant.limits.settings import Static
 from pendant.settings.schema import ticks
@@ -52,17 +53,12 @@ class Compensation:
         self.left = self.total = ticks(LONGEST)
         self._least = ticks(LONGEST) - ticks(SETTLES)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._refusal, self._origin, self.balance, self.left)
-
     def begun(self, tick: int) -> Event:
         """That it begins."""
         return Event(Kind.COMPENSATING, tick, {"period": self.total * TICK})
 
-    def step(self, around: Surroundings, static: Static) -> list[Event]:
-        """One tick; its joint values are finite. Returns what came of it and the refusal, or nothing while it lasts."""
+    def step(self, around: Surroundings, static: Static) -> Happened:
+        """One tick; its joint values are finite. It ends with what came of it and the refusal."""
         self.left -= 1
         if around.wrench_ok is not self.balance.force:
             self.balance = self.balance._replace(force=around.wrench_ok)
@@ -71,7 +67,7 @@ class Compensation:
         way = math.hypot(x - x0, y - y0, z - z0)
         rests = self.left <= self._least and around.still.count >= ticks(static.time)
         if not rests and way <= FAR and self.left > 0:
-            return []
+            return Happened([])
         tick, refusal = around.estimate.tick, self._refusal
         kind = Kind.COMPENSATED if rests else Kind.NOT_COMPENSATED
         events = [Event(kind, tick, {"moved": 1000.0 * way, "time": (self.total - self.left) * TICK})]
@@ -79,4 +75,4 @@ class Compensation:
             force = split(around.mean.mean(), self.balance.up).payload_force
             values: Values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
             events.append(Event(Kind.LOAD_FOUND, tick, values))
-        return [*events, Event(refusal.kind, tick, refusal.values)]
+        return becomes(Transition.REFUSED, Event(refusal.kind, tick, refusal.values), events)

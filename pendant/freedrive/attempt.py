@@ -64,11 +64,6 @@ class Attempt:
         self.left = self.total = ticks(settings.activation.period)
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; settings are compared elsewhere."""
-        return tuple([getattr(self, name) for name in self.__slots__ if name != "_settings"])
-
-    @property
     def confirmed(self) -> bool:
         """It is ready with the handshake only (FD-8)."""
         return self._settings.handshake.on

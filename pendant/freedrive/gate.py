@@ -29,11 +29,6 @@ class Gate:
         self._steady = False  # another tick of the same changes nothing
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
-    @property
     def shut(self) -> bool:
         """No attempt can begin."""
         return self._blocked or self.left > 0

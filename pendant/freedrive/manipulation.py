@@ -37,11 +37,6 @@ class Maintained:
         self._up = upward(estimate.g_B.tolist())
         self._slow = [0.0] * 6  # the change, smoothed
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._since, self._up, tuple(self._slow), self._monitor.memory)
-
     def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
         """The period begins anew in this tick."""
         self._since = reference(estimate, wrench)

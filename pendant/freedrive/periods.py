@@ -8,6 +8,7 @@ import msgspec
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.gate import Gate
 from pendant.freedrive.manipulation import Maintained
 from pendant.settings.schema import ticks
@@ -47,13 +48,13 @@ class Periods:
     )
 
     def __init__(
-        self, held: bool, around: Surroundings, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]
+        self, around: Surroundings, settings: Settings, *, held: bool, wrench: Wrench | None, joints: tuple[str, ...]
     ) -> None:
         """
         Args:
-            held: the button is, so that no period runs yet.
             around: the tick of entry.
             settings: as they are now.
+            held: the button is, so that no period runs yet.
             wrench: F_user without what the sensor drifted by, axes of B [N, N·m]; None: the flange sensor is not used.
             joints: names, base to flange.
         """
@@ -68,12 +69,6 @@ class Periods:
         self._maintained: Maintained | None = None  # of the running period
         if not held:
             self._begin(Phase.PERIOD, around, settings, wrench)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([getattr(value, "memory", value) for value in values])
 
     @property
     def runs(self) -> bool:
@@ -99,8 +94,8 @@ class Periods:
         """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
         self._registered = True
 
-    def step(self, around: Surroundings, settings: Settings, gate: Gate, user: Vector, wrench: Wrench | None) -> list[Event]:
-        """One tick, with valid joints. Returns what happened; free-drive is left where the last of it says so.
+    def step(self, around: Surroundings, settings: Settings, gate: Gate, *, user: Vector, wrench: Wrench | None) -> Happened:
+        """One tick, with valid joints.
 
         Args:
             around: this tick.
@@ -116,39 +111,39 @@ class Periods:
         if gate.began:
             self.phase = Phase.HELD
             self._pressed = 0
-            return []
+            return Happened([])
         if self.phase is not Phase.GUIDED:
-            return self._count(around, settings, anew, registered, wrench)
+            return self._count(around, settings, anew=anew, registered=registered, wrench=wrench)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
         if settings.free_drive.maintained and self._left == 0 and self._rests(around, settings):
             self._begin(Phase.RESTART, around, settings, wrench)
-            return [Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})]
-        return []
+            return Happened([Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})])
+        return Happened([])
 
-    def _hold(self, around: Surroundings, settings: Settings, ended: bool, wrench: Wrench | None) -> list[Event]:
+    def _hold(self, around: Surroundings, settings: Settings, ended: bool, wrench: Wrench | None) -> Happened:
         """The button was held in the tick before."""
         tick = around.estimate.tick
         if self._pressed >= 0:
             self._pressed += 1
         if not ended:
-            return []
+            return Happened([])
         if settings.button.hold_to_run:
-            return [Event(Kind.LEFT_RELEASE, tick)]
+            return becomes(Transition.LEFT, Event(Kind.LEFT_RELEASE, tick))
         if 0 <= self._pressed < ticks(settings.button.short_press):
             values: Values = {"value": self._pressed * TICK, "limit": settings.button.short_press}
-            return [Event(Kind.LEFT_PRESS, tick, values)]
+            return becomes(Transition.LEFT, Event(Kind.LEFT_PRESS, tick, values))
         self._begin(Phase.PERIOD, around, settings, wrench)
-        return []
+        return Happened([])
 
     def _count(
-        self, around: Surroundings, settings: Settings, anew: bool, registered: bool, wrench: Wrench | None
-    ) -> list[Event]:
+        self, around: Surroundings, settings: Settings, *, anew: bool, registered: bool, wrench: Wrench | None
+    ) -> Happened:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick
         if anew:
             self._begin(self.phase, around, settings, wrench)
-            return [Event(Kind.PERIOD_ANEW, tick, {"period": self._total * TICK})]
+            return Happened([Event(Kind.PERIOD_ANEW, tick, {"period": self._total * TICK})])
         self._left -= 1
         maintained = self._maintained
         assert maintained is not None
@@ -161,8 +156,8 @@ class Periods:
             self._guide(around, settings, maintained, wrench)
         elif self._left == 0:
             kind = Kind.LEFT_PERIOD if self.phase is Phase.PERIOD else Kind.LEFT_RESTART
-            events.append(Event(kind, tick, {"limit": self._total * TICK}))
-        return events
+            return becomes(Transition.LEFT, Event(kind, tick, {"limit": self._total * TICK}), events)
+        return Happened(events)
 
     def _guide(self, around: Surroundings, settings: Settings, maintained: Maintained, wrench: Wrench | None) -> None:
         """The arm is guided: until it rests, or the restart period begins with every tick of it anew (FD-15)."""

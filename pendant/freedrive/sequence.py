@@ -57,6 +57,7 @@ class Sequence:
         self,
         around: Surroundings,
         settings: Settings,
+        *,
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         stored: EntryValues | None = None,
@@ -84,13 +85,6 @@ class Sequence:
         self._up: Vector = upward(estimate.g_B.tolist())
         self._start = estimate.tick
         self._dynamic = DynamicLimits(in_activation(settings), estimate)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (self._since, self._wrench, self._acceleration, self._up, self._start, self._share)
-        against = None if self._against is None else (self._against[0], self._against[1].memory)
-        return (*own, self._monitor.memory, against, self._dynamic.memory)
 
     def missing(self, around: Surroundings) -> str:
         """The sensor without which no decision is possible (FD-12), or nothing. What was never there is not missed (FD-3a)."""
@@ -126,25 +120,24 @@ class Sequence:
         told = self._monitor.monitored()
         return told if self._against is None else told + self._against[1].monitored()
 
-    def reasons(self, beyond: list[Gauge], around: Surroundings, settings: Settings) -> list[Event]:
-        """Every parameter that prevented entry (FD-11), then the refusal itself (FD-10)."""
+    def reasons(self, beyond: list[Gauge], around: Surroundings) -> list[Event]:
+        """Every parameter that prevented entry (FD-11)."""
         tick = around.estimate.tick
         after = (tick - self._start) * TICK
-        events: list[Event] = []
-        for gauge in beyond:
-            values: Values = {**gauge.excess._asdict(), "time": after}
-            events.append(Event(Kind.ENTRY_PREVENTED, tick, values))
+        return [Event(Kind.ENTRY_PREVENTED, tick, {**gauge.excess._asdict(), "time": after}) for gauge in beyond]
+
+    def refusal(self, beyond: list[Gauge], around: Surroundings, settings: Settings) -> Event:
+        """That they refuse free-drive (FD-10). One that a payload may explain comes first."""
+        tick = around.estimate.tick
         gauge = next((gauge for gauge in beyond if gauge.name in PAYLOAD_LIKE), beyond[0])
         excess = gauge.excess
         if settings.sequence.protective_stop:
-            events.append(Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict())))
-        elif gauge.name in PAYLOAD_LIKE:
+            return Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict()))
+        if gauge.name in PAYLOAD_LIKE:
             force = split(around.mean.mean(), self._up).payload_force
-            values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
-            events.append(Event(Kind.REFUSED_PAYLOAD, tick, {**values, "zero": around.maybe_zero, "parameter": excess.parameter}))
-        else:
-            events.append(Event(Kind.REFUSED_LIMIT, tick, dict(excess._asdict())))
-        return events
+            values: Values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
+            return Event(Kind.REFUSED_PAYLOAD, tick, {**values, "zero": around.maybe_zero, "parameter": excess.parameter})
+        return Event(Kind.REFUSED_LIMIT, tick, dict(excess._asdict()))
 
 
 class SequenceVerdict:
@@ -159,11 +152,6 @@ class SequenceVerdict:
         self.waiting = False
         self._force = 0.0
         self._up: Vector = (0.0, 0.0, 1.0)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.waiting, self._force, self._up)
 
     def begin(self, around: Surroundings) -> None:
         """A refusal that may be payload or push."""

@@ -3,8 +3,8 @@
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.event_table import TABLE
-from pendant.events.event import Event, Kind, posture_text
-from pendant.events.event_row import LEAVING, Effect
+from pendant.events.event import Event, Kind, Values, posture_text
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.activation import Activation
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.gate import Gate
@@ -28,12 +28,12 @@ IN_FREE_DRIVE = frozenset({Phase.HELD, Phase.PERIOD, Phase.GUIDED, Phase.RESTART
 KNOWN = IN_FREE_DRIVE | {Phase.SEQUENCE}
 """Phases in which the posture at activation is remembered."""
 
-ENDING = LEAVING | {Effect.NO_ENTRY}
-"""Effects of events with which free-drive or its activation is over."""
+OVER = frozenset({Transition.REFUSED, Transition.LEFT})
+"""Transitions after which free-drive is off, and its cool-down runs."""
 
 
 class FreeDrive:
-    """State machine of the phases. Its events say what becomes of the mode; it changes no mode itself.
+    """State machine of the phases. Each tick says what becomes of free-drive; it changes no mode itself.
 
     Attributes:
         phase: of now.
@@ -71,12 +71,6 @@ class FreeDrive:
         self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None
         self._periods: Periods | None = None  # from entry to leaving
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([getattr(value, "memory", value) for value in values])
 
     @property
     def idle(self) -> bool:
@@ -152,67 +146,86 @@ class FreeDrive:
         self._verdict.waiting = False
         self._gate.close(ticks(settings.free_drive.cool_down) if TABLE[kind].cool_down else 0)
 
-    def step(self, around: Surroundings, settings: Settings) -> list[Event]:
-        """Decide the tick that `sense` began. Returns what happened, in order."""
+    def step(self, around: Surroundings, settings: Settings) -> Happened:
+        """Decide the tick that `sense` began, and become what comes of it."""
         activation = self._activation
         if settings.sequence.stored:
             activation.keep(around, self.phase in KNOWN)
-        events = self._decide(around, settings)
-        if events:
-            self._follow(events[-1].kind, around, settings)
+        happened = self._decide(around, settings)
+        if happened.transition is not _STAYS:
+            self._become(happened, around, settings)
         if activation.posture is not None and self.phase not in KNOWN:
-            if events and TABLE[events[-1].kind].effect is not Effect.INFO and events[-1].kind not in ASKED_FOR:
-                self._tell_way_back(activation.posture, around, settings, events)
+            if happened.transition in OVER and happened.cause not in ASKED_FOR:
+                way = self._way_back(activation.posture, around, settings)
+                happened = Happened(happened.events + way, happened.transition, happened.cause)
             activation.posture = None
-        return events
+        return happened
 
-    def _decide(self, around: Surroundings, settings: Settings) -> list[Event]:
-        """What happens; what it does to the phase, unless the next period begins, is decided by its effect."""
+    def _decide(self, around: Surroundings, settings: Settings) -> Happened:
+        """What happens. Activation and periods go through their phases themselves; `_become` does every other transition."""
         phase = self.phase
         if phase is not _OFF and not around.enabled:
-            kind = Kind.LEFT_ENABLING if phase in IN_FREE_DRIVE else Kind.REFUSED_ENABLING
-            return [Event(kind, around.estimate.tick, {"grip": around.grip or ""})]
+            grip: Values = {"grip": around.grip or ""}
+            if phase in IN_FREE_DRIVE:
+                return becomes(Transition.LEFT, Event(Kind.LEFT_ENABLING, around.estimate.tick, grip))
+            return becomes(Transition.REFUSED, Event(Kind.REFUSED_ENABLING, around.estimate.tick, grip))
         if self.arm is not None and self._periods is not None:
             return self._stay(self.arm, self._periods, around, settings)
         gate = self._gate
         told = self._verdict.step(around, gate.left <= 1) if self._verdict.waiting else []
         if phase is Phase.OFF and not gate.signal.source:
-            return told
-        events = told + self._activation.step(around, settings, gate)
+            return Happened(told)
+        happened = self._activation.step(around, settings, gate)
         self.phase = self._activation.phase
-        return events
+        return happened.after(told) if told else happened
 
-    def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> list[Event]:
+    def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> Happened:
         """One tick of free-drive."""
-        events = arm.step(around, settings, periods.waits)
-        if not events or TABLE[events[-1].kind].effect not in ENDING:
-            events += periods.step(around, settings, self._gate, arm.user, self._zero.felt(around.estimate))
-            self.phase = periods.phase
-        return events
+        seen = arm.step(around, settings, periods.waits)
+        if seen.transition is Transition.LEFT:
+            return seen
+        wrench = self._zero.felt(around.estimate)
+        happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
+        self.phase = periods.phase
+        return happened.after(seen.events) if seen.events else happened
 
-    def _follow(self, kind: Kind, around: Surroundings, settings: Settings) -> None:
-        """Do what an event of `kind` asks for."""
-        effect = TABLE[kind].effect
-        if effect is Effect.ENTER:
+    def _become(self, happened: Happened, around: Surroundings, settings: Settings) -> None:
+        """Do the transition of a tick in which free-drive does not stay as it is."""
+        transition, cause = happened.transition, happened.cause
+        if transition is Transition.ENTERED:
             self._enter(around, settings)
-        elif effect in ENDING:
-            self.stop(kind, settings)
-            if kind is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
+        elif transition is Transition.CANCELLED:
+            self.phase = Phase.OFF
+            self._activation.end()
+            self._containment.leave()
+        elif cause is not None:
+            self.stop(cause, settings)
+            if cause is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
                 self._verdict.begin(around)
 
     def _enter(self, around: Surroundings, settings: Settings) -> None:
         zero = self._zero
         self._activation.end()
         zero.begin(around.estimate, around.wrench_ok, around.mean)
-        self._periods = Periods(self._gate.held, around, settings, zero.felt(around.estimate), self._joints)
-        self.arm = FreeArm(around, settings, zero, self._containment, self._zones, self._joints, self._rated)
+        joints, wrench = self._joints, zero.felt(around.estimate)
+        self._periods = Periods(around, settings, held=self._gate.held, wrench=wrench, joints=joints)
+        self.arm = FreeArm(
+            around,
+            settings,
+            zero=zero,
+            containment=self._containment,
+            zones=self._zones,
+            joints=joints,
+            rated=self._rated,
+        )
         self.phase = self._periods.phase
 
-    def _tell_way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings, events: list[Event]) -> None:
-        """From where the arm is to the `posture` at activation (FD-22)."""
+    def _way_back(self, posture: tuple[float, ...], around: Surroundings, settings: Settings) -> list[Event]:
+        """From where the arm is to the `posture` at activation, if it is told (FD-22)."""
         joints = way_back(posture, tuple(around.estimate.q.tolist()), self._joints)
-        if joints and settings.free_drive.way_back:
-            events.append(Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)}))
+        if not (joints and settings.free_drive.way_back):
+            return []
+        return [Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)})]
 
 
-_OFF = Phase.OFF  # looked up in every tick
+_OFF, _STAYS = Phase.OFF, Transition.STAYS  # looked up in every tick

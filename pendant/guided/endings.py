@@ -90,6 +90,7 @@ class EndingWatch:
         self,
         estimate: Estimate,
         settings: Settings,
+        *,
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         held: float,
@@ -127,22 +128,8 @@ class EndingWatch:
         """It may be that nobody leads the moving arm: nothing helps it on (FD-19)."""
         return self._alone.doubtful
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (
-            tuple(self._missed),
-            self._calm,
-            self._level,
-            self._stepped,
-            self._followed,
-            self.suspect,
-            self._since,
-        )
-        return (*own, self._hidden.memory, self._monitor.memory, self._soft.memory, self._alone.memory)
-
     def step(
-        self, estimate: Estimate, hand: UserForce, baseline: Wrench | None, driven: bool, slack: Slack = SURE
+        self, estimate: Estimate, hand: UserForce, *, baseline: Wrench | None, driven: bool, slack: Slack = SURE
     ) -> Ending | None:
         """One tick; its joint values are finite.
 
@@ -175,7 +162,8 @@ class EndingWatch:
             return Ending(Kind.STOPPED_LIMIT if gauge.stop else Kind.LEFT_LIMIT, dict(gauge.excess._asdict()))
         if not self._on.motion:
             return None
-        values = self._alone.step(estimate, hand, baseline is not None, driven, slack, torque)
+        use_wrench = baseline is not None
+        values = self._alone.step(estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
     def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench, least: float) -> Ending | None:

@@ -3,6 +3,7 @@
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
+from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.endings import EndingWatch
 from pendant.guided.sensor_bias import Zero
 from pendant.guided.user_force import UserForce
@@ -47,6 +48,7 @@ class FreeArm:
         self,
         around: Surroundings,
         settings: Settings,
+        *,
         zero: Zero,
         containment: Containment,
         zones: JointZones,
@@ -66,7 +68,7 @@ class FreeArm:
         estimate = around.estimate
         self._zero, self._containment, self._zones = zero, containment, zones
         self._hand = UserForce(estimate, around.mean.mean())
-        self._operation = EndingWatch(estimate, settings, joints, rated, around.payload)
+        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -76,13 +78,8 @@ class FreeArm:
         containment.enter(settings.walls)
         containment.step(estimate, *NOBODY)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what it was given is compared elsewhere."""
-        return (self._hand.memory, self._operation.memory, self._singularity.memory, self.caught)
-
-    def step(self, around: Surroundings, settings: Settings, waits: bool) -> list[Event]:
-        """One tick. Returns what happened; free-drive is left where the last of it says so.
+    def step(self, around: Surroundings, settings: Settings, waits: bool) -> Happened:
+        """One tick.
 
         Args:
             around: this tick.
@@ -92,7 +89,7 @@ class FreeArm:
         estimate, zero, hand, operation = around.estimate, self._zero, self._hand, self._operation
         tick = estimate.tick
         if not joints_ok(estimate):
-            return [Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED})]
+            return becomes(Transition.LEFT, Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED}))
         events: list[Event] = []
         if zero.used and not around.wrench_ok:
             zero.leave()
@@ -107,8 +104,7 @@ class FreeArm:
         before, self.caught = self.caught, reading is not None and caught(reading)
         if reading is not None and not self.caught:
             kind = Kind.STOPPED_WALL if reading.consequence is Consequence.STOP else Kind.LEFT_WALL
-            events.append(Event(kind, tick, facts(reading)))
-            return events
+            return becomes(Transition.LEFT, Event(kind, tick, facts(reading)), events)
         if reading is not None and not before:
             events.append(Event(Kind.WALL_REACHED, tick, facts(reading)))
         self._zones.step(estimate)
@@ -118,8 +114,8 @@ class FreeArm:
         self.singularity = self._singularity.status
         baseline = zero.baseline if zero.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        ending = operation.step(estimate, hand, baseline, driven, zero.slack(estimate))
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=zero.slack(estimate))
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         if ending is not None:
-            events.append(Event(ending.kind, tick, ending.values))
-        return events
+            return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
+        return Happened(events)

@@ -38,14 +38,9 @@ class HiddenDrop:
         self._sum: Vector = ORIGIN
         self.ticks = 0
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.held, self.ticks, self._sum if self.ticks else ORIGIN)
-
     def forget(self) -> None:
         """The sensor is out."""
-        self.ticks = 0
+        self.ticks, self._sum = 0, ORIGIN
 
     def step(self, missing: Vector, before: Vector, needs: Vector, mass: float) -> bool:
         """One tick. True in that in which the payload is known to be gone.

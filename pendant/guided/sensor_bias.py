@@ -81,11 +81,6 @@ class BiasFollower:
         """It follows an arm at rest."""
         return self._followed is not None
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._quiet, self._count, self._followed, self._began, self._felt, tuple(self.lately))
-
     def restart(self) -> None:
         """The arm may be moved, held by a hand, or the sensor is not used."""
         self._followed = None
@@ -166,7 +161,7 @@ class Zero:
     Attributes:
         used: the flange sensor is; it was valid in every tick since.
         baseline: F_user in the beginning, and what the sensor drifted by, axes of F [N, N·m]; zeros without the sensor.
-        drifted: what the sensor drifted by since, axes of F [N, N·m].
+        drifted: what the sensor drifted by since, axes of F [N, N·m]; None: nothing was taken off yet.
     """
 
     __slots__ = ("_drift", "_felt", "_since", "_steps", "baseline", "drifted", "used")
@@ -174,33 +169,28 @@ class Zero:
     def __init__(self) -> None:
         self.used = False
         self.baseline: Wrench = ZEROS
-        self.drifted: Wrench = ZEROS
+        self.drifted: Wrench | None = None
         self._drift, self._steps = BiasFollower(), Steps()
         self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.used, self.baseline, self.drifted, self._drift.memory, self._steps.memory, self._felt, self._since)
-
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
-        self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), ZEROS
+        self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), None
         self._drift, self._steps, self._since = BiasFollower(estimate.tick), Steps(), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
     def leave(self) -> None:
         """The sensor is not used any more."""
-        self.used, self.baseline, self.drifted = False, ZEROS, ZEROS
+        self.used, self.baseline, self.drifted = False, ZEROS, None
 
     def felt(self, estimate: Estimate) -> Wrench | None:
         """F_user without what the sensor drifted by, axes of B [N, N·m]; None where the sensor is not used."""
         if not self.used:
             return None
         wrench = tuple(estimate.F_user.tolist())
-        if self.drifted is ZEROS:
+        if self.drifted is None:
             return wrench
         x, y, z, a, b, c = self.drifted
         R_BF = flat(estimate.R_BF)
@@ -247,8 +237,7 @@ class Zero:
             if gone is not None:
                 gone = in_flange(estimate, gone)
                 self._drift.keep(gone)
-                self._take_off(gone, hand)
-                x, y, z, a, b, c = self.drifted
+                x, y, z, a, b, c = self._take_off(gone, hand)
                 far, turn = norm((x, y, z)), norm((a, b, c))
                 seconds = TICK * (estimate.tick - self._since)
                 if far >= FAR + SLOWLY * seconds or turn >= FAR_TURN + SLOWLY_TURN * seconds:
@@ -256,8 +245,9 @@ class Zero:
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
 
-    def _take_off(self, gone: Wrench, hand: UserForce) -> None:
-        """So much, axes of F [N, N·m], is an offset of the sensor."""
+    def _take_off(self, gone: Wrench, hand: UserForce) -> Wrench:
+        """So much, axes of F [N, N·m], is an offset of the sensor. Returns what it drifted by in all."""
         hand.shift((gone[0], gone[1], gone[2]))
-        self.drifted = tuple([a + b for a, b in zip(self.drifted, gone, strict=True)])
+        self.drifted = drifted = tuple([a + b for a, b in zip(self.drifted or ZEROS, gone, strict=True)])
         self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])
+        return drifted

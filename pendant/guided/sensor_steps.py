@@ -63,11 +63,6 @@ class Steps:
         self._before: Vector | None = None  # what the joints feel without one [N]
         self._felt: Vector = ORIGIN  # sum of what they felt since, beyond that
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
     def step(self, estimate: Estimate, hand: UserForce) -> Vector | None:
         """One tick, `hand` after its step. A step that is the sensor's, axes of B [N], or None."""
         change = hand.change

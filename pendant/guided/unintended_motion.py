@@ -41,11 +41,6 @@ class Way:
         self._began = since.position
         self.work = Work(since.torques)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._began, self.work.memory)
-
     def begin(self, estimate: Estimate) -> None:
         """It begins here."""
         self._began = tuple(estimate.p_BF.tolist())
@@ -96,14 +91,15 @@ class Alone:
         self._helped = 0.0  # so much of it was not doubtful [m]
         self.led = self.doubtful = False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        own = (self._ticks, self._caused, self._doubted, self._at_rest, self._helped, self.doubtful, self.led)
-        return (*own, self._stretch.memory, self._whole.memory)
-
     def step(
-        self, estimate: Estimate, hand: UserForce, use_wrench: bool, driven: bool, slack: Slack = SURE, torque: Vector = ORIGIN
+        self,
+        estimate: Estimate,
+        hand: UserForce,
+        *,
+        use_wrench: bool,
+        driven: bool,
+        slack: Slack = SURE,
+        torque: Vector = ORIGIN,
     ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 
@@ -123,13 +119,14 @@ class Alone:
         by_link = use_wrench and usual < CARRIED + slack.force
         wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
         vx, vy, vz = estimate.v_F.tolist()[:3]
-        way = self._too_long(estimate, wrench, norm((vx, vy, vz)), caused, use_wrench, by_link)
+        speed = norm((vx, vy, vz))
+        way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench, by_link=by_link)
         if way is None:
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
     def _too_long(
-        self, estimate: Estimate, wrench: tuple[Vector, Vector], speed: float, caused: bool, use_wrench: bool, by_link: bool
+        self, estimate: Estimate, wrench: tuple[Vector, Vector], *, speed: float, caused: bool, use_wrench: bool, by_link: bool
     ) -> Way | None:
         """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
 

@@ -93,11 +93,6 @@ class UserForce:
         self.usual: Vector = ORIGIN  # of that the mean lately [N]
         self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
     def shift(self, force: Vector) -> None:
         """The sensor's zero has gone by `force`, axes of F [N], which is nobody's."""
         x, y, z = force

@@ -38,11 +38,6 @@ class Work:
         self._before = before
         self._clear(0.0)
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([getattr(self, name) for name in self.__slots__])
-
     def begin(self, estimate: Estimate) -> None:
         """A stretch begins."""
         self._clear(estimate.energy)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from pendant.all_settings import Settings
 from pendant.limits.residual import upward
+from pendant.limits.settings import Soft
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import Vector
@@ -29,6 +30,12 @@ class Shares(NamedTuple):
     angular: float = 1.0  # of angular accelerations
     vertical: float = 1.0  # of linear quantities along gravity, beside the others
     up: Vector = (0.0, 0.0, 1.0)  # axes of B
+    lowered: bool = True  # a rule may lower them; else all are 1 and stay so
+
+    @property
+    def isotropic(self) -> bool:
+        """The limits are the same in every direction."""
+        return self.vertical == 1.0
 
     def along(self, x: float, y: float, z: float) -> float:
         """What is left of the limit of a linear quantity in the direction of (x, y, z), axes of B.
@@ -46,7 +53,7 @@ class Shares(NamedTuple):
         return 1.0 / math.sqrt(1.0 + along * along / square * (1.0 / (least * least) - 1.0))
 
 
-WHOLE = Shares()
+WHOLE = Shares(lowered=False)
 """Nothing is lowered."""
 
 
@@ -66,30 +73,45 @@ class Rules(NamedTuple):
 
 def in_operation(settings: Settings) -> Rules:
     """The rules in free-drive."""
-    soft = settings.soft
-    return _rules(settings, soft.acceleration, soft.payload, soft.drift, soft.pushed, soft.vertical, DRIFTING)
+    on = settings.soft
+    return _rules(
+        on,
+        acceleration=on.acceleration,
+        payload=on.payload,
+        drift=on.drift,
+        pushed=on.pushed,
+        vertical=on.vertical,
+        drift_speed=DRIFTING,
+    )
 
 
 def in_activation(settings: Settings) -> Rules:
     """The rules in the activation sequence."""
     on = settings.sequence.dynamic
-    return _rules(settings, on.acceleration, on.payload, on.drift, on.pushed, on.vertical, CREEPING)
+    return _rules(
+        settings.soft,
+        acceleration=on.acceleration,
+        payload=on.payload,
+        drift=on.drift,
+        pushed=on.pushed,
+        vertical=on.vertical,
+        drift_speed=CREEPING,
+    )
 
 
 def _rules(
-    settings: Settings, acceleration: bool, payload: bool, drift: bool, pushed: bool, vertical: bool, from_: float
+    soft: Soft, *, acceleration: bool, payload: bool, drift: bool, pushed: bool, vertical: bool, drift_speed: float
 ) -> Rules:
-    soft = settings.soft
     return Rules(
-        soft.acceleration_share if acceleration else 0.0,
-        soft.payload_share if payload else 0.0,
-        drift,
-        ticks(soft.drift_time),
-        soft.drift_share,
-        from_,
-        soft.force_share if pushed else 0.0,
-        soft.torque_share if pushed else 0.0,
-        soft.vertical_share if vertical else 1.0,
+        acceleration=soft.acceleration_share if acceleration else 0.0,
+        payload=soft.payload_share if payload else 0.0,
+        drift=drift,
+        drift_ticks=ticks(soft.drift_time),
+        drift_share=soft.drift_share,
+        drift_speed=drift_speed,
+        force=soft.force_share if pushed else 0.0,
+        torque=soft.torque_share if pushed else 0.0,
+        vertical=soft.vertical_share if vertical else 1.0,
     )
 
 
@@ -117,11 +139,6 @@ class DynamicLimits:
         self._asked = (0.0, 0.0, 0.0, 0.0, False)  # acceleration, load, force, torque, drifting
         self.pushed = bool(rules.force or rules.torque)
         self.shares = WHOLE if rules.vertical == 1.0 else Shares(vertical=rules.vertical, up=self._up)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._heading, self._same, self._asked, self.shares)
 
     def step(self, estimate: Estimate, force: float = 0.0, torque: float = 0.0) -> Shares:
         """One tick; its joint values are finite. Without an accelerometer, acceleration lowers nothing.

@@ -37,12 +37,6 @@ class JointZones:
         self.torque: tuple[float, ...] = ()
         self.pushing = False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        places = tuple([None if guard is None else guard.place for guard in self._guards])
-        return (self._settings, places, self.torque)
-
     def enter(self, settings: JointLimits) -> None:
         """FREE_DRIVE begins."""
         self.leave()

@@ -28,11 +28,6 @@ class SingularityWatch:
     def __init__(self) -> None:
         self.status = Nearness.OK
 
-    @property
-    def memory(self) -> Nearness:
-        """All of its state, to compare."""
-        return self.status
-
     def step(self, value: float, axes: AxisSettings) -> bool:
         """One tick; returns whether the word is another one now.
 

@@ -39,23 +39,27 @@ class Observed(msgspec.Struct, frozen=True, gc=False):
     heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
 
 
-Reader = Callable[[Observed, Gauge], tuple[float, str]]
+Read = tuple[float, str, float]
+"""A parameter's value in one tick, its joint or part, and its upper limit in this tick."""
+
+Reader = Callable[[Observed, float], Read]
+"""Reads a parameter from what is observed and from its upper limit as it is set."""
 
 
-def _flange_displacement(view: Observed, gauge: Gauge) -> tuple[float, str]:
+def _flange_displacement(view: Observed, base: float) -> Read:
     x, y, z = view.estimate.p_BF.tolist()
     x0, y0, z0 = view.since.position
     x, y, z = x - x0, y - y0, z - z0
-    if view.shares is not WHOLE:
-        gauge.high = gauge.base * view.shares.way * view.shares.along(x, y, z)
-    return math.hypot(x, y, z), "flange"
+    if view.shares.lowered:
+        base = base * view.shares.way * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange", base
 
 
-def _flange_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
+def _flange_speed(view: Observed, base: float) -> Read:
     x, y, z = view.estimate.v_F.tolist()[:3]
-    if view.shares is not WHOLE:
-        gauge.high = gauge.base * view.shares.speed * view.shares.along(x, y, z)
-    return math.hypot(x, y, z), "flange"
+    if view.shares.lowered:
+        base = base * view.shares.speed * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange", base
 
 
 def beyond_gravity(estimate: Estimate) -> float:
@@ -63,38 +67,38 @@ def beyond_gravity(estimate: Estimate) -> float:
     return math.hypot(*estimate.a_felt.tolist())
 
 
-def _flange_acceleration(view: Observed, gauge: Gauge) -> tuple[float, str]:
+def _flange_acceleration(view: Observed, base: float) -> Read:
     x, y, z = view.estimate.a_felt.tolist()
-    if view.shares is not WHOLE:
-        gauge.high = gauge.base * view.shares.linear * view.shares.along(x, y, z)
-    return math.hypot(x, y, z), "flange"
+    if view.shares.lowered:
+        base = base * view.shares.linear * view.shares.along(x, y, z)
+    return math.hypot(x, y, z), "flange", base
 
 
-def _tcp_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    if view.shares is not WHOLE:
-        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.tcp.tolist()[3:])
-    return view.estimate.v_tcp, "tcp"
+def _tcp_speed(view: Observed, base: float) -> Read:
+    if view.shares.lowered:
+        base = base * view.shares.speed * view.shares.along(*view.estimate.tcp.tolist()[3:])
+    return view.estimate.v_tcp, "tcp", base
 
 
-def _elbow_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    if view.shares is not WHOLE:
-        gauge.high = gauge.base * view.shares.speed * view.shares.along(*view.estimate.elbow.tolist()[3:])
-    return view.estimate.v_elbow, "elbow"
+def _elbow_speed(view: Observed, base: float) -> Read:
+    if view.shares.lowered:
+        base = base * view.shares.speed * view.shares.along(*view.estimate.elbow.tolist()[3:])
+    return view.estimate.v_elbow, "elbow", base
 
 
-def _joint_displacement(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.shares.way
-    return _largest(list(map(sub, view.estimate.q.tolist(), view.since.angles)), view)
+def _joint_displacement(view: Observed, base: float) -> Read:
+    size, joint = _largest(list(map(sub, view.estimate.q.tolist(), view.since.angles)), view)
+    return size, joint, base * view.shares.way
 
 
-def _joint_speed(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.shares.turning
-    return _largest(view.estimate.qd.tolist(), view)
+def _joint_speed(view: Observed, base: float) -> Read:
+    size, joint = _largest(view.estimate.qd.tolist(), view)
+    return size, joint, base * view.shares.turning
 
 
-def _joint_acceleration(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base * view.shares.angular
-    return _largest(view.estimate.qdd.tolist(), view)
+def _joint_acceleration(view: Observed, base: float) -> Read:
+    size, joint = _largest(view.estimate.qdd.tolist(), view)
+    return size, joint, base * view.shares.angular
 
 
 def _largest(values: list[float], view: Observed) -> tuple[float, str]:
@@ -105,43 +109,41 @@ def _largest(values: list[float], view: Observed) -> tuple[float, str]:
     return -least, view.joints[values.index(least)]
 
 
-def _motor_torque(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    """The motor that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
+def _motor_torque(view: Observed, base: float) -> Read:
+    """The motor that comes nearest to its limit; its limit is the parameter's, in N·m."""
     torques = view.estimate.tau_m.tolist()
     _, part = _largest(list(map(truediv, torques, view.scale)), view)
     joint = view.joints.index(part)
-    gauge.high = gauge.base * view.scale[joint]
-    return abs(torques[joint]), part
+    return abs(torques[joint]), part, base * view.scale[joint]
 
 
-def _joint_torque(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    """The joint that comes nearest to its limit; its limit becomes the gauge's, in N·m."""
-    share, base, felt = view.share, gauge.base, view.estimate
-    nearest, size, part = -1.0, 0.0, 0
+def _joint_torque(view: Observed, base: float) -> Read:
+    """The joint that comes nearest to its limit; its limit is the parameter's, in N·m."""
+    share, felt = view.share, view.estimate
+    nearest, size, part, high = -1.0, 0.0, 0, base
     torques = zip(felt.tau_ext.tolist(), view.since.torques, view.scale, felt.tau_J.tolist(), strict=True)
     for joint, (now, then, rated, load) in enumerate(torques):
         change = now - then if now > then else then - now  # without a call, six times in every tick: as `abs`
         limit = base * rated + (share * load if load > 0.0 else -share * load)
         if change > nearest * limit:
-            nearest, size, part, gauge.high = change / limit, change, joint, limit
-    return size, view.joints[part]
+            nearest, size, part, high = change / limit, change, joint, limit
+    return size, view.joints[part], high
 
 
-def _payload_force(view: Observed, _: Gauge) -> tuple[float, str]:
-    return _of(view).payload_force, "flange"
+def _payload_force(view: Observed, base: float) -> Read:
+    return _of(view).payload_force, "flange", base
 
 
-def _payload_torque(view: Observed, _: Gauge) -> tuple[float, str]:
-    return _of(view).payload_torque, "flange"
+def _payload_torque(view: Observed, base: float) -> Read:
+    return _of(view).payload_torque, "flange", base
 
 
-def _user_force(view: Observed, gauge: Gauge) -> tuple[float, str]:
-    gauge.high = gauge.base + view.heavier
-    return _of(view).user_force, "flange"
+def _user_force(view: Observed, base: float) -> Read:
+    return _of(view).user_force, "flange", base + view.heavier
 
 
-def _user_torque(view: Observed, _: Gauge) -> tuple[float, str]:
-    return _of(view).user_torque, "flange"
+def _user_torque(view: Observed, base: float) -> Read:
+    return _of(view).user_torque, "flange", base
 
 
 def _of(view: Observed) -> Split:
@@ -212,7 +214,7 @@ class Monitor:
             needs = zip(gauges, self._needs, strict=True)
             gauges = [each for each, (wrench, felt) in needs if not ((no_wrench and wrench) or (no_acceleration and felt))]
         for read, gauge in gauges:
-            value, gauge.part = read(view, gauge)
+            value, gauge.part, gauge.high = read(view, gauge.base)
             if not gauge.beyond and gauge.low <= value <= gauge.high:  # as nearly always: without a call
                 gauge.value = value
             elif gauge.judge(value, gauge.part, way):
@@ -223,11 +225,6 @@ class Monitor:
         """The values of the last step against their limits; without those that could not be read."""
         # Written out, for it is asked for in every tick of the sequence: as `Gauge.monitored`.
         return tuple([Monitored(g.name, g.part, g.value, g.low, g.high, g.unit) for _, g in self._gauges if g.part])
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple([gauge.memory for _, gauge in self._gauges])
 
 
 def reference(estimate: Estimate, wrench: Wrench | None) -> EntryValues:

@@ -55,20 +55,15 @@ class SoftLimits:
         self._soft = settings.soft
         self._hard = hard(settings.limits.operation)
         way = settings.limits.operation.flange_displacement
-        self._way = way.max if way.on else math.inf  # of the flange from entry [m]
+        self._way = way.max if way.on else None  # of the flange from entry [m]; None: without a limit
         self._origin = tuple(estimate.p_BF.tolist())
         self._dynamic = DynamicLimits(in_operation(settings), estimate)
-        self._plain = not way.on and self._dynamic.shares.vertical == 1.0  # the same all over and in every direction
+        self._plain = not way.on and self._dynamic.shares.isotropic  # the same all over and in every direction
         self._last: Shares | None = None  # of the tick before
         self._shares: tuple[float, float, float] | None = None  # of tcp, elbow and joints, to which `damping` belongs
         self.damping: Damping | None = None
         self.shares = WHOLE
         self.pushed = self._dynamic.pushed
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._origin, self._dynamic.memory, self.damping, self.shares)
 
     def step(self, estimate: Estimate, force: float = 0.0, torque: float = 0.0) -> None:
         """One tick; its joint values are finite.
@@ -85,22 +80,22 @@ class SoftLimits:
             self._last = shares
             tcp = elbow = shares.speed
             joint = shares.turning
-            if shares.vertical != 1.0:
+            if not shares.isotropic:
                 tcp *= shares.along(*estimate.tcp.tolist()[3:])
                 elbow *= shares.along(*estimate.elbow.tolist()[3:])
-            if self._way < math.inf:
-                rest = self._rest(estimate, shares)
+            if self._way is not None:
+                rest = self._rest(estimate, shares, self._way)
                 tcp, elbow, joint = rest * tcp, rest * elbow, rest * joint
             self._set((tcp, elbow, joint))
 
-    def _rest(self, estimate: Estimate, shares: Shares) -> float:
-        """Share of the speed limits that is left so far on the way out; the way back is free."""
+    def _rest(self, estimate: Estimate, shares: Shares, way: float) -> float:
+        """Share of the speed limits that is left so far on the `way` out [m]; the way back is free."""
         (x, y, z), (x0, y0, z0) = estimate.p_BF.tolist(), self._origin
         x, y, z = x - x0, y - y0, z - z0
         vx, vy, vz = estimate.v_F.tolist()[:3]
         if x * vx + y * vy + z * vz <= 0.0:
             return 1.0
-        gone = math.sqrt(x * x + y * y + z * z) / (self._way * shares.way * shares.along(x, y, z))
+        gone = math.sqrt(x * x + y * y + z * z) / (way * shares.way * shares.along(x, y, z))
         return min(max((1.0 - gone) / (1.0 - self._soft.onset), CRAWL), 1.0)
 
     def _set(self, shares: tuple[float, float, float]) -> None:

@@ -106,11 +106,6 @@ class WrenchMean:
         """F_user is less by so much from the next tick on, axes of B [N, N·m]: the sensor was zeroed on an arm that stands."""
         self._ring -= gone
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.count, self._next, self._ring[: self.count].tobytes())
-
 
 def in_flange(estimate: Estimate, wrench: Wrench) -> Wrench:
     """A wrench in axes of B, in those of the flange now."""

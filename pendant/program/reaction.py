@@ -39,7 +39,7 @@ class Goal(msgspec.Struct, frozen=True):
     quaternion: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
 
 
-def goal(until: Until, contact: Contact, begun: ArmPose, now: ArmPose, R_FT: Rotation = UNTURNED) -> Goal | None:
+def goal(until: Until, contact: Contact, *, begun: ArmPose, now: ArmPose, R_FT: Rotation = UNTURNED) -> Goal | None:
     """Where the arm goes after it has come to rest; None for nowhere.
 
     Args:

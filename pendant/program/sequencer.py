@@ -143,7 +143,7 @@ class Sequencer:
         until: Until | None = getattr(self.program.steps[self.index], "until", None)
         assert contact is not None
         assert until is not None
-        there = goal(until, contact, self._from or now, now, self.R_FT)
+        there = goal(until, contact, begun=self._from or now, now=now, R_FT=self.R_FT)
         if there is None:
             return self._next()
         self._begun += 1
@@ -190,12 +190,6 @@ class Sequencer:
             return True
         self._begin()
         return False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of the sequencer's state, to compare."""
-        own = (self.program, self.state, self.index, self.move, self._begun, self._left)
-        return (*own, self._from, self.contact, self.guided, self._untouched, self.tool_on)
 
     def _drop(self) -> None:
         self.move, self.contact, self.guided = None, None, False

@@ -55,8 +55,3 @@ class Reduced:
             if not abs(speed) <= limits.joint:
                 return Excess("joint speed", joint, abs(speed), limits.joint, "rad/s")
         return None
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.on, self._grace)

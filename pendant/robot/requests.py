@@ -28,11 +28,6 @@ class Calls:
         self.touched = False  # one is in this tick, be it less than a signal
         self.force = 0.0  # change of the force at the flange from the untouched state [N]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._sources.memory, self._leaving, self.hand_off, self.touched, self.force)
-
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         use = settings.signals
@@ -46,9 +41,10 @@ class Calls:
         self,
         estimate: Estimate,
         inputs: Inputs,
+        settings: Settings,
+        *,
         wrench: bool,
         holding: bool,
-        settings: Settings,
         state: ProgramState,
         button: bool,
     ) -> list[Event]:
@@ -57,9 +53,9 @@ class Calls:
         Args:
             estimate: of this tick.
             inputs: of this tick.
+            settings: as they are.
             wrench: the user's wrench is valid and finite.
             holding: the arm is held in its posture.
-            settings: as they are.
             state: of the program.
             button: the pendant's button is held.
         """
@@ -68,8 +64,8 @@ class Calls:
         self.commands = ()
         self.signal = NONE
         if self.feeling:
-            running = state is ProgramState.RUNNING
-            self.signal = self._sources.step(estimate, wrench, joints_ok(estimate), holding, running, use)
+            joints, running = joints_ok(estimate), state is ProgramState.RUNNING
+            self.signal = self._sources.step(estimate, use, wrench_ok=wrench, joints_ok=joints, holding=holding, running=running)
             self.hand_off = self._sources.hand_off(settings.let_go, wrench)
             self.touched = self._sources.touched
             self.force = self._sources.force()

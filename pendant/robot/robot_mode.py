@@ -68,13 +68,6 @@ class Robot:
         self._freed = False  # the law was FREE in the last tick
 
     @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; what every tick finds anew is left out."""
-        modes = (self.mode, self.safety, self._remembered, self.braking, self._freed)
-        still = (self.still.count, self.still.joint, self.still.speed)
-        return (*modes, still, self.stopping.memory, self.sequencer.memory, self.free.memory)
-
-    @property
     def enabled(self) -> bool:
         """No enabling device forbids motion."""
         return enables(self.grip)
@@ -92,30 +85,37 @@ class Robot:
         self.follow(event, events)
 
     def follow(self, event: Event, events: list[Event]) -> None:
-        """Tell an event, and do what the table says of it."""
+        """Tell an event, and become what the table says of it."""
         events.append(event)
-        effect, sequencer = TABLE[event.kind].effect, self.sequencer
+        effect = TABLE[event.kind].effect
         if effect in (Effect.TRY, Effect.ENTER):
-            if sequencer.state is ProgramState.RUNNING and not sequencer.guiding:
+            if self.sequencer.state is ProgramState.RUNNING and not self.sequencer.guiding:
                 self.pause_program(event.tick, events)
             if effect is Effect.ENTER:
-                self._remembered = self.mode
-                self.mode = Mode.FREE_DRIVE
+                self._remembered, self.mode = self.mode, Mode.FREE_DRIVE
         elif effect is Effect.LEAVE:
-            if self.mode is Mode.FREE_DRIVE:
-                self.mode = self._remembered
-            if sequencer.guiding and event.kind in DONE_GUIDING:
-                sequencer.let_go()
-            elif sequencer.guiding:
-                self.pause_program(event.tick, events)
-            if event.kind is Kind.LEFT_ENABLING:
-                self.begin_stop(event.kind)
+            self._leave(event, events)
         elif effect in STOPPING:
-            self.mode = Mode.STOP
-            self.safety = max(self.safety, STOPPING[effect])
-            self.braking = True
-            sequencer.stop()
+            self._stop(event.kind, STOPPING[effect])
+
+    def _leave(self, event: Event, events: list[Event]) -> None:
+        """Free-drive is left, back to the mode that it was entered from."""
+        if self.mode is Mode.FREE_DRIVE:
+            self.mode = self._remembered
+        if self.sequencer.guiding and event.kind in DONE_GUIDING:
+            self.sequencer.let_go()
+        elif self.sequencer.guiding:
+            self.pause_program(event.tick, events)
+        if event.kind is Kind.LEFT_ENABLING:
             self.begin_stop(event.kind)
+
+    def _stop(self, kind: Kind, safety: Safety) -> None:
+        """STOP, in `safety` at least, and the program is given up."""
+        self.mode = Mode.STOP
+        self.safety = max(self.safety, safety)
+        self.braking = True
+        self.sequencer.stop()
+        self.begin_stop(kind)
 
     def begin_stop(self, kind: Kind) -> None:
         """An event of `kind` stops the arm."""

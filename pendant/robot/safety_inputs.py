@@ -25,17 +25,12 @@ class SafetyInputs:
         self._reduced = Reduced()
         self._safeguard = False  # it is open
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare; the robot is compared elsewhere."""
-        return (self._reduced.memory, self._safeguard)
-
     def speed_limits(self, settings: Settings) -> SpeedLimits | None:
         """What holds in REDUCED, None outside of it."""
         return self._reduced.limits(settings.reduced) if self._reduced.on else None
 
     def step(
-        self, estimate: Estimate, commands: tuple[Command, ...], held: bool, settings: Settings, events: list[Event]
+        self, estimate: Estimate, commands: tuple[Command, ...], settings: Settings, events: list[Event], *, held: bool
     ) -> None:
         """The commands of a tick; `held`: the free-drive button is."""
         self._take_levels(estimate.tick, commands, settings, events)
@@ -44,7 +39,7 @@ class SafetyInputs:
             event = Event(Kind.EMERGENCY_STOP, estimate.tick, {"mode": self._robot.mode})
             self._robot.happen(event, settings, events)
         if Command.RESET in commands:
-            self._reset(estimate, stop, held, settings, events)
+            self._reset(estimate, settings, events, stop=stop, held=held)
 
     def watch(self, estimate: Estimate, settings: Settings, events: list[Event]) -> None:
         """Every tick: what is too fast for REDUCED is stopped."""
@@ -79,7 +74,7 @@ class SafetyInputs:
         if robot.safety <= Safety.REDUCED:
             robot.safety = self._resting
 
-    def _reset(self, estimate: Estimate, stop: bool, held: bool, settings: Settings, events: list[Event]) -> None:
+    def _reset(self, estimate: Estimate, settings: Settings, events: list[Event], *, stop: bool, held: bool) -> None:
         robot = self._robot
         if stop:
             robot.refuse(Command.RESET, estimate, "the emergency stop was pressed at the same time", events)

@@ -77,8 +77,3 @@ class Stopping:
         self._category = None
         self._measuring = False
         self.off = False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return tuple(getattr(self, name) for name in self.__slots__)

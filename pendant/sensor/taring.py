@@ -59,11 +59,6 @@ class Taring:
         self._tick = 0  # in which it was followed last
         self._weight: Vector = ORIGIN  # of the load then, axes of F [N]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.zero, self.due, self._count, tuple(self._windows), self._reference, self._tick, self._weight)
-
     def restart(self) -> None:
         """The sensor is out, or the configured load changes: the untouched arm is learned again."""
         self._reference = None

@@ -50,11 +50,6 @@ class Untouched:
         self._steady = 0
         self.change = self._zeros
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (tuple(self._base), tuple(self._smooth), self._count, self._held, self._steady, self.noise)
-
     def step(self, values: Sequence[float]) -> list[float]:
         """One tick of finite values. Returns their change, zeros while it is being learned."""
         base = self._base

@@ -52,9 +52,3 @@ class EnablingDevice:
         if self._spent:
             return Grip.PRESSED
         return Grip.MIDDLE if self._middle.held else Grip.RELEASED
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        sides = [(alive.held, alive.silent) for alive in (self._middle, self._full)]
-        return (*sides, self._spent)

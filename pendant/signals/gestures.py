@@ -14,11 +14,6 @@ class PatternSignal:
         self._length = 0  # ticks since the last change
         self._present = False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._pushes, self._length, self._present)
-
     def step(self, present: bool, use: PushPattern) -> bool:
         """One tick of the push that it is made of. True in the tick in which it is whole."""
         longest = ticks(use.longest)
@@ -53,11 +48,6 @@ class StepSignal:
         self.present = False
         self._rising = LONG_AGO  # ticks since the force was quiet
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.present, self._rising)
-
     def step(self, force: float, quiet: int, use: ForceStep) -> bool:
         """One tick.
 
@@ -82,11 +72,6 @@ class TapSignal:
     def __init__(self) -> None:
         self._length = 0  # ticks since it began, 0: nothing
         self._quiet = 0  # ticks without
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._length, self._quiet)
 
     def step(self, acceleration: float, use: TapSettings) -> bool:
         """One tick; `acceleration` beyond gravity [m/s²]. True in the tick in which it is whole."""
@@ -114,11 +99,6 @@ class TurnSignal:
         self._held: float | None = None  # its angle [rad]
         self._joint = 0.0  # which one it is
         self.present = False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._held, self._joint, self.present)
 
     def step(self, angle: float, holding: bool, use: Turn) -> bool:
         """One tick; `angle` of the joint [rad]."""

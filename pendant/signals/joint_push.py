@@ -30,11 +30,6 @@ class JointPushSignal:
         self._torques = Untouched((1.0,) * n, 2.0, 0.03)
         self.present = self.touched = False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._torques.memory, self.present, self.touched)
-
     def restart(self) -> None:
         """Learn the untouched state afresh."""
         self._torques.restart()

@@ -20,11 +20,6 @@ class PushSignal:
         self.present = False
         self._calm = 0  # ticks for which the torque has been within its limit
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.present, self._calm)
-
     def step(self, change: Sequence[float], R_BF: Rotation, use: PushSettings) -> bool:
         """One tick.
 
@@ -76,11 +71,6 @@ class TwistSignal:
 
     def __init__(self) -> None:
         self.present = False
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.present,)
 
     def step(self, change: Sequence[float], use: Twist) -> bool:
         """One tick of the change of the user's wrench, as `PushSignal.step` takes it."""

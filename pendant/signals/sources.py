@@ -74,12 +74,6 @@ class Sources:
         self._off = 0  # ticks for which no hand is felt
         self._told = 0  # ticks of the push, for FD-6a
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        values = [getattr(self, name) for name in self.__slots__]
-        return tuple([tuple(value) if isinstance(value, list) else getattr(value, "memory", value) for value in values])
-
     def refresh(self, use: SignalSettings) -> None:
         """The settings are new: what a source felt that is off is over, and it begins afresh when it is on again."""
         pushing, by_wrench = _asked(use)
@@ -103,17 +97,17 @@ class Sources:
             self._held_at, self._quiet = [], 0  # nobody looks at postures and motions meanwhile
 
     def step(
-        self, estimate: Estimate, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool, use: SignalSettings
+        self, estimate: Estimate, use: SignalSettings, *, wrench_ok: bool, joints_ok: bool, holding: bool, running: bool
     ) -> Presence:
         """One tick: the first source that is on and present, pendant and inputs aside.
 
         Args:
             estimate: of this tick.
+            use: settings.
             wrench_ok: the user's wrench is valid and finite.
             joints_ok: the joint values are valid and finite.
             holding: the arm is held in its posture; only then is a change a hand's for sure.
             running: a program runs.
-            use: settings.
         """
         self._quiet = self._quiet + 1 if holding else 0
         if joints_ok:
@@ -130,15 +124,15 @@ class Sources:
         if use.joints.on:
             if not joints_ok:
                 self._joints.restart()
-            elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and found is NONE:
+            elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and not found.source:
                 found = Presence("push felt by joints", by_hand=True)
         if use.turn.on and joints_ok and int(use.turn.joint) <= len(self._held_at):
             angle = float(estimate.q[int(use.turn.joint) - 1])
-            if self._turn.step(angle, holding, use.turn) and found is NONE:
+            if self._turn.step(angle, holding, use.turn) and not found.source:
                 found = Presence("turned joint", by_hand=True)
         if use.tap.on and estimate.acceleration_valid:
             acceleration = beyond_gravity(estimate)
-            if math.isfinite(acceleration) and self._tap.step(acceleration, use.tap) and found is NONE:
+            if math.isfinite(acceleration) and self._tap.step(acceleration, use.tap) and not found.source:
                 found = Presence("tap", by_hand=True, whole=True)
         return found if holding else NONE
 
@@ -206,9 +200,9 @@ class Sources:
                 found = Presence("push", by_hand=True)
             if use.pattern.on and self._pattern.step(present, use.pattern):
                 found = Presence("pushes in a row", by_hand=True, whole=True)
-        if use.twist.on and self._twist.step(change, use.twist) and found is NONE:
+        if use.twist.on and self._twist.step(change, use.twist) and not found.source:
             found = Presence("twist", by_hand=True)
-        if use.force_step.on and self._step.step(self.force(), self._quiet, use.force_step) and found is NONE:
+        if use.force_step.on and self._step.step(self.force(), self._quiet, use.force_step) and not found.source:
             found = Presence("force step", by_hand=True)
         return found
 

@@ -23,11 +23,6 @@ class Stored:
         self._states: deque[tuple[int, EntryValues]] = deque(maxlen=OLDEST // EVERY + 1)
         self._wrench = False  # the flange sensor was valid in all of them
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._wrench, *self._states)
-
     def due(self, tick: int) -> bool:
         """The last state that was kept is old enough to keep another one."""
         return not self._states or tick - self._states[-1][0] >= EVERY

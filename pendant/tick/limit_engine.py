@@ -82,8 +82,3 @@ class Gauge:
     def monitored(self) -> Monitored:
         """The last value and its limits, to draw."""
         return Monitored(self.name, self.part, self.value, self.low, self.high, self.unit)
-
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.name, self.low, self.high, self.stop, self.value, self.part, self._allowed, self.beyond)

@@ -47,11 +47,6 @@ class PayloadWizard:
         self.left = 0
         self.progress = IDLE
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._postures, self._halves.tobytes(), self._total, self.left, self.progress)
-
     def clear(self) -> None:
         """Forget all postures: the tool is another, or the user begins again."""
         self._postures = ()

@@ -43,21 +43,16 @@ class Tooling:
         self._age = 0  # ticks of it that are over
         self._from = 0.0  # mass beyond the tool, before [kg]
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self.fitting, self.tools, self.changing, self._ramp, self._age, self._from, self.wizard.memory)
-
-    def step(self, estimate: Estimate, inputs: Inputs, mode: Mode, phase: Phase, still: bool, use: ToolUse) -> list[Event]:
+    def step(self, estimate: Estimate, inputs: Inputs, use: ToolUse, *, mode: Mode, phase: Phase, still: bool) -> list[Event]:
         """One tick.
 
         Args:
             estimate: of this tick.
             inputs: of this tick.
+            use: settings.
             mode: of the robot. Nothing is changed while it moves by hand or by program.
             phase: of free-drive. Nothing is changed or measured while it is tried, either.
             still: the arm stands still.
-            use: settings.
         """
         steered = not WIZARD.isdisjoint(inputs.commands)
         if not (inputs.tool or inputs.load or inputs.tools or steered or self.changing or self.wizard.left):
@@ -73,7 +68,8 @@ class Tooling:
         if inputs.load is not None:
             events += self._configure(inputs.load, why_not, estimate.tick, use)
         if steered:
-            events += self._steer(estimate, inputs.commands, why_not, _obstacle(estimate, phase, still), use)
+            obstacle = _obstacle(estimate, phase, still)
+            events += self._steer(estimate, inputs.commands, use, why_not=why_not, obstacle=obstacle)
         elif self.wizard.left:
             events += self.wizard.step(estimate, _obstacle(estimate, phase, still), self._known)
         if self.changing:
@@ -85,7 +81,9 @@ class Tooling:
         tool = self.fitting.tool
         return (self._plate, Load(mass=tool.mass, com=tool.com))
 
-    def _steer(self, estimate: Estimate, commands: tuple[Command, ...], why_not: str, obstacle: str, use: ToolUse) -> list[Event]:
+    def _steer(
+        self, estimate: Estimate, commands: tuple[Command, ...], use: ToolUse, *, why_not: str, obstacle: str
+    ) -> list[Event]:
         """The wizard's controls; clearing wins."""
         if Command.WIZARD_CLEAR in commands:
             self.wizard.clear()

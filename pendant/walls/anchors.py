@@ -58,6 +58,7 @@ class Anchor:
         "_wall",
         "local",
     )
+    NOT_STATE = ("_decide",)  # it is the method of the wall's policy
 
     def __init__(self, wall: Wall, local: Vector, averaging_ticks: int) -> None:
         self.local = local  # the anchor in the wall's reference [m]

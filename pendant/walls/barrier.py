@@ -101,6 +101,7 @@ class Barrier:
         "_stage",
         "_turn",
     )
+    NOT_STATE = ("_field",)  # it is made of the border's shape alone
 
     def __init__(self, border: AnyBorder, stage: Stage) -> None:
         self._border = border

@@ -74,11 +74,6 @@ class Containment:
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
 
-    @property
-    def memory(self) -> tuple[object, ...]:
-        """All of its state, to compare."""
-        return (self._reading, self.places())
-
     def begin(self, start: Start, walls: WallSettings) -> None:
         """The activation period or the sequence begins."""
         if start is Start.ACTIVATION or self._enclosure is None:
@@ -154,7 +149,7 @@ class Containment:
         borders = tuple([_switched(border, walls) for border in borders])
         if not walls.on or not borders:
             return None
-        self._parts = tuple({border.part for border in borders})
+        self._parts = tuple(sorted({border.part for border in borders}))
         self._turned = tuple({border.reference for border in borders} & {"flange", "tcp"})
         self._measured = any(
             border.size is not None or (isinstance(border, Wall) and border.safety_dependence is not None) for border in borders

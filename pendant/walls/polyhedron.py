@@ -125,17 +125,18 @@ def _faces(vertices: tuple[Vector, ...], faces: Faces) -> list[Face]:
         if math.dist(normals[number], normals[other]) < FLAT:
             old, new = group[other], group[number]
             group = [new if entry == old else entry for entry in group]
-    return [_joined(vertices, normals[root], group, root, owner) for root in sorted(set(group))]
+    return [_joined(vertices, normals[root], group=group, root=root, owner=owner) for root in sorted(set(group))]
 
 
 def _joined(
     vertices: tuple[Vector, ...],
     normal: Vector,
+    *,
     group: list[int],
     root: int,
     owner: dict[tuple[int, int], int],
 ) -> Face:
-    """The face made of all that belong to `root`: its edges are those not shared within."""
+    """The face made of all whose entry in `group` is `root`: its edges are those not shared within, by the `owner` of each."""
     edges: list[Edge] = []
     corners: set[int] = set()
     for (start, end), number in owner.items():

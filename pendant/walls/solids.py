@@ -67,7 +67,7 @@ def cylinder(radius: float, height: float) -> Field:
         else:
             distance = math.hypot(out, up)
             along, across = up / distance, out / distance
-        return _round(x, y, rho, distance, across, math.copysign(along, z))
+        return _round(x, y, rho, distance=distance, across=across, along=math.copysign(along, z))
 
     return field
 
@@ -84,22 +84,22 @@ def cone(radius: float, height: float) -> Field:
         if side <= 0.0 and base <= 0.0:
             if base >= side:
                 return base, 0.0, 0.0, -1.0
-            return _round(x, y, rho, side, nr, nz)
+            return _round(x, y, rho, distance=side, across=nr, along=nz)
         if along < 0.0:
             dr, dz = rho, z - half  # from the tip
         elif along <= slant and side > 0.0:
-            return _round(x, y, rho, side, nr, nz)
+            return _round(x, y, rho, distance=side, across=nr, along=nz)
         elif rho <= radius:
             return base, 0.0, 0.0, -1.0
         else:
             dr, dz = rho - radius, z + half  # from the rim
         distance = math.hypot(dr, dz)
-        return _round(x, y, rho, distance, dr / distance, dz / distance)
+        return _round(x, y, rho, distance=distance, across=dr / distance, along=dz / distance)
 
     return field
 
 
-def _round(x: float, y: float, rho: float, distance: float, across: float, along: float) -> Signed:
+def _round(x: float, y: float, rho: float, *, distance: float, across: float, along: float) -> Signed:
     """The half-plane's gradient (across, along) turned about z to the point."""
     if rho == 0.0:
         return distance, across, 0.0, along

@@ -117,7 +117,7 @@ class FreeDriveLaw:
         if decision.balance is not None:
             self._balancing.add(estimate, decision.balance, jacobian, torque)
             return torque
-        if decision.gain <= 0.0 and decision.phase is Phase.SEQUENCE:
+        if not decision.amplified and decision.phase is Phase.SEQUENCE:
             return torque
         self.singularity.update(jacobian)
         locks = decision.locks
@@ -132,7 +132,7 @@ class FreeDriveLaw:
             self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian, torque)
             help = self._damping.help
         hand = self._hand
-        if estimate.wrench_valid and decision.gain > 0.0:
+        if estimate.wrench_valid and decision.amplified:
             cap, gain = decision.force_cap, help * decision.gain
             _ask(estimate.F_user, decision.baseline, estimate.R_BF, jacobian, cap, gain, hand, torque)
             if locks is not None:

@@ -15,7 +15,7 @@ GRAVITY = np.array([0.0, 0.0, -9.81])
 
 
 def limit(use: ContactUse = USE, mass: float = 1.0, effective_mass: float = 2.0) -> ContactLimits:
-    return limits(use, mass, effective_mass, 0.0, Mode.RUN)
+    return limits(use, Mode.RUN, mass=mass, effective_mass=effective_mass, speed=0.0)
 
 
 def signals(

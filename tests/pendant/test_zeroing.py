@@ -228,11 +228,11 @@ def test_postures_of_the_wizard_are_as_if_measured_with_the_new_zero() -> None:
     robot = Robot()
     robot.run(1, command(Command.WIZARD_MEASURE)).run(READY)
     wizard = robot.supervisor._tooling.wizard
-    (before,) = wizard.memory[0]  # type: ignore[misc]
+    (before,) = wizard._postures
     assert robot.zero() == ""
-    (after,) = wizard.memory[0]  # type: ignore[misc]
-    assert np.subtract(after.force, before.force) == pytest.approx(OFFSET[:3])  # type: ignore[attr-defined]
-    assert np.subtract(after.torque, before.torque) == pytest.approx(OFFSET[3:])  # type: ignore[attr-defined]
+    (after,) = wizard._postures
+    assert np.subtract(after.force, before.force) == pytest.approx(OFFSET[:3])
+    assert np.subtract(after.torque, before.torque) == pytest.approx(OFFSET[3:])
 
 
 def run_program(*steps: Wait | ZeroSensor | JointMove | ApplyForce | SwitchTool) -> Robot:

@@ -11,17 +11,19 @@ PAIR = 2.0**0.5
 
 
 def test_the_ratio_follows_payload_and_posture() -> None:
-    assert limits(USE, 2.0, 10.0, 0.0, Mode.RUN).ratio == pytest.approx(1.0)  # half of the payload
-    assert limits(USE, 0.0, 10.0, 0.0, Mode.RUN).ratio == pytest.approx(0.15)  # half of the least one
-    assert limits(USE, 5.0, 1.0, 0.0, Mode.RUN).ratio == pytest.approx(0.3)  # 0.3 of the arm's effective mass
+    assert limits(USE, Mode.RUN, mass=2.0, effective_mass=10.0, speed=0.0).ratio == pytest.approx(1.0)  # half of the payload
+    assert limits(USE, Mode.RUN, mass=0.0, effective_mass=10.0, speed=0.0).ratio == pytest.approx(0.15)  # half of the least one
+    assert limits(USE, Mode.RUN, mass=5.0, effective_mass=1.0, speed=0.0).ratio == pytest.approx(
+        0.3
+    )  # 0.3 of the arm's effective mass
 
 
 def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
-    base = limits(USE, 1.0, 2.0, 0.5, Mode.RUN)
+    base = limits(USE, Mode.RUN, mass=1.0, effective_mass=2.0, speed=0.5)
     sensitive = msgspec.structs.replace(USE, sensitivity=2.0)
-    gentle = limits(sensitive, 1.0, 2.0, 0.5, Mode.RUN)
-    fast = limits(msgspec.structs.replace(USE, speed_share=1.0), 1.0, 2.0, 0.5, Mode.RUN)
-    guided, both = (limits(each, 1.0, 2.0, 0.5, Mode.FREE_DRIVE) for each in (USE, sensitive))
+    gentle = limits(sensitive, Mode.RUN, mass=1.0, effective_mass=2.0, speed=0.5)
+    fast = limits(msgspec.structs.replace(USE, speed_share=1.0), Mode.RUN, mass=1.0, effective_mass=2.0, speed=0.5)
+    guided, both = (limits(each, Mode.FREE_DRIVE, mass=1.0, effective_mass=2.0, speed=0.5) for each in (USE, sensitive))
     for other, factor in ((gentle, 0.5), (fast, 1.5), (guided, 3.0), (both, 1.5)):
         assert other.slow_force == pytest.approx(factor * base.slow_force)
         assert other.ratio == pytest.approx(factor * base.ratio)
@@ -35,14 +37,17 @@ def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
 
 def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
     """The mean of two gyros of 0.003 rad/s, its difference smoothed at 150 Hz: 1.2 rad/s²; a point feels two axes (CD-0)."""
-    near, far = limits(USE, 2.0, 2.0, 0.0, Mode.RUN), limits(USE, 2.0, 2.0, 0.0, Mode.RUN, lever=0.1)
+    near, far = (
+        limits(USE, Mode.RUN, mass=2.0, effective_mass=2.0, speed=0.0),
+        limits(USE, Mode.RUN, mass=2.0, effective_mass=2.0, speed=0.0, lever=0.1),
+    )
     assert near.acceleration_variance == pytest.approx(0.1**2)
     assert far.acceleration_variance == pytest.approx(0.1**2 + 2.0 / 3.0 * 0.12**2)
     assert far.noise_acceleration_sq == pytest.approx(18.0 * far.acceleration_variance)
 
 
 def test_a_link_has_its_own_thresholds() -> None:
-    on_link = limits(USE, 0.0, 2.0, 0.0, Mode.RUN, True)
+    on_link = limits(USE, Mode.RUN, mass=0.0, effective_mass=2.0, speed=0.0, link=True)
     assert (on_link.slow_force, on_link.payload_margin) == (60.0, 20.0)
     assert on_link.clamping == 24.0  # 4 kg beyond what a wrong model may explain
     assert on_link.force_variance == pytest.approx(9.0)

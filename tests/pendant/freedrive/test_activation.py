@@ -21,6 +21,7 @@ from pendant.walls.settings import WallSettings
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_sequence import around
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
+from tests.pendant.telling import whole_transition
 
 PUSH = Presence("push", by_hand=True)
 
@@ -54,7 +55,7 @@ class Alone:
         still.count = rest
         self.gate.sense(signal is BUTTON, signal)
         now = replace(around(value or estimate(), self.tick), still=still, **changes)
-        return self.activation.step(now, self.settings, self.gate)
+        return whole_transition(self.activation.step(now, self.settings, self.gate), self.tick)
 
     def run(self, count: int, signal: Presence, **changes: object) -> list[Event]:
         return [event for _ in range(count) for event in self.step(signal, **changes)]  # type: ignore[arg-type]

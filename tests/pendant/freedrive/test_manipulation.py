@@ -12,6 +12,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.limit_engine import Excess
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Wrench
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
@@ -166,12 +167,12 @@ def test_any_number_of_joints() -> None:
     assert excess == Excess("joint external torque", "joint 7", 12.0, 8.0, "N·m")
 
 
-def test_its_memory_tells_all_of_it() -> None:
+def test_its_state_tells_all_of_it() -> None:
     one, other = maintained(), maintained()
     see(one, estimate(force=[1.0, 0.0, 0.5]))
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
     see(other, estimate(force=[1.0, 0.0, 0.5]))
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
 
 
 @pytest.mark.parametrize(("share", "force", "torque"), [(0.0, 8.0, 8.0), (0.5, 8.0 + 0.5 * 3.0 * 9.81, 8.0 + 0.5 * 40.0)])
@@ -193,4 +194,5 @@ def test_a_period_that_begins_anew_is_as_one_that_begins() -> None:
     for _ in range(20):
         see(watch, pushed)
     watch.anew(pushed, felt(pushed))
-    assert [watch.memory[k] for k in (0, 2)] == [maintained(pushed).memory[k] for k in (0, 2)]
+    fresh = maintained(pushed)
+    assert (watch._since, watch._slow) == (fresh._since, fresh._slow)

@@ -13,8 +13,10 @@ from pendant.signals.sources import BUTTON, NONE
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
+from tests.pendant.telling import whole_transition
 
 ANEW = Inputs(commands=(Command.RESTART_PERIOD,))
 STILL, MOVING, PUSHED = estimate(), estimate(qd=0.5), estimate(force=20.0)
@@ -34,12 +36,15 @@ class Alone:
         self.settings = apply(Settings(), {name.replace("__", "."): change for name, change in changes.items()})
         self.tick, self.gate, self.held = 0, Gate(), held
         self.gate.sense(held, BUTTON if held else NONE)
-        self.periods = Periods(held, self._around(value), self.settings, tuple(value.F_user.tolist()), JOINTS)
+        wrench = tuple(value.F_user.tolist())
+        self.periods = Periods(self._around(value), self.settings, held=held, wrench=wrench, joints=JOINTS)
 
     def step(self, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
         self.tick += 1
         self.gate.sense(self.held, BUTTON if self.held else NONE)
-        return self.periods.step(self._around(value), self.settings, self.gate, user, tuple(value.F_user.tolist()))
+        wrench = tuple(value.F_user.tolist())
+        happened = self.periods.step(self._around(value), self.settings, self.gate, user=user, wrench=wrench)
+        return whole_transition(happened, self.tick)
 
     def run(self, count: int, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
         return [event for _ in range(count) for event in self.step(value, user)]
@@ -334,10 +339,10 @@ def test_the_press_that_entered_may_be_short_without_leaving() -> None:
 
 def test_held_for_long_suspends_everything() -> None:
     alone = Alone(True)
-    entered = alone.periods.memory
+    entered = state_of(alone.periods)
     assert alone.run(2000) == []
     assert (alone.periods.phase, alone.periods.remaining, alone.periods.waits) == (Phase.HELD, None, False)
-    assert alone.periods.memory == entered
+    assert state_of(alone.periods) == entered
     assert pressed(alone, 0) == []
     assert (alone.periods.phase, alone.periods.waits) == (Phase.PERIOD, True)
 

@@ -16,6 +16,7 @@ from pendant.limits.parameters import reference
 from pendant.limits.validity import Stillness, WrenchMean
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
 
@@ -55,9 +56,9 @@ def sequence(start: Estimate, stored: Estimate | None = None, **changes: float |
     return Sequence(
         around(start),
         settings,
-        JOINTS,
-        (100.0,) * 6,
-        None if stored is None else reference(stored, tuple(stored.F_user.tolist())),
+        joints=JOINTS,
+        rated=(100.0,) * 6,
+        stored=None if stored is None else reference(stored, tuple(stored.F_user.tolist())),
     )
 
 
@@ -87,8 +88,8 @@ def test_the_hands_force_and_torque_lower_the_limits_by_their_whole_sizes() -> N
 
 def test_what_it_is_compared_with_is_part_of_its_state() -> None:
     states = [None, estimate(), estimate(position=0.001)]
-    memories = [sequence(estimate(), stored).memory for stored in states]
-    assert memories == [sequence(estimate(), stored).memory for stored in states]
+    memories = [state_of(sequence(estimate(), stored)) for stored in states]
+    assert memories == [state_of(sequence(estimate(), stored)) for stored in states]
     assert all(one != other for one, other in combinations(memories, 2))
 
 
@@ -97,7 +98,8 @@ def test_payload_comes_first_of_several_reasons(force: float, way: str) -> None:
     """FD-11: as what explains them best."""
     begun = sequence(estimate())
     now = around(estimate(position=0.003, speed=0.1, force=[0.0, 0.0, force], torque=[0.0, 1.6, 0.0]), 50)
-    events = begun.reasons(begun.check(now), now, Settings())
+    beyond = begun.check(now)
+    events = [*begun.reasons(beyond, now), begun.refusal(beyond, now, Settings())]
     assert [event.values["parameter"] for event in events[:-1]] == ["flange displacement", "flange speed", "payload-like torque"]
     values = {
         "mass": pytest.approx(-force / 9.81, abs=1e-12),

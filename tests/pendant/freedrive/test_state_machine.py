@@ -13,6 +13,7 @@ from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -29,7 +30,7 @@ class Bench:
 
     def __init__(self, **changes: float | bool) -> None:
         names = {name.replace("__", "."): value for name, value in {"sequence__on": False, **changes}.items()}
-        self.supervisor = Supervisor(apply(Settings(), names), 6, JOINTS)
+        self.supervisor = Supervisor(apply(Settings(), names), 6, joints=JOINTS)
         self.tick = -1
         self.last: Decision
         self.events: list[Event] = []
@@ -199,11 +200,11 @@ def test_periods_are_published_together_and_only_while_they_run() -> None:
 
 def test_where_nothing_was_begun_or_refused_a_payload_that_changes_or_a_stop_leaves_free_drive_as_it_is() -> None:
     free = Bench().supervisor._free
-    before = free.memory
+    before = state_of(free)
     free.forget()
-    assert free.memory == before
+    assert state_of(free) == before
     free.stop(Kind.DEACTIVATED, Settings())
-    assert free.memory == before
+    assert state_of(free) == before
 
 
 def test_a_force_that_was_there_at_entry_without_the_button_is_no_manipulation() -> None:

@@ -23,6 +23,7 @@ from pendant.supervisor import Supervisor
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import Vector, Wrench
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -41,7 +42,7 @@ class Free:
     def __init__(self, baseline: tuple[float, ...] = ZEROS, held: float = 0.0, **changes: float | bool) -> None:
         settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
         self.hand = UserForce(estimate(), baseline)
-        self.operation, self.baseline = EndingWatch(estimate(), settings, JOINTS, RATED, held), baseline
+        self.operation, self.baseline = EndingWatch(estimate(), settings, joints=JOINTS, rated=RATED, held=held), baseline
         self.ticks, self.slack = 0, SURE
 
     def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False, drifted: Wrench = ZEROS) -> Ending | None:
@@ -49,7 +50,7 @@ class Free:
         self.ticks += 1
         self.hand.step(value, use_wrench)
         baseline = tuple([a + b for a, b in zip(self.baseline, drifted, strict=True)]) if use_wrench else None
-        return self.operation.step(value, self.hand, baseline, driven, self.slack)
+        return self.operation.step(value, self.hand, baseline=baseline, driven=driven, slack=self.slack)
 
     def until(self, values: Iterable[Estimate], **how: bool) -> Ending | None:
         return next((ending for value in values if (ending := self.see(value, **how)) is not None), None)
@@ -131,7 +132,7 @@ def test_a_hand_has_its_least_force_in_whatever_direction(user: Vector, moved: b
     """FD-19: at it, 3 N, the hand moves the arm."""
     free = Free(unexplained__force=3.0)
     free.hand.user = user
-    endings = [free.operation.step(estimate(speed=0.03), free.hand, ZEROS, False) for _ in range(151)]
+    endings = [free.operation.step(estimate(speed=0.03), free.hand, baseline=ZEROS, driven=False) for _ in range(151)]
     assert (endings[-1] is None) is moved
 
 
@@ -192,9 +193,9 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
 
 def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
     settings = Settings()
-    operation = EndingWatch(elbow(5.0), settings, JOINTS, RATED, 0.0)
+    operation = EndingWatch(elbow(5.0), settings, joints=JOINTS, rated=RATED, held=0.0)
     hand = UserForce(elbow(5.0), ZEROS)
-    assert any(operation.step(elbow(5.0), hand, ZEROS, False) for _ in range(151))
+    assert any(operation.step(elbow(5.0), hand, baseline=ZEROS, driven=False) for _ in range(151))
 
 
 def test_motion_can_be_switched_off() -> None:
@@ -313,11 +314,11 @@ def test_what_drops_is_reckoned_along_what_the_load_needs_in_the_flanges_axes() 
 
     baseline = (*(R_BF @ offset), 0.7, 0.8, 0.9)
     in_flange = (*offset.tolist(), 0.0, 0.0, 0.0)
-    operation = EndingWatch(felt(hand), Settings(), JOINTS, RATED, 0.0)
+    operation = EndingWatch(felt(hand), Settings(), joints=JOINTS, rated=RATED, held=0.0)
     watched = UserForce(felt(hand), baseline)
-    endings = [operation.step(felt(hand), watched, in_flange, False) for _ in range(20)]
+    endings = [operation.step(felt(hand), watched, baseline=in_flange, driven=False) for _ in range(20)]
     missing = 0.9 * needs + np.array([0.4, 0.3, -0.2])
-    endings += [operation.step(felt(missing), watched, in_flange, False) for _ in range(1 + CERTAIN)]
+    endings += [operation.step(felt(missing), watched, baseline=in_flange, driven=False) for _ in range(1 + CERTAIN)]
     share = missing @ needs / (needs @ needs)
     values = {"mass": pytest.approx(-2.0 * share), "force": pytest.approx(2.0 * GRAVITY * share)}
     assert endings == [*[None] * (19 + 1 + CERTAIN), Ending(Kind.STOPPED_PAYLOAD, values)]
@@ -510,7 +511,7 @@ class Robot:
     """A supervisor in free-drive, entered at q = 0 with 2 kg."""
 
     def __init__(self) -> None:
-        self.supervisor = Supervisor(Settings(), 6, JOINTS, RATED)
+        self.supervisor = Supervisor(Settings(), 6, joints=JOINTS, rated=RATED)
         self.events: list[Event] = []
         self.tick = -1
         hold = Inputs(held=frozenset({Button.FREE_DRIVE}))
@@ -556,9 +557,9 @@ def test_an_involuntary_leaving_tells_the_way_back_and_one_that_was_asked_for_do
 
 def test_equal_histories_are_equal() -> None:
     one, two = Free(), Free()
-    assert one.operation.memory == two.operation.memory
+    assert state_of(one.operation) == state_of(two.operation)
     one.see(loaded(force=[0.0, 0.0, 3.0]))
-    assert one.operation.memory != two.operation.memory
+    assert state_of(one.operation) != state_of(two.operation)
 
 
 FULL, LOW, HIGH = 2.0 * G, 14.0**2, 25.0**2

@@ -23,7 +23,7 @@ from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder, Area, Reaction
 from pendant.walls.shapes import HalfSpace
 from tests.pendant.estimates import estimate
-from tests.pendant.telling import whole
+from tests.pendant.telling import whole_transition
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 RATED, RANGES = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0), (3.0,) * 6
@@ -41,7 +41,15 @@ class Free:
         self.zero, self.mean, self.payload, self.tick = Zero(), WrenchMean(), payload, 0
         self.zero.begin(estimate(), sensor, self.mean)
         containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
-        self.arm = FreeArm(self.around(estimate()), self.settings, self.zero, containment, zones, JOINTS, RATED)
+        self.arm = FreeArm(
+            self.around(estimate()),
+            self.settings,
+            zero=self.zero,
+            containment=containment,
+            zones=zones,
+            joints=JOINTS,
+            rated=RATED,
+        )
 
     def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
         value.tick = self.tick
@@ -50,7 +58,7 @@ class Free:
 
     def see(self, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
         self.tick += 1
-        return whole(self.arm.step(self.around(value, shaken), self.settings, waits), self.tick)
+        return whole_transition(self.arm.step(self.around(value, shaken), self.settings, waits), self.tick)
 
     def during(self, ticks: int, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
         return [event for _ in range(ticks) for event in self.see(value, waits, shaken)]
@@ -186,12 +194,12 @@ def test_what_moves_the_arm_in_place_of_a_hand_is_known_each_by_itself(by: str) 
 @pytest.mark.parametrize(("share", "doubtful"), [(0.4, False), (0.7, True)])
 def test_half_of_the_time_that_nobody_leads_it_is_doubtful(share: float, doubtful: bool) -> None:
     free = Free()
-    value = estimate(speed=0.05, qd=TURNS, friction=RUBS)
+    value = estimate(speed=0.05, qd=TRANSITIONS, friction=RUBS)
     free.during(round(share * AFTER), value)
     assert free.arm.doubtful is doubtful
 
 
-TURNS, RUBS = [0.0, 0.0, 0.4, 0.0, 0.0, 0.0], [0.0, 0.0, 8.0, 0.0, 0.0, 0.0]
+TRANSITIONS, RUBS = [0.0, 0.0, 0.4, 0.0, 0.0, 0.0], [0.0, 0.0, 8.0, 0.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize("on", [True, False])
@@ -202,7 +210,7 @@ def test_the_tether_follows_who_pays_for_the_motion(on: bool) -> None:
     for tick in range(1, 400):
         place = [0.2 * TICK * tick, 0.0, 0.0]
         torques = [0.0, 0.0, 1.5, 0.0, 0.0, 0.0]
-        told += free.see(estimate(position=place, speed=0.2, qd=TURNS, friction=RUBS, tau_ext=torques))
+        told += free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_ext=torques))
     assert free.arm.user == ORIGIN
     assert [event.kind for event in told] == ([] if on else [Kind.WALL_REACHED])
 

@@ -23,6 +23,7 @@ from pendant.inputs import NOTHING
 from pendant.limits.validity import WrenchMean
 from pendant.tick.modes import Phase
 from pendant.tick.pose import ORIGIN
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
@@ -52,7 +53,7 @@ def test_a_mean_is_wanted_once_a_window() -> None:
     drift = BiasFollower()
     wanted = [drift.due() for _ in range(151)]
     assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
-    assert drift.memory != BiasFollower().memory
+    assert state_of(drift) != state_of(BiasFollower())
 
 
 def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
@@ -75,7 +76,7 @@ def test_only_the_last_windows_are_given_back() -> None:
     gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
     for each in gone:
         drift.keep(each)
-    assert drift.memory != BiasFollower().memory
+    assert state_of(drift) != state_of(BiasFollower())
     drift.restart()
     assert drift.give_back() == gone[-BEGINS:]
     assert drift.give_back() == []
@@ -216,7 +217,7 @@ def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
     zero.begin(estimate(), True, mean)
     assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     zero.leave()
-    assert zero.memory == Zero().memory
+    assert state_of(zero) == state_of(Zero())
 
 
 @pytest.mark.parametrize("axis", range(3))

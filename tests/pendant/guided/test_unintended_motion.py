@@ -13,6 +13,7 @@ from pendant.guided.work import ASKED, LEFT
 from pendant.limits.parameters import reference
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
@@ -43,7 +44,7 @@ class Bench:
     def see(self, value: Estimate, driven: bool = False) -> Values | None:
         self.ticks += 1
         self.hand.step(value, self.sensor)
-        return self.alone.step(value, self.hand, self.sensor, driven)
+        return self.alone.step(value, self.hand, use_wrench=self.sensor, driven=driven)
 
     def until(self, values: Iterable[Estimate]) -> Values | None:
         return next((told for value in values if (told := self.see(value)) is not None), None)
@@ -51,7 +52,7 @@ class Bench:
     def held(self, value: Estimate) -> None:
         """A hand at the flange for one tick, which the force tells as it is."""
         self.hand.user = (0.0, 0.0, 40.0)
-        assert self.alone.step(value, self.hand, self.sensor, False) is None
+        assert self.alone.step(value, self.hand, use_wrench=self.sensor, driven=False) is None
         self.hand.user = (0.0, 0.0, 0.0)
 
 
@@ -148,7 +149,7 @@ def test_the_work_counts_from_where_the_arm_rested() -> None:
 def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     bench = Bench()
     bench.hand.usual = (0.0, 0.0, -CARRIED)
-    told = (bench.alone.step(value, bench.hand, True, False) for value in creep(400, turns=1.0, felt=5.0))
+    told = (bench.alone.step(value, bench.hand, use_wrench=True, driven=False) for value in creep(400, turns=1.0, felt=5.0))
     assert any(values is not None for values in told)
 
 
@@ -174,18 +175,18 @@ def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(se
     bench = Bench(sensor)
     bench.held(at(0.0, 0.1))
     bench.hand.usual = (carried, 0.0, 0.0)
-    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, sensor, False) for _ in range(151)]
+    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=sensor, driven=False) for _ in range(151)]
     assert told[:150] == [None] * 150
     assert told[150] is not None
 
 
-def test_its_memory_tells_all_of_it() -> None:
+def test_its_state_tells_all_of_it() -> None:
     one, other = Bench(), Bench()
     for value in (at(0.0, 0.1), at(0.001, 0.015, turns=1.0, felt=1.0)):
         one.see(value)
-        assert one.alone.memory != other.alone.memory
+        assert state_of(one.alone) != state_of(other.alone)
         other.see(value)
-        assert one.alone.memory == other.alone.memory
+        assert state_of(one.alone) == state_of(other.alone)
 
 
 def test_who_leads_a_link_is_known_and_half_of_the_time_without_is_doubtful() -> None:
@@ -224,7 +225,7 @@ def test_a_force_that_may_be_drift_is_no_hand_unless_it_works(force: float, hand
     bench = Bench()
     value = at(0.0, 0.1, turns=1.0)
     bench.hand.user = (0.0, force, 0.0)
-    told = [bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2)) for _ in range(151)]
+    told = [bench.alone.step(value, bench.hand, use_wrench=True, driven=False, slack=Slack(2.0, 0.2)) for _ in range(151)]
     assert (told[-1] is None) is hand
 
 
@@ -236,7 +237,10 @@ def test_a_light_hand_along_gravity_works_at_the_flange(slack: float, told: bool
     bench.hand.usual = (2.0, 0.0, 0.0)
     value = at(0.0, 0.1, turns=1.0)
     drifts = Slack(slack, 0.1 * slack)
-    assert any(bench.alone.step(value, bench.hand, True, False, drifts) is not None for _ in range(400)) is told
+    assert (
+        any(bench.alone.step(value, bench.hand, use_wrench=True, driven=False, slack=drifts) is not None for _ in range(400))
+        is told
+    )
 
 
 @pytest.mark.parametrize(("turn", "told"), [(0.0, True), (2.0, False), (-2.0, True)])
@@ -247,7 +251,13 @@ def test_so_does_its_torque(turn: float, told: bool) -> None:
     value = at(0.0, 0.1, turns=1.0)
     value.v_F[3:] = [0.0, 0.0, turn]
     torque, slack = (0.0, 0.0, 1.0), Slack(2.0, 0.2)
-    assert any(bench.alone.step(value, bench.hand, True, False, slack, torque) is not None for _ in range(400)) is told
+    assert (
+        any(
+            bench.alone.step(value, bench.hand, use_wrench=True, driven=False, slack=slack, torque=torque) is not None
+            for _ in range(400)
+        )
+        is told
+    )
 
 
 @pytest.mark.parametrize(("turn", "led"), [(0.199, False), (0.21, True)])
@@ -255,7 +265,7 @@ def test_of_a_torque_what_may_be_drift_pays_for_nothing(turn: float, led: bool) 
     bench = Bench()
     value = at(0.0, 0.1, turns=1.0)
     value.v_F[3:] = [0.0, 0.0, 1000.0]
-    bench.alone.step(value, bench.hand, True, False, Slack(2.0, 0.2), (0.0, 0.0, turn))
+    bench.alone.step(value, bench.hand, use_wrench=True, driven=False, slack=Slack(2.0, 0.2), torque=(0.0, 0.0, turn))
     assert bench.alone.led is led
 
 
@@ -263,9 +273,9 @@ def test_of_a_torque_what_may_be_drift_pays_for_nothing(turn: float, led: bool) 
 def test_who_is_felt_leads_the_arm_where_the_motion_is_paid_for(pays: float) -> None:
     bench = Bench()
     bench.hand.user = (0.0, 0.0, 40.0)
-    bench.alone.step(at(0.0, 0.1, turns=1.0, felt=pays * PAYS), bench.hand, True, False)
+    bench.alone.step(at(0.0, 0.1, turns=1.0, felt=pays * PAYS), bench.hand, use_wrench=True, driven=False)
     assert bench.alone.led is (pays > 1.0)
-    bench.alone.step(at(0.0, 0.0, turns=1.0, felt=2.0 * PAYS), bench.hand, True, False)
+    bench.alone.step(at(0.0, 0.0, turns=1.0, felt=2.0 * PAYS), bench.hand, use_wrench=True, driven=False)
     assert not bench.alone.led, "it does not move"
 
 
@@ -281,7 +291,7 @@ def test_what_was_paid_while_a_hand_was_felt_does_not_count_later() -> None:
     bench = Bench()
     bench.hand.user = (0.0, 0.0, 40.0)
     for _ in range(1000):
-        bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, True, False)
+        bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, use_wrench=True, driven=False)
     bench.hand.user = (0.0, 0.0, 0.0)
     assert bench.until([at(0.0, 0.1, turns=1.0)] * 150) is None, "nor what was owed"
     assert bench.see(at(0.0, 0.1, turns=1.0)) is not None
@@ -292,7 +302,7 @@ def test_who_leads_it_slowly_is_known_from_where_it_rested(felt: float, led: boo
     bench = Bench()
     assert bench.until(creep(20, turns=1.0, felt=felt)) is None
     assert bench.alone.led is led
-    bench.alone.step(creep(21, turns=1.0, felt=felt)[-1], bench.hand, True, True)
+    bench.alone.step(creep(21, turns=1.0, felt=felt)[-1], bench.hand, use_wrench=True, driven=True)
     assert not bench.alone.led, "a wall drives it"
 
 
@@ -303,7 +313,7 @@ def test_half_of_the_way_that_nobody_pays_for_is_doubtful(carried: float) -> Non
     bench.hand.usual = (carried, 0.0, 0.0)
 
     def see(value: Estimate) -> bool:
-        assert bench.alone.step(value, bench.hand, True, False) is None
+        assert bench.alone.step(value, bench.hand, use_wrench=True, driven=False) is None
         return bench.alone.doubtful
 
     assert not see(at(0.99 * 0.5 * AWAY, 0.01, turns=1.0))
@@ -353,5 +363,5 @@ def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> 
     bench.held(at(0.0, 0.1))
     bench.hand.usual = (CARRIED, 0.0, 0.0)
     for _ in range(ticks):
-        bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, True, False)
+        bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=True, driven=False)
     assert bench.alone.doubtful is (ticks > 75)

@@ -22,6 +22,7 @@ from pendant.guided.user_force import (
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 ZEROS = (0.0,) * 6
@@ -197,9 +198,9 @@ def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: flo
 
 def test_equal_histories_are_equal() -> None:
     one, two = UserForce(estimate(), ZEROS), UserForce(estimate(), ZEROS)
-    assert one.memory == two.memory
+    assert state_of(one) == state_of(two)
     one.step(estimate(force=1.0), True)
-    assert one.memory != two.memory
+    assert state_of(one) != state_of(two)
 
 
 def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:

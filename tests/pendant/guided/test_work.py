@@ -8,6 +8,7 @@ from pendant.guided.work import ASKED, LEFT, Work
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Vector
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 BEFORE = (0.0, -8.0, 0.0, 0.0, 0.0, 0.0)
@@ -138,8 +139,8 @@ def test_a_stretch_begins_afresh() -> None:
     value = moving(1.0, energy=0.5)
     work = Work(BEFORE)
     work.begin(value)
-    fresh = work.memory
+    fresh = state_of(work)
     work.step(value)
-    assert work.memory != fresh
+    assert state_of(work) != fresh
     work.begin(value)
-    assert work.memory == fresh
+    assert state_of(work) == fresh

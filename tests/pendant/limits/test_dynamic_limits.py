@@ -15,6 +15,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.dynamic_limits import CREEPING, WHOLE, DynamicLimits, Shares, in_activation, in_operation
 from pendant.limits.parameters import ZEROS
 from pendant.tick.estimate import Estimate
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, Bench
 
@@ -110,7 +111,7 @@ def test_along_gravity_is_along_the_bases_gravity_with_another_rule_and_without(
     up, now = np.array([2.0, -3.0, 6.0]) / 7.0, estimate(load_mass=2.0)
     now.g_B = -9.81 * up
     found = shares(now, soft__payload=payload, soft__payload_share=0.5, soft__vertical=True, soft__vertical_share=0.25)
-    assert found == (1.0, left, left, left, left, 0.25, pytest.approx(tuple(up)))
+    assert found == (1.0, left, left, left, left, 0.25, pytest.approx(tuple(up)), True)
     assert found.along(*up) == pytest.approx(0.25)
 
 
@@ -159,10 +160,10 @@ def ended(now: Estimate, ticks: int = 1, force: list[float] | None = None, **cha
     """What ends a free-drive that began at rest, of a hand that lasts; the limit that says it is the changed one alone."""
     use = settings(soft__hard=True, unexplained__motion=False, unexplained__payload=False, **changes)
     first = estimate()
-    operation, hand = EndingWatch(first, use, JOINTS, (100.0,) * 6, 0.0), UserForce(first, ZEROS)
+    operation, hand = EndingWatch(first, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0), UserForce(first, ZEROS)
     for _ in range(ticks):
         hand.step(now, True)
-        found = operation.step(now, hand, ZEROS, False)
+        found = operation.step(now, hand, baseline=ZEROS, driven=False)
         if found is not None:
             assert found.kind in (Kind.LEFT_LIMIT, Kind.STOPPED_LIMIT)
             return found
@@ -234,16 +235,16 @@ def test_the_hands_force_lowers_the_limit_on_speed_and_its_torque_that_on_joint_
 
 def test_without_the_flange_sensor_no_torque_lowers_anything() -> None:
     use, now = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0), estimate(qd=2.9, torque=9.0)
-    operation = EndingWatch(now, use, JOINTS, (100.0,) * 6, 0.0)
-    assert operation.step(now, UserForce(now, ZEROS), None, False) is None
-    assert operation.step(now, UserForce(now, ZEROS), ZEROS, False) is not None
+    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0)
+    assert operation.step(now, UserForce(now, ZEROS), baseline=None, driven=False) is None
+    assert operation.step(now, UserForce(now, ZEROS), baseline=ZEROS, driven=False) is not None
 
 
 def test_what_the_sensor_was_off_before_entry_is_no_torque_of_the_hand() -> None:
     now = estimate(qd=2.9, torque=[3.0, 0.0, 4.0])
     use = settings(soft__hard=True, soft__pushed=True, soft__torque_share=2.0)
-    operation = EndingWatch(now, use, JOINTS, (100.0,) * 6, 0.0)
-    assert operation.step(now, UserForce(now, ZEROS), (0.0, 0.0, 0.0, 3.0, 0.0, 4.0), False) is None
+    operation = EndingWatch(now, use, joints=JOINTS, rated=(100.0,) * 6, held=0.0)
+    assert operation.step(now, UserForce(now, ZEROS), baseline=(0.0, 0.0, 0.0, 3.0, 0.0, 4.0), driven=False) is None
 
 
 SEQUENCE: dict[str, tuple[str, float, Any]] = {
@@ -272,10 +273,10 @@ def test_in_the_sequence_each_rule_lowers_its_limit(rule: str, off: float, on: b
         assert refused[0].values["limit"] == pytest.approx(limit)
 
 
-def test_memory_tells_states_apart() -> None:
+def test_its_state_tells_histories_apart() -> None:
     one, other = (DynamicLimits(in_operation(Settings()), STILL) for _ in range(2))
     other.step(STILL)
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
     one.step(estimate(speed=0.1))
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
     assert math.isclose(one.step(STILL).speed, 1.0)

@@ -10,6 +10,7 @@ from pendant.limits.joint_zones import JointZones
 from pendant.limits.settings import JointLimits
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import TICK
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
@@ -84,10 +85,10 @@ def test_switched_off_left_or_without_limits_nothing_is_resisted() -> None:
     module = zones()
     at(module, (2.94, 0.0), (0.0, 0.0))
     at(module, (2.99, 1.0), (0.0, 0.0))
-    entered = module.memory
+    entered = state_of(module)
     module.leave()
     assert not module.pushing
-    assert module.memory != entered
+    assert state_of(module) != entered
     assert at(module, (2.99, 1.0), (0.0, 0.0)) == ()
     endless = JointZones(RATED, (math.inf, math.inf))
     endless.enter(SETTINGS)

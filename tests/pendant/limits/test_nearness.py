@@ -20,7 +20,7 @@ def test_the_words_change_at_their_values_and_back_a_fifth_later() -> None:
         (False, OK), (False, OK), (True, NEAR), (False, NEAR), (True, TOO_NEAR), (False, TOO_NEAR), (True, NEAR),
         (False, NEAR), (True, OK), (True, TOO_NEAR), (True, OK),
     ]  # fmt: skip
-    assert watch.memory is OK
+    assert watch.status is OK
 
 
 @pytest.mark.parametrize(("value", "word"), [(0.0625, OK), (0.0624, NEAR), (0.03125, NEAR), (0.0312, TOO_NEAR), (0.0, TOO_NEAR)])

@@ -11,7 +11,7 @@ from pendant.limits.dynamic_limits import Shares
 from pendant.limits.parameters import PARAMETERS, ZEROS, EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import split
 from pendant.settings.schema import Limit, Section
-from pendant.tick.limit_engine import Gauge
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.test_all_settings import LIMITS, OFF
 
@@ -57,7 +57,7 @@ def test_sizes(seed: int) -> None:
         "user_torque": (abs(value.F_user[5]), "flange"),
     }
     for name, (size, part) in expected.items():
-        found, where = PARAMETERS[name].read(view(value, since), Gauge(name, ""))
+        found, where, _ = PARAMETERS[name].read(view(value, since), 1.0)
         assert found == pytest.approx(size), name
         assert where == part, name
 
@@ -71,22 +71,18 @@ def test_the_joint_nearest_to_its_own_limit_counts(seed: int, strength: float) -
     value.tau_ext, value.tau_J = strength * rng.normal(0.0, 5.0, (2, 6))
     before = strength * rng.normal(0.0, 2.0, 6)
     since = EntryValues((0.0,) * 3, ZEROS, tuple(before), (0.0,) * 6)
-    gauge = Gauge("joint external torque", "N·m", high=0.04)
-    size, part = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), gauge)
+    size, part, high = PARAMETERS["joint_torque"].read(view(value, since, share=0.25), 0.04)
     limits = 0.04 * np.array(RATED) + 0.25 * np.abs(value.tau_J)
     shares = np.abs(value.tau_ext - before) / limits
     worst = int(shares.argmax())
     assert (shares[worst] > 1.0) == (strength == 1.0)
     assert part == JOINTS[worst]
     assert size == pytest.approx(abs(value.tau_ext[worst] - before[worst]))
-    assert gauge.high == pytest.approx(limits[worst])
-    PARAMETERS["joint_torque"].read(view(estimate(), since), gauge)
-    assert gauge.base == 0.04
+    assert high == pytest.approx(limits[worst])
 
 
 def test_nothing_at_all_is_within_its_limit() -> None:
-    gauge = Gauge("joint external torque", "N·m", high=0.04)
-    assert PARAMETERS["joint_torque"].read(view(estimate()), gauge) == (0.0, "base")
+    assert PARAMETERS["joint_torque"].read(view(estimate()), 0.04) == (0.0, "base", 0.04 * RATED[0])
 
 
 @pytest.mark.parametrize("stage", LIMITS)
@@ -111,14 +107,11 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
 
 
 def test_a_motor_is_judged_by_its_rated_torque() -> None:
-    gauge = Gauge("motor torque", "N·m", high=0.5)
     value = estimate()
     value.tau_m[1], value.tau_m[4] = -60.0, 13.0
-    assert PARAMETERS["motor_torque"].read(view(value), gauge) == (13.0, "wrist_2")
-    assert gauge.high == 14.0
+    assert PARAMETERS["motor_torque"].read(view(value), 0.5) == (13.0, "wrist_2", 14.0)
     value.tau_m[1] = -72.0
-    assert PARAMETERS["motor_torque"].read(view(value), gauge) == (72.0, "shoulder")
-    assert gauge.high == 75.0
+    assert PARAMETERS["motor_torque"].read(view(value), 0.5) == (72.0, "shoulder", 75.0)
 
 
 def test_limits_carry_reaction_and_time() -> None:
@@ -134,7 +127,7 @@ def test_limits_carry_reaction_and_time() -> None:
     assert (shown.value, shown.low, shown.limit, shown.high) == (-5.1, -5.0, -5.0, 5.0)
     within = view(estimate(force=[50.0, 0.0, -5.0]))
     assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time begins anew"
-    assert monitor.memory != Monitor(Few()).memory
+    assert state_of(monitor) != state_of(Monitor(Few()))
     monitor.step(view(estimate(force=[50.0, 0.0, 2.5])))
     monitor.step(view(estimate(force=[50.0, 0.0, 3.0])))
     assert [shown.value for shown in monitor.monitored()] == [3.0], "what is within is shown as well"
@@ -165,10 +158,9 @@ def test_a_reference_is_what_is_so_now() -> None:
 )
 def test_each_limit_falls_by_its_own_share(name: str, share: float) -> None:
     """FD-12b."""
-    gauge = Gauge(name, "", high=2.0)
     shares = Shares(way=0.9, speed=0.8, turning=0.7, linear=0.6, angular=0.5)
-    PARAMETERS[name].read(msgspec.structs.replace(view(estimate()), shares=shares), gauge)
-    assert gauge.high == pytest.approx(2.0 * share)
+    _, _, high = PARAMETERS[name].read(msgspec.structs.replace(view(estimate()), shares=shares), 2.0)
+    assert high == pytest.approx(2.0 * share)
 
 
 @pytest.mark.parametrize(
@@ -188,8 +180,7 @@ def test_a_linear_limit_falls_along_gravity_as_well(name: str, share: float) -> 
     value.p_BF, value.a_felt, value.v_F = vector + start, vector, np.append(vector, np.zeros(3))
     value.tcp = value.elbow = np.append(np.zeros(3), vector)
     shares = Shares(way=0.9, speed=0.8, linear=0.6, vertical=0.5, up=tuple(up))
-    gauge = Gauge(name, "", high=2.0)
     since = EntryValues(start, ZEROS, (0.0,) * 6, (0.0,) * 6)
-    PARAMETERS[name].read(msgspec.structs.replace(view(value, since), shares=shares), gauge)
+    _, _, high = PARAMETERS[name].read(msgspec.structs.replace(view(value, since), shares=shares), 2.0)
     vertical = vector @ up / np.linalg.norm(vector)
-    assert gauge.high == pytest.approx(2.0 * share / math.sqrt(1.0 + 3.0 * vertical**2))
+    assert high == pytest.approx(2.0 * share / math.sqrt(1.0 + 3.0 * vertical**2))

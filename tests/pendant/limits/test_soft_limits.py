@@ -14,6 +14,7 @@ from pendant.guided.user_force import UserForce
 from pendant.limits.dynamic_limits import WHOLE
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import SoftLimits, hard
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
 STILL = estimate()
@@ -124,9 +125,9 @@ def test_they_never_rise_above_the_hard_ones_nor_fall_below_what_is_set(ways: li
 def ended(speed: float, **changes: float | bool) -> Ending | None:
     settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
     now = estimate(load_mass=4.0, v_tcp=speed)
-    operation = EndingWatch(now, settings, ("a", "b", "c", "d", "e", "f"), (100.0,) * 6, 0.0)
+    operation = EndingWatch(now, settings, joints=tuple("abcdef"), rated=(100.0,) * 6, held=0.0)
     assert operation.damping is None
-    found = operation.step(now, UserForce(now, ZEROS), ZEROS, False)
+    found = operation.step(now, UserForce(now, ZEROS), baseline=ZEROS, driven=False)
     assert operation.damping is not None
     return found
 
@@ -139,11 +140,11 @@ def test_hard_limits_fall_too_when_asked_for() -> None:
     assert ending.values["limit"] == pytest.approx(1.5 / 1.2)
 
 
-def test_memory_tells_states_apart() -> None:
+def test_its_state_tells_histories_apart() -> None:
     one, other = soft(), soft()
     one.step(STILL)
     other.step(estimate(speed=0.2))
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
 
 
 def test_up_and_down_tool_and_elbow_have_lower_limits() -> None:

@@ -229,7 +229,7 @@ def test_without_a_program_a_contact_changes_nothing() -> None:
 def test_a_retreat_leads_back_along_the_way_with_the_tool_as_it_was() -> None:
     """CD-15: 0.05 m of the 0.3 m from the contact back to where the move began."""
     begun, there = BEGUN._replace(p_BT=(0.1, -0.3, 0.5)), POSE._replace(p_BT=(0.3, -0.1, 0.4))
-    back = goal(Until(then="retract", distance=0.05), GAINED._replace(pose=there), begun, BEGUN, ABOUT_Z)
+    back = goal(Until(then="retract", distance=0.05), GAINED._replace(pose=there), begun=begun, now=BEGUN, R_FT=ABOUT_Z)
     assert back is not None
     assert back.position == pytest.approx((0.3 - 0.1 / 3.0, -0.1 - 0.1 / 3.0, 0.4 + 0.05 / 3.0))
     assert back.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))

@@ -34,31 +34,31 @@ def test_what_a_move_waits_for(until: Until, change: Change, part: str, meets: b
 
 
 def test_stop_goes_nowhere() -> None:
-    assert goal(Until(then="stop"), contact(), BEGUN, NOW) is None
+    assert goal(Until(then="stop"), contact(), begun=BEGUN, now=NOW) is None
 
 
 def test_back_to_the_contact_pose_and_back_to_the_begin() -> None:
     for then, pose in (("contact_pose", THERE), ("reverse", BEGUN)):
-        there = goal(Until(then=then), contact(), BEGUN, NOW)
+        there = goal(Until(then=then), contact(), begun=BEGUN, now=NOW)
         assert there is not None
         assert (there.q, there.position) == (pose.q, None)
 
 
 def test_retract_goes_back_along_the_way_it_came_from_the_contact_pose() -> None:
-    there = goal(Until(then="retract", distance=0.05), contact(), BEGUN, NOW)
+    there = goal(Until(then="retract", distance=0.05), contact(), begun=BEGUN, now=NOW)
     assert there is not None
     assert there.position == pytest.approx((0.0, 0.0, 0.35))
     assert there.quaternion == pytest.approx((1.0, 0.0, 0.0, 0.0))
 
 
 def test_retract_of_a_tool_that_has_not_moved_stays() -> None:
-    there = goal(Until(then="retract"), contact(pose=BEGUN), BEGUN, NOW)
+    there = goal(Until(then="retract"), contact(pose=BEGUN), begun=BEGUN, now=NOW)
     assert there is not None
     assert there.position == BEGUN.p_BT
 
 
 def test_turn_about_the_tool_where_the_arm_stands() -> None:
-    there = goal(Until(then="turn", angle=0.4), contact(), BEGUN, NOW)
+    there = goal(Until(then="turn", angle=0.4), contact(), begun=BEGUN, now=NOW)
     assert there is not None
     assert there.position == NOW.p_BT
     assert there.quaternion == pytest.approx((math.cos(0.2), 0.0, 0.0, math.sin(0.2)))
@@ -67,10 +67,10 @@ def test_turn_about_the_tool_where_the_arm_stands() -> None:
 def test_reactions_keep_and_turn_the_tool_where_it_is_turned_in_the_flange() -> None:
     """A tool pitched by a quarter: its z axis is x of the flange."""
     R_FT = from_rpy(0.0, math.pi / 2.0, 0.0)
-    back = goal(Until(then="retract"), contact(), BEGUN, NOW, R_FT)
+    back = goal(Until(then="retract"), contact(), begun=BEGUN, now=NOW, R_FT=R_FT)
     assert back is not None
     assert rotation(back.quaternion) == pytest.approx(R_FT, abs=1e-12)
-    there = goal(Until(then="turn", angle=0.4), contact(), BEGUN, NOW, R_FT)
+    there = goal(Until(then="turn", angle=0.4), contact(), begun=BEGUN, now=NOW, R_FT=R_FT)
     assert there is not None
     # About its own z, which is x of the base here: x of the tool, which pointed down, swings towards y.
     R = rotation(there.quaternion)

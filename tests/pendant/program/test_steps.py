@@ -20,6 +20,7 @@ from pendant.program.steps import (
     Wait,
     misfit,
 )
+from pendant.tick.state import state_of
 
 HOME = (0.0,) * 6
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
@@ -186,13 +187,13 @@ def test_two_waits_each_last_their_own_time() -> None:
     assert indices == [0] * 3 + [1] * 5
 
 
-def test_its_memory_tells_states_apart() -> None:
+def test_its_state_tells_histories_apart() -> None:
     one, other = started(THREE), started(THREE)
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
     one.step(1)
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
     other.step(1)
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
 
 
 @given(done=st.lists(st.integers(0, 5), max_size=60))

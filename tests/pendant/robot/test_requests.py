@@ -41,7 +41,7 @@ class Bench:
     ) -> tuple[Presence, tuple[Command, ...], list[Event]]:
         self.tick += 1
         value = estimate(self.tick, force=force, tau_ext=tau_ext)
-        events = self.calls.step(value, inputs, wrench, holding, self.settings, state, button)
+        events = self.calls.step(value, inputs, self.settings, wrench=wrench, holding=holding, state=state, button=button)
         return self.calls.signal, self.calls.commands, whole(events, self.tick)
 
     def quiet(self) -> "Bench":
@@ -51,8 +51,8 @@ class Bench:
         assert (self.calls.hand_off, self.calls.touched, self.calls.force) == (True, False, 0.0)
         return self
 
-    def memory(self) -> tuple[object, ...]:
-        return self.calls.memory[1:]
+    def kept(self) -> tuple[object, ...]:
+        return (self.calls._leaving, self.calls.hand_off, self.calls.touched, self.calls.force)
 
 
 def test_before_a_source_by_hand_is_on_nothing_is_felt() -> None:
@@ -86,7 +86,7 @@ def test_a_push_is_a_signal_of_a_held_arm_with_a_valid_wrench(feels: bool, wrenc
     assert found[-1] == (signal, (), [])
     assert bench.calls.force == pytest.approx(50.0 if wrench else 0.0, rel=0.05)
     assert (bench.calls.touched, bench.calls.hand_off) == (wrench, not wrench)
-    assert bench.memory() == (False, not wrench, wrench, bench.calls.force)
+    assert bench.kept() == (False, not wrench, wrench, bench.calls.force)
 
 
 def test_a_hand_is_off_after_a_tenth_of_a_second() -> None:
@@ -154,7 +154,7 @@ def test_an_input_leaves_in_the_tick_in_which_it_rises(on: bool) -> None:
     rises = [0, 4, 7] if on else []
     for tick, high in enumerate(course):
         assert bench.step(inputs=Inputs(high=frozenset(high))) == (NONE, LEAVE if tick in rises else (), [])
-        assert bench.memory() == (on and 3 in high, True, False, 0.0)
+        assert bench.kept() == (on and 3 in high, True, False, 0.0)
 
 
 @pytest.mark.parametrize("digital", [True, False])

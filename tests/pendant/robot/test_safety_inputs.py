@@ -7,8 +7,10 @@ import pytest
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.robot.reduced import SpeedLimits
+from pendant.robot.safety_inputs import SafetyInputs
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, Safety
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
 
@@ -47,14 +49,20 @@ def test_each_change_of_a_level_is_told_once(ticks: list[tuple[Command, ...]], k
     assert [kind for commands in ticks for kind in told(bench, *commands)] == kinds
 
 
+def levels(safety: SafetyInputs) -> tuple[object, ...]:
+    """What it remembers besides the robot."""
+    return (state_of(safety._reduced), safety._safeguard)
+
+
 def test_a_safeguard_that_is_closed_is_as_before_it_was_opened() -> None:
     bench = resting()
-    before = bench.supervisor._safety.memory
+    safety = bench.supervisor._safety
+    before = levels(safety)
     told(bench, OPEN)
-    assert bench.supervisor._safety.memory != before
+    assert levels(safety) != before
     bench.step(Inputs(commands=(CLOSED,)))
     assert bench.last.events == (Event(Kind.SAFEGUARD_CLOSED, bench.tick, {}),)
-    assert bench.supervisor._safety.memory == before
+    assert levels(safety) == before
     assert (bench.last.mode, bench.last.safety) == (Mode.STOP, Safety.SAFEGUARD_STOP), "no reset by itself"
 
 

@@ -6,6 +6,7 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.robot.stopping import LONGEST, Stopping
 from pendant.tick.modes import Law, Mode, Safety
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import LET_GO, Bench
 
@@ -134,12 +135,12 @@ def test_a_stop_that_is_measured_is_as_one_that_had_nothing_to_measure() -> None
     moving, standing = Stopping(), Stopping()
     moving.begin(Kind.EMERGENCY_STOP, 1, False)
     standing.begin(Kind.EMERGENCY_STOP, 1, True)
-    assert moving.memory != standing.memory
+    assert state_of(moving) != state_of(standing)
     assert len(moving.step(estimate(), 50, 50)) - len(standing.step(estimate(), 50, 50)) == 1
-    assert moving.memory == standing.memory
+    assert state_of(moving) == state_of(standing)
 
 
 def test_a_reset_without_a_stop_leaves_no_trace() -> None:
     stopping = Stopping()
     stopping.end()
-    assert stopping.memory == Stopping().memory
+    assert state_of(stopping) == state_of(Stopping())

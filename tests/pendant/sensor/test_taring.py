@@ -19,6 +19,7 @@ from pendant.settings.schema import Limit
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Wrench
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -383,12 +384,12 @@ def test_what_the_zero_explains(wrench: Wrench, can: bool) -> None:
 
 def test_equal_memories_decide_equally() -> None:
     one, other = ready(1.0), ready(1.0)
-    assert one.taring.memory == other.taring.memory
+    assert state_of(one.taring) == state_of(other.taring)
     one.step()
-    assert one.taring.memory != other.taring.memory
+    assert state_of(one.taring) != state_of(other.taring)
     other.step()
     one.zero()
-    assert one.taring.memory != other.taring.memory
+    assert state_of(one.taring) != state_of(other.taring)
 
 
 def test_most_ticks_only_count(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,7 @@ from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.program.steps import Program, ProgramState, Wait
 from pendant.signals.enabling_device import EnablingDevice, Grip
 from pendant.tick.modes import Law, Mode, Phase
+from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
@@ -51,11 +52,11 @@ def test_silence_is_a_release() -> None:
 def test_equal_memories_go_on_equally() -> None:
     one, two = EnablingDevice(), EnablingDevice()
     one.step(holding(MIDDLE), 3)
-    assert one.memory != two.memory
+    assert state_of(one) != state_of(two)
     two.step(holding(MIDDLE), 3)
-    assert one.memory == two.memory
+    assert state_of(one) == state_of(two)
     one.step(holding(FULL), 3)
-    assert one.memory != two.memory
+    assert state_of(one) != state_of(two)
 
 
 def device_bench(**changes: float | bool) -> Bench:

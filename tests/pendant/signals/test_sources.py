@@ -32,7 +32,8 @@ class Bench:
             self.sources.refresh(use)
         value, seen = estimate(wrench_valid=wrench, **felt), []
         for _ in range(count):
-            seen.append((self.sources.step(value, wrench, joints, holding, False, use), self.sources.pushed() is not None))
+            there = self.sources.step(value, use, wrench_ok=wrench, joints_ok=joints, holding=holding, running=False)
+            seen.append((there, self.sources.pushed() is not None))
         return seen
 
     def off(self, count: int, use: LetGo, wrench: bool = True) -> list[bool]:

@@ -10,8 +10,10 @@ from pendant.event_table import render
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import Program, Wait
+from pendant.signals.stored_baseline import Stored
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
+from pendant.tick.state import state_of
 from pendant.tooling.tool_in_use import Load
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_sequence import PARAMETERS
@@ -273,7 +275,7 @@ def test_another_payload_makes_it_begin_anew() -> None:
 def test_switched_off_nothing_is_stored() -> None:
     made = Bench(sequence__on=True)
     made.run(30)
-    assert made.supervisor._free._activation._stored.memory == (False,)
+    assert state_of(made.supervisor._free._activation._stored) == state_of(Stored())
 
 
 def test_a_decision_of_a_sequence_without_length_is_that_of_free_drive() -> None:

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from pendant.tick.limit_engine import Excess, Gauge, Monitored
+from pendant.tick.state import state_of
 
 
 @pytest.mark.parametrize(
@@ -56,10 +57,10 @@ def test_before_its_first_value_it_is_at_zero_and_no_stop() -> None:
     assert (gauge.monitored, gauge.stop) == (Monitored("force", "", 0.0, -math.inf, 3.0, "N"), False)
 
 
-def test_its_memory_tells_all_of_it() -> None:
+def test_its_state_tells_all_of_it() -> None:
     one, other = Gauge("force", "N", high=3.0, allowed=2), Gauge("force", "N", high=3.0, allowed=2)
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)
     one.judge(4.0, "flange")
-    assert one.memory != other.memory
+    assert state_of(one) != state_of(other)
     other.judge(4.0, "flange")
-    assert one.memory == other.memory
+    assert state_of(one) == state_of(other)

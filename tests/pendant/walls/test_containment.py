@@ -14,6 +14,7 @@ from pendant.supervisor import Supervisor
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import HERE, Pose, from_rpy, turned
+from pendant.tick.state import state_of
 from pendant.walls.containment import NOBODY, Containment, WallState, _measures, facts, tether
 from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
 from pendant.walls.settings import WallSettings
@@ -380,12 +381,12 @@ def test_what_was_left_holds_no_more() -> None:
 
 def test_without_any_border_it_does_nothing() -> None:
     containment = Containment((), {"world": HERE})
-    before = containment.memory
+    before = state_of(containment)
     containment.begin(Start.ACTIVATION, WallSettings(tether=False))
     containment.begin(Start.SEQUENCE, WallSettings(tether=False))
     containment.enter(WallSettings(tether=False))
     assert containment.step(estimate(), *NOBODY) is None
-    assert containment.memory == before == ((), ())
+    assert state_of(containment) == before
 
 
 @pytest.mark.parametrize(
