@@ -32,7 +32,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     move: Move | None  # the move to follow, under Law.FOLLOW
     gain: float  # factor on J^T F_user, under Law.FREE (FD-3)
     force_cap: float  # largest force of F_user that is amplified [N] (FD-3)
-    baseline: tuple[float, ...]  # F_user that is nobody's, axes of F [N, N·m], subtracted under Law.FREE
+    baseline: tuple[float, ...]  # F_user that is the sensor's bias, axes of F [N, N·m], subtracted under Law.FREE
     periods: tuple[Remaining, ...]
     events: tuple[Event, ...]  # what happened in this tick
     program: ProgramState = ProgramState.NONE
@@ -48,7 +48,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)
     locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
-    doubtful: bool = False  # it may be that nobody leads the free arm: friction is not taken off it (FD-19)
+    doubtful: bool = False  # it may be that nobody leads the free arm: its friction is not compensated (FD-19)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload

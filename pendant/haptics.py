@@ -119,7 +119,7 @@ class Haptics:
 
     Attributes:
         shake: of this tick, None when nothing is felt.
-        busy: the arm shakes, or has just done so: what moves is nobody's hand.
+        busy: the arm shakes, or has just done so: its motion is no hand's.
     """
 
     __slots__ = ("_beyond", "_freed", "_mode", "_rest", "_tick", "busy", "shake")

@@ -26,7 +26,7 @@ class Command(Word):
     REDUCED_ON = "reduced_on"  # a level of the safety input
     REDUCED_OFF = "reduced_off"
     LEAVE_FREE_DRIVE = "leave_free_drive"  # deactivation signal (FD-17)
-    RESTART_PERIOD = "restart_period"  # the running free-drive or restart period begins anew (FD-16)
+    RESTART_PERIOD = "restart_period"  # the running free-drive or restart period starts again (FD-16)
     REGISTER_WAYPOINT = "register_waypoint"  # the user keeps this posture, which counts as manipulation (FD-13)
     NORMAL = "normal"  # switch the mode to NORMAL
     TEACH = "teach"  # switch the mode to TEACH

@@ -1,4 +1,4 @@
-"""What a tick's decision tells: put together from the parts, anew in every tick, so that nothing of it can be of an older one."""
+"""What a tick's decision tells: put together from the parts in every tick, so that nothing in it can be from an older one."""
 
 from pendant.all_settings import Settings, limits_checksum
 from pendant.contact.contact_change import Contact

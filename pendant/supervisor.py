@@ -212,7 +212,7 @@ class Supervisor:
                     robot.happen(Event(Kind.DEACTIVATED, estimate.tick), self.settings, events)
             elif command is Command.RESTART_PERIOD:
                 if not self.settings.free_drive.anew:
-                    robot.refuse(command, estimate, "periods are not begun anew here", events)
+                    robot.refuse(command, estimate, "periods are not started again here", events)
                 elif not free.ask_anew():
                     robot.refuse(command, estimate, "no period of free-drive runs", events)
             elif command is Command.REGISTER_WAYPOINT:

@@ -110,7 +110,7 @@ class TareRun:
         return self.taring.why_not(estimate, self._mean) if robot.static else "the arm moves"
 
     def _tare(self, estimate: Estimate, events: list[Event]) -> None:
-        """Zero the sensor. The change of all forces in the next tick is nobody's."""
+        """Zero the sensor. The change of all forces in the next tick is no push."""
         gone, event = self.taring.tare(estimate)
         events.append(event)
         x, y, z, a, b, c = gone

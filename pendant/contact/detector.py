@@ -75,7 +75,7 @@ class Detector:
             self.history.push(signal)
 
     def forget(self) -> None:
-        """Begin anew with what is in the buffers, free of contact as far as is known."""
+        """Start again with what is in the buffers, free of contact as far as is known."""
         if not self._begun:
             return
         self._begun = False
@@ -171,7 +171,7 @@ class Detector:
         return Finding(change, sighting.rule, force, (ax, ay, az), ratio, sighting.since + self._age)
 
     def _wait(self, limit: ContactLimits) -> Finding | None:
-        """A tick of silence (CD-9a); at its end the change of an existing contact is judged, and statistics start anew."""
+        """A tick of silence (CD-9a); at its end the change of an existing contact is judged, and statistics start again."""
         self._age += 1
         self._calm = self._calm + 1 if self._age >= SETTLED + NEW and self._settled(limit) else 0
         settled = self._calm >= CALM

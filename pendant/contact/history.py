@@ -13,7 +13,7 @@ SUMMED = 256
 Six = tuple[float, float, float, float, float, float]
 
 NO_SUM: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-"""Where sums begin anew; of their squares: NO_SQUARES."""
+"""Where sums start again; of their squares: NO_SQUARES."""
 
 NO_SQUARES = (0.0, 0.0)
 

@@ -10,7 +10,7 @@ from pendant.freedrive.gate import Gate
 from pendant.freedrive.origins import may_enter, origins
 from pendant.freedrive.periods import Remaining
 from pendant.freedrive.sequence import SHORTEST, Sequence
-from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.settings.schema import ticks
 from pendant.signals.sources import BUTTON
@@ -43,6 +43,7 @@ class Activation:
 
     __slots__ = (
         "_attempt",
+        "_bias",
         "_compensation",
         "_containment",
         "_joints",
@@ -51,23 +52,22 @@ class Activation:
         "_sequence",
         "_stored",
         "_total",
-        "_zero",
         "phase",
         "posture",
     )
 
-    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zero: Zero) -> None:
+    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, bias: SensorBias) -> None:
         """
         Args:
             joints: the names used in events, base to flange.
             rated: torque of each joint [N·m].
             containment: walls and areas.
-            zero: of the flange sensor.
+            bias: of the flange sensor.
         """
         self.phase = Phase.OFF
         self.posture: tuple[float, ...] | None = None
         self._joints, self._rated = joints, rated
-        self._containment, self._zero = containment, zero
+        self._containment, self._bias = containment, bias
         self._attempt: Attempt | None = None
         self._sequence: Sequence | None = None
         self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
@@ -178,7 +178,7 @@ class Activation:
         self.phase = Phase.SEQUENCE
         self._total = self._left = ticks(use.period)
         sequence = self._sequence = Sequence(around, settings, joints=self._joints, rated=self._rated, stored=stored)
-        self._zero.begin(around.estimate, around.wrench_ok, around.mean)
+        self._bias.begin(around.estimate, around.wrench_ok, around.mean)
         self._containment.begin(Start.SEQUENCE, settings.walls)
         started = Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK})
         return self._judge(sequence, around, settings).after([started])

@@ -38,7 +38,7 @@ class Maintained:
         self._slow = [0.0] * 6  # the change, smoothed
 
     def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
-        """The period begins anew in this tick."""
+        """The period starts again in this tick."""
         self._since = reference(estimate, wrench)
         self._slow = [0.0] * 6
 

@@ -61,7 +61,7 @@ class Periods:
         self.phase = Phase.HELD
         self._joints = joints
         self._left = self._total = 0  # ticks of the phase's period
-        self._anew = False  # the running period is to begin anew in this tick
+        self._anew = False  # the running period is to start again in this tick
         self._registered = False  # a waypoint was registered in this tick
         self._stirred = False  # there was manipulation in the tick before
         self._unpushed = 0  # ticks for which no hand has pushed
@@ -86,7 +86,7 @@ class Periods:
         return Remaining(RUNNING[self.phase], self._left, self._total) if self.phase in RUNNING else None
 
     def ask_anew(self) -> bool:
-        """The running period is to begin anew in this tick (FD-16). Returns whether one runs."""
+        """The running period is to start again in this tick (FD-16). Returns whether one runs."""
         self._anew = self.runs
         return self._anew
 

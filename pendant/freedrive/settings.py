@@ -55,7 +55,7 @@ class FreeDriveSettings(Section, frozen=True, forbid_unknown_fields=True, kw_onl
     ] = 3.0
     restart_at_manipulation: Annotated[bool, _switch("FD-15", "the restart period begins with each manipulation")] = False
     restart_after_force: Annotated[bool, _switch("FD-15", "it begins when the hand's force ends, moving or not")] = False
-    anew: Annotated[bool, _switch("FD-16", "a signal begins the running period anew")] = True
+    anew: Annotated[bool, _switch("FD-16", "a signal starts the running period again")] = True
     longest: Annotated[float, _number(0.5, 30.0, "s", "FD-16", "longest that the two periods may be")] = 30.0
     maintained: Annotated[bool, _switch("FD-24", "free-drive ends when nobody moves the arm for its periods")] = True
     remainders: Annotated[bool, _switch("FD-20", "what is left of every period is published")] = True

@@ -12,7 +12,7 @@ from pendant.freedrive.periods import Periods, Remaining
 from pendant.freedrive.sequence import SequenceVerdict
 from pendant.guided.endings import way_back
 from pendant.guided.free_arm import FreeArm
-from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.joint_zones import JointZones
 from pendant.settings.schema import ticks
 from pendant.signals.sources import Presence
@@ -42,13 +42,13 @@ class FreeDrive:
 
     __slots__ = (
         "_activation",
+        "_bias",
         "_containment",
         "_gate",
         "_joints",
         "_periods",
         "_rated",
         "_verdict",
-        "_zero",
         "_zones",
         "arm",
         "phase",
@@ -66,8 +66,8 @@ class FreeDrive:
         self._joints, self._rated = joints, rated
         self._containment, self._zones = containment, zones
         self._gate = Gate()
-        self._zero = Zero()
-        self._activation = Activation(joints, rated, containment, self._zero)
+        self._bias = SensorBias()
+        self._activation = Activation(joints, rated, containment, self._bias)
         self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None
         self._periods: Periods | None = None  # from entry to leaving
@@ -99,8 +99,8 @@ class FreeDrive:
 
     @property
     def baseline(self) -> tuple[float, ...]:
-        """F_user that is nobody's, axes of F [N, N·m]; zeros without the flange sensor."""
-        return self._zero.baseline
+        """F_user that is the sensor's bias, axes of F [N, N·m]; zeros without the flange sensor."""
+        return self._bias.baseline
 
     @property
     def caught(self) -> bool:
@@ -115,14 +115,14 @@ class FreeDrive:
     @property
     def helping(self) -> bool:
         """The user's force is amplified: not while a payload may have dropped (FD-19)."""
-        return self._zero.used and not (self.arm is not None and self.arm.suspect)
+        return self._bias.used and not (self.arm is not None and self.arm.suspect)
 
     def sense(self, held: bool, signal: Presence) -> None:
         """Begin a tick: the button, and the signal of activation."""
         self._gate.sense(held, signal)
 
     def ask_anew(self) -> bool:
-        """The free-drive or restart period is to begin anew in this tick (FD-16). Returns whether one runs."""
+        """The free-drive or restart period is to start again in this tick (FD-16). Returns whether one runs."""
         return self._periods is not None and self._periods.ask_anew()
 
     def register(self) -> None:
@@ -142,7 +142,7 @@ class FreeDrive:
         self._activation.end()
         self._containment.leave()
         self._zones.leave()
-        self._zero.leave()
+        self._bias.leave()
         self._verdict.waiting = False
         self._gate.close(ticks(settings.free_drive.cool_down) if TABLE[kind].cool_down else 0)
 
@@ -184,7 +184,7 @@ class FreeDrive:
         seen = arm.step(around, settings, periods.waits)
         if seen.transition is Transition.LEFT:
             return seen
-        wrench = self._zero.felt(around.estimate)
+        wrench = self._bias.felt(around.estimate)
         happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
         self.phase = periods.phase
         return happened.after(seen.events) if seen.events else happened
@@ -204,15 +204,15 @@ class FreeDrive:
                 self._verdict.begin(around)
 
     def _enter(self, around: Surroundings, settings: Settings) -> None:
-        zero = self._zero
+        bias = self._bias
         self._activation.end()
-        zero.begin(around.estimate, around.wrench_ok, around.mean)
-        joints, wrench = self._joints, zero.felt(around.estimate)
+        bias.begin(around.estimate, around.wrench_ok, around.mean)
+        joints, wrench = self._joints, bias.felt(around.estimate)
         self._periods = Periods(around, settings, held=self._gate.held, wrench=wrench, joints=joints)
         self.arm = FreeArm(
             around,
             settings,
-            zero=zero,
+            bias=bias,
             containment=self._containment,
             zones=self._zones,
             joints=joints,

@@ -12,7 +12,7 @@ from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
 from pendant.guided.hidden_drop import LEAST, HiddenDrop
 from pendant.guided.sensor_bias import SURE, Slack
-from pendant.guided.unintended_motion import Alone
+from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
@@ -50,7 +50,7 @@ SWUNG = 10  # calm ticks that a swinging one undoes: the step of a payload itsel
 
 MUCH = 0.5  # of the load is missing at least, where the arm swings
 
-OLD = 50  # ticks after which such a run begins anew: slow changes are hands
+OLD = 50  # ticks after which such a run starts again: slow changes are hands
 
 
 class Ending(NamedTuple):
@@ -69,7 +69,6 @@ class EndingWatch:
     """
 
     __slots__ = (
-        "_alone",
         "_calm",
         "_followed",
         "_hidden",
@@ -82,6 +81,7 @@ class EndingWatch:
         "_since",
         "_soft",
         "_stepped",
+        "_unintended",
         "damping",
         "suspect",
     )
@@ -108,7 +108,7 @@ class EndingWatch:
         self._since: EntryValues = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
-        self._alone = Alone(self._on, self._since)
+        self._unintended = UnintendedMotion(self._on, self._since)
         self._missed: list[Vector] = [ORIGIN] * STEP  # force that the sensor misses, in the last ticks, axes of F [N]
         self._calm = 0  # rises with every tick in which the arm does not swing
         self._level = 0.0  # of the share after a step
@@ -121,12 +121,12 @@ class EndingWatch:
     @property
     def led(self) -> bool:
         """Somebody leads the arm: the motion is paid for."""
-        return self._alone.led
+        return self._unintended.led
 
     @property
     def doubtful(self) -> bool:
         """It may be that nobody leads the moving arm: nothing helps it on (FD-19)."""
-        return self._alone.doubtful
+        return self._unintended.doubtful
 
     def step(
         self, estimate: Estimate, hand: UserForce, *, baseline: Wrench | None, driven: bool, slack: Slack = SURE
@@ -136,7 +136,7 @@ class EndingWatch:
         Args:
             estimate: of this tick.
             hand: after its step.
-            baseline: what of F_user is nobody's, axes of F [N, N·m]; None where the flange sensor is not used.
+            baseline: the part of F_user that is the sensor's bias, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
         """
@@ -163,7 +163,7 @@ class EndingWatch:
         if not self._on.motion:
             return None
         use_wrench = baseline is not None
-        values = self._alone.step(estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque)
+        values = self._unintended.step(estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
     def _lost(self, estimate: Estimate, hand: UserForce, baseline: Wrench, least: float) -> Ending | None:

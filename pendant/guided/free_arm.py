@@ -5,7 +5,7 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.endings import EndingWatch
-from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
@@ -30,11 +30,11 @@ class FreeArm:
     """
 
     __slots__ = (
+        "_bias",
         "_containment",
         "_hand",
         "_operation",
         "_singularity",
-        "_zero",
         "_zones",
         "caught",
         "damping",
@@ -49,7 +49,7 @@ class FreeArm:
         around: Surroundings,
         settings: Settings,
         *,
-        zero: Zero,
+        bias: SensorBias,
         containment: Containment,
         zones: JointZones,
         joints: tuple[str, ...],
@@ -59,14 +59,14 @@ class FreeArm:
         Args:
             around: the tick of entry; its joint values are finite.
             settings: as they are now.
-            zero: of the flange sensor, as of entry.
+            bias: of the flange sensor, as of entry.
             containment: walls and areas; here they begin to hold.
             zones: before the joint limits; they begin to hold, too.
             joints: names, base to flange.
             rated: torque of each joint [N·m].
         """
         estimate = around.estimate
-        self._zero, self._containment, self._zones = zero, containment, zones
+        self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean())
         self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
         self._singularity = SingularityWatch()
@@ -86,18 +86,18 @@ class FreeArm:
             settings: as they are now.
             waits: nobody is known to move the arm.
         """
-        estimate, zero, hand, operation = around.estimate, self._zero, self._hand, self._operation
+        estimate, bias, hand, operation = around.estimate, self._bias, self._hand, self._operation
         tick = estimate.tick
         if not joints_ok(estimate):
             return becomes(Transition.LEFT, Event(Kind.SENSORS_LOST, tick, {"sensor": JOINTS_SENSED}))
         events: list[Event] = []
-        if zero.used and not around.wrench_ok:
-            zero.leave()
+        if bias.used and not around.wrench_ok:
+            bias.leave()
             events.append(Event(Kind.WRENCH_LOST, tick))
-        hand.step(estimate, zero.used)
+        hand.step(estimate, bias.used)
         self.user = hand.user
-        if zero.used and settings.unexplained.sensor:
-            told = zero.step(estimate, hand, around.mean, waits)
+        if bias.used and settings.unexplained.sensor:
+            told = bias.step(estimate, hand, around.mean, waits)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
@@ -112,9 +112,9 @@ class FreeArm:
             values: Values = {"status": self._singularity.status, "value": estimate.singularity, "limit": settings.axes.near}
             events.append(Event(Kind.SINGULARITY, tick, values))
         self.singularity = self._singularity.status
-        baseline = zero.baseline if zero.used else None
+        baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=zero.slack(estimate))
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=bias.slack(estimate))
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)

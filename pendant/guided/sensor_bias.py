@@ -1,9 +1,9 @@
-"""The flange sensor's zero in free-drive: what it drifts and steps by is no hand's, and must not drive the arm (FD-19).
+"""The flange sensor's bias in free-drive: its drift and its steps are no user force and must not drive the arm (FD-19).
 
-A sensor that drifts changes more slowly than a hand that wants something; while nobody moves the arm, so much of every change is
-taken off, unless the joints feel it as well: a hand that rests on an arm at rest would be taken for drift, and would seem to push
-the other way when it lets go. What was taken off in the last moments before the arm moves is given back, for a hand pushes a
-little before the joints tell. A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
+Drift is slower than a hand that wants something. While nobody moves the arm, changes up to the speed of drift are subtracted,
+unless the joints measure them, too: else a hand that rests on the arm would count as drift, and would seem to push the other way when it
+lets go. What was subtracted just before the arm moves is added again, because a hand pushes a little before the joints show it
+(rollback). A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
 """
 
 import math
@@ -62,7 +62,7 @@ class BiasFollower:
     """What the sensor has drifted by while nobody moved the arm, in steps of the mean's window.
 
     Attributes:
-        lately: what was taken off in the last windows, axes of F [N, N·m].
+        lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
     __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "lately")
@@ -108,13 +108,13 @@ class BiasFollower:
         return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
 
     def give_back(self) -> list[Wrench]:
-        """What was taken off lately was a hand's, axes of F [N, N·m]."""
+        """What was subtracted lately was a hand's force, axes of F [N, N·m]."""
         lately = list(self.lately)
         self.lately.clear()
         return lately
 
     def keep(self, gone: Wrench) -> None:
-        """So much was taken off, axes of F [N, N·m]."""
+        """So much was subtracted, axes of F [N, N·m]."""
         self.lately.append(gone)
 
     def due(self) -> bool:
@@ -123,7 +123,7 @@ class BiasFollower:
         return self._count == 1
 
     def step(self, mean: Wrench, felt: Vector) -> Wrench | None:
-        """The mean of the last window, and the force that the joints felt in it, axes of B [N, N·m]: what is to be taken off.
+        """The mean of the last window, and the force that the joints felt in it, axes of B [N, N·m]: what is to be subtracted.
 
         None for the first one, and for what the joints feel as well.
         """
@@ -155,13 +155,13 @@ def _less(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-class Zero:
-    """What of F_user is nobody's: from the activation sequence on, or from entry, to leaving.
+class SensorBias:
+    """The part of F_user that is the sensor's bias: from the activation sequence on, or from entry, to leaving.
 
     Attributes:
         used: the flange sensor is; it was valid in every tick since.
         baseline: F_user in the beginning, and what the sensor drifted by, axes of F [N, N·m]; zeros without the sensor.
-        drifted: what the sensor drifted by since, axes of F [N, N·m]; None: nothing was taken off yet.
+        drifted: what the sensor drifted by since, axes of F [N, N·m]; None: nothing was subtracted yet.
     """
 
     __slots__ = ("_drift", "_felt", "_since", "_steps", "baseline", "drifted", "used")
@@ -202,7 +202,7 @@ class Zero:
         return self._drift.slack(estimate.tick)
 
     def step(self, estimate: Estimate, hand: UserForce, mean: WrenchMean, waits: bool) -> Event | None:
-        """One tick of free-drive with a valid sensor: what it drifts by is taken off.
+        """One tick of free-drive with a valid sensor: its drift is subtracted.
 
         One that steps, or has drifted far, is not used any more; that is returned.
 

@@ -51,7 +51,7 @@ class Way:
         return math.dist(self._began, estimate.p_BF.tolist())
 
 
-class Alone:
+class UnintendedMotion:
     """Counts for how long, and how far, the arm moves and nobody moves it.
 
     Attributes:

@@ -1,7 +1,7 @@
-"""The user's force on the arm in free-drive, told from a wrong payload's and from a sensor's offset (FD-13, FD-19, VW-5).
+"""The user's force on the arm in free-drive, separated from a wrong payload's and from a sensor's offset (FD-13, FD-19, VW-5).
 
-What the sensor and the joints felt when free-drive began is nobody's. Of what changed since, a part along gravity that stays may
-be a payload's; it stops counting as the user's with a time constant, as in `pendant.freedrive.manipulation`.
+What the sensor and the joints measured when free-drive began is no user force. Of the change since then, a steady part along
+gravity may be a payload's; it stops counting as the user's with a time constant, as in `pendant.freedrive.manipulation`.
 """
 
 import math
@@ -24,7 +24,7 @@ OFFSET = 4.0
 """Largest offset of the flange sensor [N]; what is beyond along gravity is a payload's, which does not turn with the flange."""
 
 DOUBT = 0.5
-"""Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia, and is nobody's."""
+"""Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia and is no user force."""
 
 JOINTS_SWING = 0.1
 """Time constant that takes an arm's own swinging off what the joints feel [s]."""
@@ -94,7 +94,7 @@ class UserForce:
         self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
 
     def shift(self, force: Vector) -> None:
-        """The sensor's zero has gone by `force`, axes of F [N], which is nobody's."""
+        """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""
         x, y, z = force
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)

@@ -18,7 +18,7 @@ PRESETS: dict[str, frozenset[str]] = {
 
 
 class AxisLocks(NamedTuple):
-    """What the control law keeps of the tool's pose, as it is when these locks begin. Equal locks go on, others begin anew."""
+    """What the control law keeps of the tool's pose, as it is when these locks begin. Equal locks go on, others start again."""
 
     locked: tuple[bool, ...]  # of AXES
     tool: bool  # the frame is the tool's when they begin, else `R_BU`

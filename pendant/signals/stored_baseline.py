@@ -28,7 +28,7 @@ class Stored:
         return not self._states or tick - self._states[-1][0] >= EVERY
 
     def keep(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
-        """One state with valid joints; `mean` of F_user, axes of B. One that lost or gained the flange sensor begins anew."""
+        """One state with valid joints; `mean` of F_user, axes of B. One that lost or gained the flange sensor starts again."""
         if wrench_ok is not self._wrench:
             self._states.clear()
             self._wrench = wrench_ok

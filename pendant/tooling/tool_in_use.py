@@ -28,7 +28,7 @@ class Fitting(NamedTuple):
 
 
 class Tooling:
-    """One tick at a time. The estimates' reaction to a change is nobody's push: `changing` says how long it lasts."""
+    """One tick at a time. The estimates' reaction to a change is no push: `changing` says how long it lasts."""
 
     __slots__ = ("_age", "_from", "_most", "_plate", "_ramp", "changing", "fitting", "tools", "wizard")
 

@@ -31,7 +31,7 @@ class Reaction(StrEnum):
 
 
 class Policy(StrEnum):
-    """When a wall round a part is anchored anew (VW-3 to VW-5)."""
+    """When a wall round a part is anchored again (VW-3 to VW-5)."""
 
     FIXED = "fixed"
     STEPWISE = "stepwise"
@@ -118,7 +118,7 @@ class Wall(Border, tag="wall", frozen=True, forbid_unknown_fields=True, kw_only=
     offset: tuple[Coordinate, Coordinate, Coordinate] = ORIGIN  # of the shape's centre from the part, in the reference's axes [m]
     policy: Policy = Policy.STEPWISE
     literal: bool = False  # stepwise and average: anchor also a part that nobody moved, as P 87 and P 88 say
-    safety_period: Period = 1.0  # stepwise: anchored anew only when not exceeded for so long (VW-3)
+    safety_period: Period = 1.0  # stepwise: anchored again only when not exceeded for so long (VW-3)
     safety_dependence: Dependence | None = None  # a factor on the safety period
     redefine_period: Period | None = None  # stepwise: how often; None: as the safety period
     averaging_period: Annotated[float, Meta(ge=0.02, le=10.0)] = 2.0  # average (VW-4) [s]

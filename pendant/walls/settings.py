@@ -11,7 +11,7 @@ class WallSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
 
     on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True
-    anew: Annotated[bool, _switch("VW-3", "walls are anchored anew as their policies say")] = True
+    anew: Annotated[bool, _switch("VW-3", "walls get new anchors by their policies")] = True
     sizes: Annotated[bool, _switch("VW-8", "sizes follow posture or payload, or the smallest holds")] = True
     resistance: Annotated[bool, _switch("VW-7", "walls resist before they are reached")] = True
     tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True

@@ -65,7 +65,7 @@ class AxisConstraint:
         self._energy = np.zeros(1)  # in the spring [J]
 
     def release(self) -> None:
-        """Nothing is locked; what is locked next begins anew."""
+        """Nothing is locked; what is locked next starts again."""
         self._locks = None
 
     def prepare(self, estimate: Estimate, locks: AxisLocks, jacobian: Array, static: Array) -> None:

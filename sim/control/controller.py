@@ -76,7 +76,7 @@ class Controller:
         self._blind = blind
         law = decision.law
         if law is _OFF:
-            # No power: the brakes hold. Whatever comes after it begins anew, as after free-drive.
+            # No power: the brakes hold. Whatever comes after it starts again, as after free-drive.
             self.references.skip()
             torque = self._nothing
         elif law is _FREE:

@@ -61,7 +61,7 @@ class FeedForward:
             motion: count inertia and speed; else gravity alone, as under PD + gravity.
             stiffer: error of the springs' believed stiffness (n,), as learned, relative to it.
             push: with which the joints push against the outside besides (n,) [N·m].
-            fresh: the reference began anew, nothing is known of the bristles.
+            fresh: the reference started again, nothing is known of the bristles.
         """
         torque = np.empty_like(self._rotor)
         if not motion:

@@ -25,7 +25,7 @@ from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
 
-COMPENSATED = 1.0 - LEFT  # share of the friction estimate that is taken off the hand
+COMPENSATED = 1.0 - LEFT  # share of the friction estimate that is compensated
 INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
 DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
@@ -47,7 +47,7 @@ class FreeDriveLaw:
     flange sensor does not explain, that is larger than its uncertainty, and that has not been there for long.
 
     Attributes:
-        share: of the friction estimate that is taken off at most.
+        share: of the friction estimate that is compensated at most.
         singularity: how near the arm is to one.
     """
 

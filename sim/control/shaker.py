@@ -8,7 +8,7 @@ from pendant.tick.estimate import Estimate
 BANDWIDTH = 16.0  # round the rotor alone [Hz]
 DAMPING_RATIO = 0.7
 INERTIA = 1.3  # of the rotor: with what usually turns beyond the gear
-STICKING = 0.6e-3  # error at which friction is taken off in full [rad]
+STICKING = 0.6e-3  # error at which friction is compensated in full [rad]
 SLIDING = 0.05  # and speed [rad/s]
 MOST = 0.5  # of the rated torque
 FURTHEST = 0.002  # a hand that turns the joint further takes the pattern along [rad]

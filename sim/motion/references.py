@@ -31,11 +31,11 @@ GONE = 0.01  # [N·m]
 
 
 class References:
-    """One reference a tick under HOLD, BRAKE and FOLLOW; free-drive has none, and what comes after it begins anew.
+    """One reference a tick under HOLD, BRAKE and FOLLOW; free-drive has none, and what comes after it starts again.
 
     Attributes:
         now: the last reference, None before the first.
-        fresh: in this tick it began anew, at the arm's own state.
+        fresh: in this tick it started again, at the arm's own state.
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".

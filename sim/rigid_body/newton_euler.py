@@ -29,7 +29,7 @@ class NewtonEuler:
         tcp, elbow: position [m], then velocity [m/s] of the tool centre point and of the elbow (6,) each.
 
     Args:
-        model: Pinocchio's; `set_load` takes its inertias anew.
+        model: Pinocchio's; `set_load` reads its inertias again.
         flange: pose of F in the last joint's frame.
         elbow: index of the joint whose origin is the elbow.
     """

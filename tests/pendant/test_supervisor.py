@@ -196,7 +196,7 @@ def test_an_emergency_stop_in_a_protective_stop_is_the_greater_one() -> None:
         (Bench, Command.STOP_PROGRAM, "no program is running"),
         (Bench, Command.RESET, "nothing to reset"),
         (Bench, Command.RESTART_PERIOD, "no period of free-drive runs"),
-        (lambda: Bench(free_drive__anew=False), Command.RESTART_PERIOD, "periods are not begun anew here"),
+        (lambda: Bench(free_drive__anew=False), Command.RESTART_PERIOD, "periods are not started again here"),
         (running, Command.START_PROGRAM, "stop the program first"),
         (running, Command.RESUME_PROGRAM, "it is running already"),
         (running, Command.NORMAL, "stop the program first"),

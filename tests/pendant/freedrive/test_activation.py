@@ -7,7 +7,7 @@ from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
 from pendant.freedrive.activation import Activation
 from pendant.freedrive.gate import Gate
-from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_bias import SensorBias
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.validity import Stillness
 from pendant.program.steps import Program, Wait
@@ -43,7 +43,7 @@ class Alone:
 
     def __init__(self, **changes: float | bool) -> None:
         self.settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
-        self.walls, self.zero = Begun(), Zero()
+        self.walls, self.zero = Begun(), SensorBias()
         self.activation = Activation(JOINTS, (100.0,) * 6, self.walls, self.zero)
         self.gate = Gate()
         self.tick = -1

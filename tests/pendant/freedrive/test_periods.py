@@ -104,7 +104,7 @@ def test_where_no_period_runs_none_begins() -> None:
 def test_none_begins_anew_where_that_is_switched_off() -> None:
     bench = Quick(free_drive__anew=False).in_period()
     bench.run(248)
-    refused = {"command": Command.RESTART_PERIOD, "mode": Mode.FREE_DRIVE, "reason": "periods are not begun anew here"}
+    refused = {"command": Command.RESTART_PERIOD, "mode": Mode.FREE_DRIVE, "reason": "periods are not started again here"}
     assert bench.step(ANEW).events == (Event(Kind.COMMAND_REFUSED, bench.tick, refused),)
     assert bench.step().mode is Mode.TEACH
 

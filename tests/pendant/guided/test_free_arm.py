@@ -10,7 +10,7 @@ from pendant.events.event import Event, Kind
 from pendant.guided.endings import CERTAIN
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.hidden_drop import LASTS
-from pendant.guided.sensor_bias import Zero
+from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.sensor_steps import LATER
 from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
@@ -38,13 +38,13 @@ class Free:
     def __init__(self, *borders: AnyBorder, sensor: bool = True, payload: float = 0.0, **changes: float | bool) -> None:
         off = {"walls.tether": False, "unexplained.time": ALONE}
         self.settings = apply(Settings(), off | {name.replace("__", "."): value for name, value in changes.items()})
-        self.zero, self.mean, self.payload, self.tick = Zero(), WrenchMean(), payload, 0
+        self.zero, self.mean, self.payload, self.tick = SensorBias(), WrenchMean(), payload, 0
         self.zero.begin(estimate(), sensor, self.mean)
         containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
         self.arm = FreeArm(
             self.around(estimate()),
             self.settings,
-            zero=self.zero,
+            bias=self.zero,
             containment=containment,
             zones=zones,
             joints=JOINTS,

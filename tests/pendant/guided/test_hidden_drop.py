@@ -66,7 +66,7 @@ def test_it_may_be_off_by_the_noise_and_hardly_in_the_mean(way: Vector) -> None:
 
 
 def test_one_tick_far_off_ends_it() -> None:
-    """It begins anew two ticks after one that was far enough off."""
+    """It starts again two ticks after one that was far enough off."""
     assert told([HAND] * 3 + [GONE] * LASTS + [off(1.01 * NEAR)] + [GONE] * 100) is None
     assert told([HAND] * 3 + [GONE] * LASTS + [HAND] + [GONE] * 20) == 3 + LASTS + 2 + LASTS
 

@@ -15,7 +15,7 @@ from pendant.guided.sensor_bias import (
     SLOWLY,
     SLOWLY_TURN,
     BiasFollower,
-    Zero,
+    SensorBias,
 )
 from pendant.guided.sensor_steps import ANSWER, LATER, MOVED
 from pendant.guided.user_force import UserForce
@@ -103,7 +103,7 @@ def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_
 def test_a_drift_turns_with_the_flange(turned: bool) -> None:
     R_BF = TURNED if turned else np.eye(3)
     before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
-    zero, mean, hand = Zero(), WrenchMean(), UserForce(before, (0.0,) * 6)
+    zero, mean, hand = SensorBias(), WrenchMean(), UserForce(before, (0.0,) * 6)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
@@ -178,7 +178,7 @@ def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
 
 def test_the_baseline_is_in_the_axes_of_the_flange() -> None:
     """As it was held in the beginning, and as it is turned when the sensor drifts."""
-    zero, mean, start = Zero(), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
+    zero, mean, start = SensorBias(), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
     start.R_BF = TURNED
     mean.step(start)
     zero.begin(start, True, mean)
@@ -196,7 +196,7 @@ def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(spee
     force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
     before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
     after.R_BF = TURNED  # since entry
-    zero, mean, hand = Zero(), WrenchMean(), UserForce(before, (0.0,) * 6)
+    zero, mean, hand = SensorBias(), WrenchMean(), UserForce(before, (0.0,) * 6)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
@@ -212,12 +212,12 @@ def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(spee
 
 
 def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
-    zero, mean = Zero(), WrenchMean()
+    zero, mean = SensorBias(), WrenchMean()
     mean.step(estimate(force=3.0))
     zero.begin(estimate(), True, mean)
     assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     zero.leave()
-    assert state_of(zero) == state_of(Zero())
+    assert state_of(zero) == state_of(SensorBias())
 
 
 @pytest.mark.parametrize("axis", range(3))

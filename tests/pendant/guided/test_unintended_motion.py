@@ -7,7 +7,7 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import AWAY, UNFELT, Alone
+from pendant.guided.unintended_motion import AWAY, UNFELT, UnintendedMotion
 from pendant.guided.user_force import CARRIED, UserForce
 from pendant.guided.work import ASKED, LEFT
 from pendant.limits.parameters import reference
@@ -38,7 +38,7 @@ class Bench:
 
     def __init__(self, sensor: bool = True) -> None:
         start = at(0.0, 0.0)
-        self.alone, self.hand = Alone(Settings().unexplained, reference(start, None)), UserForce(start, ZEROS)
+        self.alone, self.hand = UnintendedMotion(Settings().unexplained, reference(start, None)), UserForce(start, ZEROS)
         self.sensor, self.ticks = sensor, 0
 
     def see(self, value: Estimate, driven: bool = False) -> Values | None:

@@ -126,7 +126,7 @@ def test_limits_carry_reaction_and_time() -> None:
     (shown,) = monitor.monitored()
     assert (shown.value, shown.low, shown.limit, shown.high) == (-5.1, -5.0, -5.0, 5.0)
     within = view(estimate(force=[50.0, 0.0, -5.0]))
-    assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time begins anew"
+    assert [len(monitor.step(each)) for each in (within, heavy, heavy, heavy)] == [0, 0, 0, 1], "the time starts again"
     assert state_of(monitor) != state_of(Monitor(Few()))
     monitor.step(view(estimate(force=[50.0, 0.0, 2.5])))
     monitor.step(view(estimate(force=[50.0, 0.0, 3.0])))

@@ -1,4 +1,4 @@
-"""When a wall is anchored anew (VW-3 to VW-5)."""
+"""When a wall is anchored again (VW-3 to VW-5)."""
 
 from typing import NamedTuple
 

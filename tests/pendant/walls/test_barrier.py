@@ -21,7 +21,7 @@ def scaled(axis: Vector, size: float) -> Vector:
 
 
 def anew(wall: Wall, stage: Stage, count: int, user: Vector = ORIGIN, payload: Vector = ORIGIN) -> list[int]:
-    """The ticks, from 1, in which a wall round a part at rest is anchored anew."""
+    """The ticks, from 1, in which a wall round a part at rest is anchored again."""
     barrier, seen = Barrier(wall, stage), around((1.0, 2.0, 3.0), user=user, payload=payload)
     return [tick for tick in range(1, count + 1) if barrier.step(seen).anchored]
 
@@ -80,7 +80,7 @@ def test_a_part_at_rest_under_a_wrong_payload_has_not_moved(axis: Vector) -> Non
 
 
 def test_the_activation_shape_stays_where_it_was_anchored() -> None:
-    """VW-6: even one that is anchored anew by the letter, whoever moves the part."""
+    """VW-6: even one that is anchored again by the letter, whoever moves the part."""
     for policy in (Policy.STEPWISE, Policy.AVERAGE):
         wall = Wall(name="w", shape=BALL, policy=policy, literal=True, safety_period=0.1)
         assert anew(wall, Stage.ACTIVATION, 60, user=(8.0, 0.0, 0.0)) == []

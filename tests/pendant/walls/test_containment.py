@@ -323,7 +323,7 @@ def test_a_safety_period_alone_follows_the_payload(load: float, ticks: int) -> N
     for _ in range(101):
         containment.step(at(0.1, load_mass=load), *NOBODY)
         distances += [state.distance for state in containment.states()]
-    assert distances == pytest.approx([-0.1] * (ticks - 1) + [-0.2] * (102 - ticks)), "from the tick after it is anchored anew"
+    assert distances == pytest.approx([-0.1] * (ticks - 1) + [-0.2] * (102 - ticks)), "from the tick after it is anchored again"
 
 
 @pytest.mark.parametrize(("z", "near", "exceeded", "force"), [(0.0, 0.0, False, 0.0), (-0.12, 1.0, True, 80.0)])
