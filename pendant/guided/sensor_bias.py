@@ -1,9 +1,9 @@
 """The flange sensor's bias in free-drive: its drift and its steps are no user force and must not drive the arm (FD-19).
 
 Drift is slower than a hand that wants something. While nobody moves the arm, changes up to the speed of drift are subtracted,
-unless the joints measure them, too: else a hand that rests on the arm would count as drift, and would seem to push the other way when it
-lets go. What was subtracted just before the arm moves is added again, because a hand pushes a little before the joints show it
-(rollback). A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
+unless the joints measure them, too: else a hand that rests on the arm would count as drift, and would seem to push the other
+way when it lets go. What was subtracted just before the arm moves is added again, because a hand pushes a little before the
+joints show it (rollback). A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
 """
 
 import math
