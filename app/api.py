@@ -102,6 +102,7 @@ def stepped(what: Session) -> Simulation:
 def step(
     simulation: Simulation,
     ticks: int = 1,
+    *,
     held: Iterable[Button] = (),
     commands: Iterable[Command] = (),
     touches: Iterable[Touch] = (),

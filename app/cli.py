@@ -64,6 +64,7 @@ def example(*lines: str) -> str:
     )
 )
 def serve(
+    *,
     robot: Robot = None,
     config: Config = None,
     host: Host = "127.0.0.1",
@@ -81,7 +82,9 @@ def serve(
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     where = "serve" if config is None else config.name
-    with serve_until_interrupted(prepare(setup, where), host, port, PORT, open_browser, record) as site:
+    with serve_until_interrupted(
+        prepare(setup, where), host=host, port=port, usual=PORT, open_browser=open_browser, record=record
+    ) as site:
         _announce(f"Serving the {setup.robot}", site.link, site.access.token is not None)
 
 
@@ -95,6 +98,7 @@ def serve(
 )
 def run(
     sessions: SessionNames,
+    *,
     out: Out = Path("out"),
     seed: Seed = None,
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
@@ -156,7 +160,7 @@ def replay(
     """Show a recording in the web app, with a time line; nothing is simulated."""
     from app.serving import replay_until_interrupted
 
-    with replay_until_interrupted(log, host, port, PORT, open_browser) as site:
+    with replay_until_interrupted(log, host=host, port=port, usual=PORT, open_browser=open_browser) as site:
         _announce(f"Showing {log}", site.link, site.access.token is not None)
 
 

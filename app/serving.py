@@ -31,7 +31,7 @@ COMPILING = "Compiling what runs in every tick. This first start takes half a mi
 
 @contextmanager
 def serve_until_interrupted(
-    prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
+    prepared: Prepared, *, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
 ) -> Iterator[Site]:
     """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
 
@@ -58,7 +58,7 @@ def serve_until_interrupted(
     loop = Loop(lambda: simulate(prepared))
     loop.start()
     try:
-        served = _serve(loop, prepared, host, port, usual, open_browser, record)
+        served = _serve(loop, prepared, host=host, port=port, usual=usual, open_browser=open_browser, record=record)
         try:
             yield served
             ended.wait()
@@ -69,7 +69,7 @@ def serve_until_interrupted(
 
 
 @contextmanager
-def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
+def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
     """Show a recording, as `serve_until_interrupted` serves a simulation; a log without its end is repaired first.
 
     Raises:
@@ -94,13 +94,13 @@ def replay_until_interrupted(path: Path, host: str, port: int | None, usual: int
 
 
 def _serve(
-    loop: Loop, prepared: Prepared, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
+    loop: Loop, prepared: Prepared, *, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
 ) -> Served:
     if port is not None:
-        return serve_web(loop, prepared.arm, prepared.scenario, host, port, open_browser, record)
+        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=port, open_browser=open_browser, record=record)
     try:
-        return serve_web(loop, prepared.arm, prepared.scenario, host, usual, open_browser, record)
+        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=usual, open_browser=open_browser, record=record)
     except BadInput as taken:
         if taken.field != "--port":
             raise
-        return serve_web(loop, prepared.arm, prepared.scenario, host, 0, open_browser, record)
+        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=0, open_browser=open_browser, record=record)

@@ -99,6 +99,7 @@ class Report:
         what: str,
         value: float | str,
         unit: str = "",
+        *,
         at_most: float | None = None,
         at_least: float | None = None,
         n: int | None = None,
@@ -114,12 +115,12 @@ class Report:
         limits = {"at_most": at_most, "at_least": at_least, "bar": bar}
         self.rows.append({"what": what, "n": n, "value": value, "unit": unit, "bound": None, **limits, "held": held})
 
-    def share(self, what: str, hits: int, n: int, at_most: float | None = None, at_least: float | None = None) -> None:
+    def share(self, what: str, hits: int, n: int, *, at_most: float | None = None, at_least: float | None = None) -> None:
         """Add the row of a share: `hits` of `n` cases, with its confidence bound towards the bar.
 
         Of no case there is no share, and its bar is neither held nor missed.
         """
-        self.row(what, float(hits / n) if n else NO_CASE, "", at_most, at_least, n)
+        self.row(what, float(hits / n) if n else NO_CASE, "", at_most=at_most, at_least=at_least, n=n)
         if n and (at_most is None) != (at_least is None):
             self.rows[-1]["bound"] = bound(hits, n, upper=at_most is not None)
 

@@ -55,7 +55,7 @@ def kill(out: Path, seconds: float) -> float:
 
 def opens(path: Path) -> bool:
     """Whether `pendant replay` repairs and shows the log."""
-    with replay_until_interrupted(path, "127.0.0.1", 0, 0, False) as site:
+    with replay_until_interrupted(path, host="127.0.0.1", port=0, usual=0, open_browser=False) as site:
         with urllib.request.urlopen(site.url) as page:
             shown = page.status == 200
         os.kill(os.getpid(), signal.SIGTERM)  # the user's end

@@ -97,6 +97,7 @@ class Winding(Feedback):
         desired: Array,
         estimate: Estimate,
         use: JointControl,
+        *,
         excess: Array,
         waits: bool,
         torque: Array,
@@ -105,7 +106,18 @@ class Winding(Feedback):
         stiffer: Array,
     ) -> None:
         """All corrections, as if the motors gave whatever is asked of them."""
-        super().add(reference, desired, estimate, use, np.zeros_like(excess), waits, torque, start, sticking, stiffer)
+        super().add(
+            reference,
+            desired,
+            estimate,
+            use,
+            excess=np.zeros_like(excess),
+            waits=waits,
+            torque=torque,
+            start=start,
+            sticking=sticking,
+            stiffer=stiffer,
+        )
 
 
 def reach_limit(case: Case) -> Overshoot:

@@ -102,7 +102,7 @@ def pages(url: str, _: str, end: float) -> int:
 ATTACKS: tuple[Attack, ...] = (sliders, oversized, strangers, connections, pages)
 
 
-def attack(kind: int, url: str, slider: str, seconds: float, back: Connection) -> None:
+def attack(kind: int, url: str, *, slider: str, seconds: float, back: Connection) -> None:
     """In a process of its own: say when it begins, do it for so long, and tell how often."""
     back.send(kind)
     back.send(ATTACKS[kind](url, slider, time.monotonic() + seconds))

@@ -100,7 +100,7 @@ def direction(device: Simulation, rng: np.random.Generator, least: float, most: 
     return base_axes(device) @ np.array([across * math.cos(round_z), across * math.sin(round_z), -math.cos(angle)])
 
 
-def touch(device: Simulation, rng: np.random.Generator, kind: str, cone: bool, running: bool) -> Touching:
+def touch(device: Simulation, rng: np.random.Generator, kind: str, *, cone: bool, running: bool) -> Touching:
     """One touch that must not start free-drive."""
 
     def made(name: str, part: str, force: np.ndarray, length: float, **more: object) -> Touching:
@@ -175,7 +175,7 @@ def measure_arm(arm: Arm) -> Count:
         kind = (BUMPS, SLOW, FORBIDDEN)[k % 3]
         if arm.running and device.tick(IDLE).mode is not Mode.RUN:
             start(device, rng)
-        touching = touch(device, rng, kind, not arm.running and rng.uniform() < 0.5, arm.running)
+        touching = touch(device, rng, kind, cone=not arm.running and rng.uniform() < 0.5, running=arm.running)
         if any(event.kind in TRIED for event in run_touch(device, touching)):
             wrong.append(touching.kind)
     return Count(arm.touches, tuple(wrong), 0, 0, 0.0, ())
@@ -187,7 +187,7 @@ def measure_bumps(arm: Arm, rng: np.random.Generator) -> Count:
     way, entered = 0.0, 0
     kinds: list[str] = []
     for _ in range(arm.touches):
-        touching = touch(device, rng, BUMPS, False, False)
+        touching = touch(device, rng, BUMPS, cone=False, running=False)
         begin = int(rng.integers(5, 450))  # ticks into the check
         origin, since = flange(device), -1
         for _ in range(800):

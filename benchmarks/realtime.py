@@ -198,7 +198,7 @@ def measure(report: Report, seconds: float | None = None) -> None:
         alone = observe(loop, time.perf_counter() + 1.0, ALONE)
         served = serve(loop, arm, scenario)
         try:
-            _measure(report, loop, served, ledger, seconds)
+            _measure(report, loop, served, ledger, seconds=seconds)
         finally:
             served.close()
     finally:
@@ -206,7 +206,7 @@ def measure(report: Report, seconds: float | None = None) -> None:
     _pace(report, alone, "before there is a page: ", bars=False)
 
 
-def _measure(report: Report, loop: Loop, served: Served, ledger: Ledger, seconds: float) -> None:
+def _measure(report: Report, loop: Loop, served: Served, ledger: Ledger, *, seconds: float) -> None:
     row = 1 + loop.simulation.arm.chain.joints.index(PART)
     note_arrivals(served, ledger)
     frames = note_frames(served, row)

@@ -38,7 +38,7 @@ def settings() -> Settings:
     return apply(Settings(), {**changes, "sequence.period": 5.0})
 
 
-def recorded(arm: str, seed: int, count: int, inputs: Inputs, used: Settings) -> list[Estimate]:
+def recorded(arm: str, seed: int, count: int, *, inputs: Inputs, used: Settings) -> list[Estimate]:
     """What the controller knows in `count` ticks."""
     simulation = Simulation(load_arm(arm), Scenario(seed=seed, walls=[WALL]), used)
     estimates = []
@@ -84,7 +84,7 @@ def measure(report: Report, rounds: int = 8) -> None:
         ("idle", NOTHING, 15.0, 2500, lambda supervisor: supervisor._free.phase is Phase.OFF),
         ("in the sequence", HELD, 35.0, start + 2500, lambda supervisor: supervisor._free.phase is Phase.SEQUENCE),
     ):
-        estimates = recorded("ur5e", report.options.seed, count, inputs, used)
+        estimates = recorded("ur5e", report.options.seed, count, inputs=inputs, used=used)
         times = [took for _ in range(rounds) for took in timed(estimates, inputs, used, within)]
         mean, late = float(np.mean(times)) / 1000.0, float(np.percentile(times, 99)) / 1000.0
         report.row(f"{name}: steps measured", len(times), at_least=rounds * 2000)

@@ -122,9 +122,9 @@ def stages(scene: Scene, ticks: int) -> dict[str, float]:
     def timed(owner: Any, method: str, name: str) -> None:
         inner = getattr(owner, method)
 
-        def outer(*values: Any) -> Any:
+        def outer(*values: Any, **named: Any) -> Any:
             begun = time.perf_counter_ns()
-            result = inner(*values)
+            result = inner(*values, **named)
             times[name].append(time.perf_counter_ns() - begun)
             return result
 

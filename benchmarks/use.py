@@ -92,7 +92,7 @@ def measure_push(push: Guiding) -> Result:
     return Result(push, entered, way, ", ".join(left), sum(event.kind is Kind.WALL_REACHED for event in events))
 
 
-def pushes(report: Report, sensor: bool, walls: bool, count: int, steady: bool = False) -> list[Guiding]:
+def pushes(report: Report, sensor: bool, walls: bool, *, count: int, steady: bool = False) -> list[Guiding]:
     """Right payloads of 0 to 5 kg, forces and paces at random."""
     cases, _ = draw(report.options.seed + 500, -(-count // len(MOUNTINGS)), "sensor" if sensor else "no sensor")
     rng = np.random.default_rng([report.options.seed, 5])
@@ -109,7 +109,9 @@ def measure(report: Report) -> None:
     count = 500 if report.options.full else 32
     plans = ((True, True, count, False), (True, False, count // 2, False), (True, True, count // 2, True))
     for sensor, walls, number, steady in plans:
-        results = [r for r in spread(measure_push, pushes(report, sensor, walls, number, steady)) if r.left != "no way"]
+        results = [
+            r for r in spread(measure_push, pushes(report, sensor, walls, count=number, steady=steady)) if r.left != "no way"
+        ]
         label = f"walls {'on' if walls else 'off'}{', whole force all the time' if steady else ''}"
         entered = [r for r in results if r.entered]
         n, at_least = len(entered), 0.99 if walls else None

@@ -55,7 +55,9 @@ class HapticUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Feedback that is felt: which patterns, and how far they turn the last joint."""
 
     on: Annotated[bool, switch("HF-1", "the robot can be felt: patterns of small motions", locked=False)] = False
-    amplitude: Annotated[float, number(0.001, 0.008, "rad", "HF-2", "of a cycle; its centre wanders 1.5 times as far")] = 0.004
+    amplitude: Annotated[float, number(0.001, 0.008, "rad", "HF-2", text="of a cycle; its centre wanders 1.5 times as far")] = (
+        0.004
+    )
     left: Annotated[bool, switch("HF-1", "free-drive was left", locked=False)] = True
     entered: Annotated[bool, switch("HF-1", "free-drive was entered", locked=False)] = True
     confirmation: Annotated[bool, switch("HF-1", "a confirmation is asked for", locked=False)] = True

@@ -6,7 +6,7 @@ from pendant.settings.schema import SettingError, Value
 from pendant.tick.modes import Mode
 
 
-def change(settings: Settings, changes: dict[str, Value], mode: Mode, trying: bool, tick: int) -> tuple[Settings, list[Event]]:
+def change(settings: Settings, changes: dict[str, Value], *, mode: Mode, trying: bool, tick: int) -> tuple[Settings, list[Event]]:
     """The settings after the changes that are allowed, each on its own, and what became of every change.
 
     Args:

@@ -159,7 +159,7 @@ class Supervisor:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
             trying = self._free.phase is not _OFF
-            self.settings, changed = change(self.settings, wanted, self._robot.mode, trying, estimate.tick)
+            self.settings, changed = change(self.settings, wanted, mode=self._robot.mode, trying=trying, tick=estimate.tick)
             events += changed
             self._refresh()
         return self._publish(events)

@@ -86,7 +86,7 @@ class Simulation:
         # What the controller takes to be beyond the flange, before a change and after it.
         self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
-        self.dynamics = Dynamics(rigid, links, self._before, scenario.mounting, arm.chain.elbow)
+        self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
@@ -104,7 +104,7 @@ class Simulation:
         )
         self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting
-        self.controller = Controller(arm, self.calibration, self.dynamics, self.tcp, self.R_FT)
+        self.controller = Controller(arm, self.calibration, self.dynamics, tcp=self.tcp, R_FT=self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
         self._current = self.dynamics.gravity(self.plant.q) / self._motor
         self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
@@ -161,13 +161,13 @@ class Simulation:
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
         learn = before is _FOLLOW
-        estimate = estimator.update(sample, done, refusal, use, references.answered, learn)
+        estimate = estimator.update(sample, done, refusal, use=use, answered=references.answered, learn=learn)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
-        self._current = controller.update(estimate, decision, jacobian, friction, stiffer, use)
+        self._current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
         plant.advance(self._current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
         return decision

@@ -107,3 +107,19 @@ def test_no_module_takes_what_another_keeps_to_itself() -> None:
         for node in ast.walk(tree):
             if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] in TOPS:
                 assert not [alias.name for alias in node.names if alias.name.startswith("_")], module
+
+
+def test_no_function_takes_more_than_four_values_by_position() -> None:
+    """What comes after the fourth is named where it is given. Compiled kernels still take arrays by position: they name none."""
+    crowded: list[str] = []
+    for top in ("pendant", "sim", "app", "tools", "benchmarks"):
+        for path in sorted((ROOT / top).rglob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                    continue
+                if any("njit" in ast.unparse(each) for each in node.decorator_list):
+                    continue
+                names = [each.arg for each in node.args.posonlyargs + node.args.args]
+                if len(names) - (names[:1] in (["self"], ["cls"])) > 4:
+                    crowded.append(f"{path.relative_to(ROOT)}: {node.name}")
+    assert crowded == []

@@ -121,7 +121,9 @@ class Container:
         self._put(MAGIC)
         self._record(Header(profile="", library=library))
 
-    def channel(self, topic: str, schema: str, text: str, encoding: str, of_schema: str, metadata: Mapping[str, str] = {}) -> int:
+    def channel(
+        self, topic: str, schema: str, text: str, *, encoding: str, of_schema: str, metadata: Mapping[str, str] = {}
+    ) -> int:
         """Declare a topic; its number.
 
         Args:
@@ -227,7 +229,7 @@ class Container:
             offsets[channel] = self._at
             self._put(INDEX.pack(Opcode.MESSAGE_INDEX, index.nbytes + 6, channel, index.nbytes) + index.tobytes())
             self._summary.counts[channel] += len(index)
-        self._summary.done(index_of(chunk, start, length, offsets, self._at - start - length))
+        self._summary.done(index_of(chunk, start, length, offsets=offsets, indices=self._at - start - length))
 
     def _record(self, record: Any) -> None:
         builder = RecordBuilder()
@@ -239,7 +241,7 @@ class Container:
         self._at += len(data)
 
 
-def index_of(chunk: ChunkRecord, start: int, length: int, offsets: dict[int, int], indices: int) -> ChunkIndex:
+def index_of(chunk: ChunkRecord, start: int, length: int, *, offsets: dict[int, int], indices: int) -> ChunkIndex:
     """The index of a chunk at byte `start`, `length` long, followed by `indices` bytes of message indices."""
     return ChunkIndex(
         chunk_length=length,

@@ -140,7 +140,7 @@ def scanned(data: bytes, where: str) -> Scan:
             if code == Opcode.DATA_END:
                 scan.whole = data.endswith(MAGIC) and size > stop
                 break
-            _take(scan, code, data, at, stop)
+            _take(scan, code, data, at=at, stop=stop)
         except UNREADABLE as error:
             raise BadInput(where, f"byte {at}", ABSENT, f"is damaged ({str(error) or type(error).__name__})") from None
         at = scan.end = stop
@@ -151,7 +151,7 @@ def scanned(data: bytes, where: str) -> Scan:
     return scan
 
 
-def _take(scan: Scan, code: int, data: bytes, at: int, stop: int) -> None:
+def _take(scan: Scan, code: int, data: bytes, *, at: int, stop: int) -> None:
     """Take in one record of the file's data."""
     summary = scan.summary
     stream = ReadDataStream(io.BytesIO(data[at + 9 : stop]))
@@ -182,7 +182,7 @@ def _take(scan: Scan, code: int, data: bytes, at: int, stop: int) -> None:
     elif code == Opcode.CHUNK:
         chunk = Chunk.read(stream)
         _unpack(scan, chunk)
-        summary.chunks.append(index_of(chunk, at, stop - at, {}, 0))
+        summary.chunks.append(index_of(chunk, at, stop - at, offsets={}, indices=0))
     elif code == Opcode.MESSAGE_INDEX:
         index = MessageIndex.read(stream)
         last: ChunkIndex = summary.chunks[-1]

@@ -144,7 +144,15 @@ class Recorder:
 
     def _take(self, simulation: Simulation, decision: Decision, k: int) -> None:
         e = simulation.estimate
-        fill_rows(e, simulation.plant, decision.gain, simulation.fitting.mass, self._numbers, self._truth, k)
+        fill_rows(
+            e,
+            simulation.plant,
+            gain=decision.gain,
+            configured=simulation.fitting.mass,
+            known=self._numbers,
+            truth=self._truth,
+            k=k,
+        )
         if decision.monitored:
             row, at = self._numbers[k], self._vectors
             for monitored in decision.monitored:

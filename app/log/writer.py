@@ -62,13 +62,13 @@ class Writer:
         for picture in block.pictures:
             self._draw(picture.tick, picture)
         rows = [
-            self._records(self._state_type, "/state", block.ticks, block.numbers, block.codes),
-            self._records(self._truth_type, "/truth", block.ticks, block.truth, []),
+            self._records(self._state_type, "/state", block.ticks, numbers=block.numbers, codes=block.codes),
+            self._records(self._truth_type, "/truth", block.ticks, numbers=block.truth, codes=[]),
         ]
         self._file.flush(rows)
 
     def _records(
-        self, kind: np.dtype, topic: str, ticks: np.ndarray, numbers: np.ndarray, codes: list[tuple[int, ...]]
+        self, kind: np.dtype, topic: str, ticks: np.ndarray, *, numbers: np.ndarray, codes: list[tuple[int, ...]]
     ) -> np.ndarray[Any, Any]:
         """Whole message records, a row a tick."""
         rows = np.zeros(len(ticks), dtype=kind)
@@ -134,14 +134,14 @@ class Writer:
         channels: dict[str, int] = {}
         packed = {"/state": ("pendant/msg/State", STATE, CODES), "/truth": ("pendant/msg/Truth", TRUTH, ())}
         for topic, (name, fields, codes) in packed.items():
-            channels[topic] = file.channel(topic, name, layout.schema(fields, n, codes), "cdr", "ros2msg")
+            channels[topic] = file.channel(topic, name, layout.schema(fields, n, codes), encoding="cdr", of_schema="ros2msg")
         drawn = {"/tf": "FrameTransforms", "/scene": "SceneUpdate", "/robot": "SceneUpdate", "/log": "Log"}
         for topic, name in drawn.items():
             schema = msgspec.json.encode(foxglove.SCHEMAS[f"foxglove.{name}"]).decode()
-            channels[topic] = file.channel(topic, f"foxglove.{name}", schema, "json", "jsonschema")
+            channels[topic] = file.channel(topic, f"foxglove.{name}", schema, encoding="json", of_schema="jsonschema")
         for topic, name in (("/pendant", "pendant.Pendant"), ("/events", "pendant.Event"), ("/settings", "pendant.Settings")):
             schema = msgspec.json.encode({"title": name, "type": "object"}).decode()
-            channels[topic] = file.channel(topic, name, schema, "json", "jsonschema")
+            channels[topic] = file.channel(topic, name, schema, encoding="json", of_schema="jsonschema")
         message = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
         file.add(channels["/robot"], 0, message)
         return channels

@@ -59,14 +59,14 @@ def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
     marks = [event.t for event in (*summary.messages, *summary.contacts)]
     drawn = [
         ("Modes, and phases of free-drive", _bars(summary.modes, summary.phases, summary)),
-        ("Speed of tool centre point and elbow, against 250 mm/s", _lines(t, speeds, "speed [mm/s]", marks, 1000 * SLOW)),
+        ("Speed of tool centre point and elbow, against 250 mm/s", _lines(t, speeds, "speed [mm/s]", marks, bar=1000 * SLOW)),
         ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]", marks)),
         ("External torque of the joints, size", _lines(t, torques, "torque [N·m]", marks)),
     ]
     shares = _shares(log)
     if shares:
         drawn.append(
-            ("Monitored values against their limits, while they are checked", _lines(t, shares, "of limit [%]", marks, 100))
+            ("Monitored values against their limits, while they are checked", _lines(t, shares, "of limit [%]", marks, bar=100))
         )
     return drawn
 
@@ -81,7 +81,7 @@ def _shares(log: Log) -> list[tuple[str, Array]]:
     return [(text, share) for _, text, share in sorted(found, key=lambda each: -each[0])[:PARAMETERS_DRAWN]]
 
 
-def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], bar: float = 0.0) -> str:
+def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], *, bar: float = 0.0) -> str:
     figure, axes = _axes(1.9)
     for name, values in series:
         axes.plot(*thinned(t, values), linewidth=0.9, label=name)

@@ -28,8 +28,8 @@ def work(job: Job, progress: Progress = silent) -> RunOutcome:
     """Run one job in this process. Raises BadInput: what the session says cannot be used."""
     prepared = prepare(job.session, job.name)
     if not job.recorded:
-        return run(job.session, prepared, simulate(prepared), job.out, job.realtime, progress)
-    outcome = record(job.session, prepared, job.out, job.realtime, progress)
+        return run(job.session, prepared, simulate(prepared), job.out, realtime=job.realtime, progress=progress)
+    outcome = record(job.session, prepared, job.out, realtime=job.realtime, progress=progress)
     write_report(read(job.out / "log.mcap"), job.out, outcome.verdicts)
     return outcome
 

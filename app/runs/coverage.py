@@ -83,11 +83,11 @@ def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[RunOutcome, Run
     rows: list[ClaimRow] = []
     for claim in CLAIMS.values():
         names = [name for name, session in sessions.items() if claim.name in session.claims]
-        rows += [_row(claim, name, sessions[name], *pairs[name]) for name in names] or [ClaimRow(claim)]
+        rows += [_row(claim, name, sessions[name], on=pairs[name][0], off=pairs[name][1]) for name in names] or [ClaimRow(claim)]
     return rows
 
 
-def _row(claim: Claim, name: str, session: Session, on: RunOutcome, off: RunOutcome) -> ClaimRow:
+def _row(claim: Claim, name: str, session: Session, *, on: RunOutcome, off: RunOutcome) -> ClaimRow:
     checks = tuple(verdict.expected for verdict in on.verdicts)
     unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
     return ClaimRow(claim, name, checks, session.switch, on.passed and bool(checks), off.unmet, unmet)

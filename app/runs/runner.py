@@ -71,7 +71,7 @@ def simulate(prepared: Prepared) -> Simulation:
     return Simulation(prepared.arm, prepared.scenario, prepared.settings)
 
 
-def record(session: Session, prepared: Prepared, out: Path, realtime: bool = False, progress: Progress = silent) -> RunOutcome:
+def record(session: Session, prepared: Prepared, out: Path, *, realtime: bool = False, progress: Progress = silent) -> RunOutcome:
     """Run a session as `run`, and record it into `out`/log.mcap.
 
     Raises:
@@ -79,7 +79,15 @@ def record(session: Session, prepared: Prepared, out: Path, realtime: bool = Fal
     """
     simulation = simulate(prepared)
     with Recorder(out / "log.mcap", simulation, session.title) as recorder:
-        return run(session, prepared, simulation, out, realtime, progress, lambda now: recorder.see(simulation, now))
+        return run(
+            session,
+            prepared,
+            simulation,
+            out,
+            realtime=realtime,
+            progress=progress,
+            see=lambda now: recorder.see(simulation, now),
+        )
 
 
 def run(
@@ -87,6 +95,7 @@ def run(
     prepared: Prepared,
     simulation: Simulated,
     out: Path,
+    *,
     realtime: bool = False,
     progress: Progress = silent,
     see: Callable[[Decision], None] = lambda decision: None,

@@ -217,12 +217,12 @@ def _check_session(session: Session, prepared: Prepared, where: str) -> None:
     _check_claims(session, where)
     parts = ["foot", *prepared.arm.chain.joints, "flange", "tool"]
     for i, action in enumerate(session.timeline):
-        _check_action(action, f"timeline[{i}]", session, prepared, parts, where)
+        _check_action(action, f"timeline[{i}]", session=session, prepared=prepared, parts=parts, where=where)
     for i, expectation in enumerate(session.expectations):
-        _check_expectation(expectation, f"expectations[{i}]", session, parts, where)
+        _check_expectation(expectation, f"expectations[{i}]", session=session, parts=parts, where=where)
 
 
-def _check_action(action: Action, field: str, session: Session, prepared: Prepared, parts: list[str], where: str) -> None:
+def _check_action(action: Action, field: str, *, session: Session, prepared: Prepared, parts: list[str], where: str) -> None:
     if action.at is not None and action.at >= session.duration:
         raise BadInput(where, f"{field}.at", action.at, f"below the duration, {session.duration:g} s")
     if isinstance(action, Effort):
@@ -258,7 +258,7 @@ def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> Non
         raise BadInput(where, field, change.channel, f"0 .. {count - 1} for {change.sensor}, or nothing for all")
 
 
-def _check_expectation(expectation: Expectation, field: str, session: Session, parts: list[str], where: str) -> None:
+def _check_expectation(expectation: Expectation, field: str, *, session: Session, parts: list[str], where: str) -> None:
     for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
         moment = getattr(expectation, name, None)
         if expectation.after is None and moment is not None and moment > session.duration:

@@ -29,7 +29,7 @@ class Docks:
     """All panels."""
 
     def __init__(
-        self, server: viser.ViserServer, guard: Guard, loop: Running, hand: VirtualHand, arm: Arm, recording: LiveRecording
+        self, server: viser.ViserServer, guard: Guard, loop: Running, *, hand: VirtualHand, arm: Arm, recording: LiveRecording
     ) -> None:
         self._loop = loop
         self._read = 0

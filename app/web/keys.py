@@ -30,7 +30,7 @@ class Key(NamedTuple):
 class Keys:
     """All of them. Lives on viser's event loop."""
 
-    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, docks: Docks, preferences: Preferences) -> None:
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, *, docks: Docks, preferences: Preferences) -> None:
         self._loop, self._docks = loop, docks
         self._last: dict[tuple[int, str], float] = {}
         self.commands: dict[str, viser.CommandHandle] = {}

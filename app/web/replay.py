@@ -48,7 +48,7 @@ class Replay(Site):
         self._before = time.monotonic()
         self._frame, self._marked = 0, -1.0
         log = player.log
-        self.scene = Scene(self.server, log.arm, log.scenario, meshes, snapshot_at(log, 0, 0))
+        self.scene = Scene(self.server, log.arm, log.scenario, meshes=meshes, first=snapshot_at(log, 0, 0))
         self._controls()
         self._plots()
         for control in (self.play, self.line, self.speed, self.goto):

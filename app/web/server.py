@@ -33,6 +33,7 @@ class Served(Site):
         loop: Running,
         arm: Arm,
         scenario: Scenario,
+        *,
         meshes: Mapping[str, bytes],
         access: Access,
         port: int,
@@ -42,14 +43,14 @@ class Served(Site):
         self._loop = loop
         self._shown = -1  # tick of the last picture
         self._frame = 0
-        self.scene = Scene(self.server, arm, scenario, meshes, loop.latest())
+        self.scene = Scene(self.server, arm, scenario, meshes=meshes, first=loop.latest())
         self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
         self.recording = recording
-        self.docks = Docks(self.server, self.guard, loop, self.hand, arm, recording)
+        self.docks = Docks(self.server, self.guard, loop, hand=self.hand, arm=arm, recording=recording)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         self.preferences = Preferences(self.guard, self.docks.settings_dock, self._paint_page)
-        self.keys = Keys(self.server, self.guard, loop, self.docks, self.preferences)
+        self.keys = Keys(self.server, self.guard, loop, docks=self.docks, preferences=self.preferences)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
         self.server.on_client_connect(self._welcome)
@@ -122,6 +123,7 @@ def serve(
     loop: Running,
     arm: Arm,
     scenario: Scenario,
+    *,
     host: str = "127.0.0.1",
     port: int = 0,
     open_browser: bool = False,
@@ -144,7 +146,7 @@ def serve(
     if record is not None:
         must_be_writable(record)
         recording.start()
-    served = Served(loop, arm, scenario, meshes, access, port, recording)
+    served = Served(loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording)
     if open_browser:
         webbrowser.open(served.link)
     return served

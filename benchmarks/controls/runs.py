@@ -101,7 +101,7 @@ def begin(case: Case) -> Simulation:
     scenario = Scenario(seed=case.seed, mismatch=case.mismatch, payload_true=load, payload_configured=load)
     simulation = Simulation(arm, scenario, Settings(joint_control=LAWS[case.law]))
     controller, friction = simulation.controller, simulation.plant.friction
-    controller.feedback = Feedback(arm, simulation.calibration, simulation.dynamics, simulation.tcp, case.bandwidth)
+    controller.feedback = Feedback(arm, simulation.calibration, simulation.dynamics, simulation.tcp, bandwidth=case.bandwidth)
     rng = np.random.default_rng(case.seed)
     if case.mismatch == "on":
         friction.per_kelvin *= 1.0 + 0.5 * rng.choice([-1.0, 1.0])

@@ -70,7 +70,7 @@ class Client:
         self.send({"type": "GuiButtonHoldMessage", "uuid": self.called(*FREE_DRIVE), "frequency": 30.0})
         self.look(1.0 / HOLD_RATE)
 
-    def drag(self, phase: str, name: str, modifier: str | None, start: list[float], here: list[float]) -> None:
+    def drag(self, phase: str, name: str, *, modifier: str | None, start: list[float], here: list[float]) -> None:
         """Drag the part `name`, which was grabbed at `start`, to `here`, both in W [m]."""
         message = {"type": "SceneNodeDragMessage", "phase": phase, "name": name, "instance_index": None, "owner": ""}
         message |= {"start_position": start, "start_screen_pos": [0.5, 0.5], "button": "left", "modifier": modifier}

@@ -104,13 +104,13 @@ def enter(client: Client) -> str:
 def guide_and_leave(client: Client) -> str:
     """Lead the flange on a circle, let go, wait until free-drive has ended: "" if by its period, or what the page says."""
     start = [float(x) for x in client.things[FLANGE]["position"]]
-    client.drag("start", FLANGE, None, start, start)
+    client.drag("start", FLANGE, modifier=None, start=start, here=start)
     for step in range(1, round(GUIDED * HOLD_RATE) + 1):
         turn = 2.0 * math.pi * step / (ROUND * HOLD_RATE)
         here = [start[0], start[1] + RADIUS * math.sin(turn), start[2] + RADIUS * (1.0 - math.cos(turn))]
-        client.drag("update", FLANGE, None, start, here)
+        client.drag("update", FLANGE, modifier=None, start=start, here=here)
         client.look(1.0 / HOLD_RATE)
-    client.drag("end", FLANGE, None, start, start)
+    client.drag("end", FLANGE, modifier=None, start=start, here=start)
     end = time.monotonic() + ALONE
     while mode(client) == FREE and time.monotonic() < end:
         client.look(0.2)

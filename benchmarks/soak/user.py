@@ -31,7 +31,7 @@ class User:
     """
 
     def __init__(
-        self, url: str, seed: int, idle: bool = False, first_uses: FirstUses | None = None, operator: bool = False
+        self, url: str, seed: int, *, idle: bool = False, first_uses: FirstUses | None = None, operator: bool = False
     ) -> None:
         self.done: Counter[str] = Counter()
         self.stayed = False  # to the end that was asked for
@@ -112,10 +112,10 @@ class User:
         steps = round(HOLD_RATE * self._random.uniform(0.1, 2.5))
         for step in range(steps + 1):
             here = [x + d * step / max(steps, 1) for x, d in zip(start, way, strict=True)]
-            self._client.drag("update" if step else "start", name, modifier, start, here)
+            self._client.drag("update" if step else "start", name, modifier=modifier, start=start, here=here)
             self._client.look(1.0 / HOLD_RATE)
         if self._random.random() < 0.9:  # else the end is lost
-            self._client.drag("end", name, modifier, start, start)
+            self._client.drag("end", name, modifier=modifier, start=start, here=start)
 
     def _use(self, name: str) -> None:
         thing = self._client.things[name]

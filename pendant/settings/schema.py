@@ -33,7 +33,7 @@ class SettingRow(NamedTuple):
     locked: bool  # a limit: not changed in FREE_DRIVE and RUN
 
 
-def number(low: float, high: float, unit: str, ident: str, text: str, locked: bool = True) -> Meta:
+def number(low: float, high: float, unit: str, ident: str, *, text: str, locked: bool = True) -> Meta:
     """A number from `low` to `high`."""
     return Meta(ge=low, le=high, description=text, extra={"unit": unit, "id": ident, "locked": locked})
 
@@ -43,7 +43,7 @@ def switch(ident: str, text: str, locked: bool = True) -> Meta:
     return Meta(description=text, extra={"unit": "", "id": ident, "locked": locked})
 
 
-def limit(low: float, high: float, unit: str, ident: str, text: str) -> Meta:
+def limit(low: float, high: float, unit: str, ident: str, *, text: str) -> Meta:
     """Of a `Limit`: the range of its `max`."""
     return Meta(description=text, extra={"unit": unit, "id": ident, "low": low, "high": high})
 
@@ -56,7 +56,7 @@ class Limit(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One cell of the table of limits (FD-25)."""
 
     max: float
-    time: Annotated[float, number(0.0, 2.0, "s", "FD-12a", "allowed time beyond")] = 0.0
+    time: Annotated[float, number(0.0, 2.0, "s", "FD-12a", text="allowed time beyond")] = 0.0
     on: Annotated[bool, switch("FD-25", "checked")] = True
 
 

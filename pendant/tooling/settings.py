@@ -9,5 +9,5 @@ from pendant.settings.schema import number as _number
 class ToolUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How tool and payload are changed and measured."""
 
-    ramp: Annotated[float, _number(0.0, 10.0, "s", "tools", "time to go over to another payload in", locked=False)] = 1.0
-    measure: Annotated[float, _number(0.1, 5.0, "s", "tools", "time to measure a posture for", locked=False)] = 0.5
+    ramp: Annotated[float, _number(0.0, 10.0, "s", "tools", text="time to go over to another payload in", locked=False)] = 1.0
+    measure: Annotated[float, _number(0.1, 5.0, "s", "tools", text="time to measure a posture for", locked=False)] = 0.5

@@ -50,7 +50,7 @@ class ActiveDamping:
         self._limits[:] = math.inf
         self.help = 1.0
 
-    def add(self, estimate: Estimate, damping: Damping, reduced: SpeedLimits | None, jacobian: Array, torque: Array) -> None:
+    def add(self, estimate: Estimate, damping: Damping, reduced: SpeedLimits | None, *, jacobian: Array, torque: Array) -> None:
         """Add the resistance to `torque` (n,) [N·m].
 
         Args:

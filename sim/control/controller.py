@@ -37,12 +37,12 @@ class Controller:
         R_FT: its orientation in F (3, 3).
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
-        self.references = References(arm, calibration, dynamics, tcp, R_FT)
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
+        self.references = References(arm, calibration, dynamics, tcp=tcp, R_FT=R_FT)
         self.feed_forward = FeedForward(arm, calibration, dynamics)
         self.torque_feedback = TorqueFeedback(arm.n)
         self.feedback = Feedback(arm, calibration, dynamics, tcp)
-        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp, R_FT)
+        self.free_drive = FreeDriveLaw(arm, calibration, dynamics, tcp=tcp, R_FT=R_FT)
         self.motor = MotorController(arm, calibration)
         self._dynamics = dynamics
         self._law: Law | None = None
@@ -56,6 +56,7 @@ class Controller:
         estimate: Estimate,
         decision: Decision,
         jacobian: Array,
+        *,
         friction: AdaptiveFriction,
         stiffer: Array,
         use: JointControl,
@@ -83,9 +84,9 @@ class Controller:
             self.references.skip()
             if self._law is not _FREE:
                 self.free_drive.start(estimate)
-            torque = self.free_drive.torque(estimate, decision, jacobian, friction, use.friction)
+            torque = self.free_drive.torque(estimate, decision, jacobian, friction=friction, with_friction=use.friction)
         else:
-            torque = self._track(estimate, decision, friction, stiffer, use)
+            torque = self._track(estimate, decision, friction=friction, stiffer=stiffer, use=use)
         if blind:
             self._let_blind_joints_rest(estimate, torque)
         self._law = law
@@ -106,13 +107,15 @@ class Controller:
         torque[which] = static[which]
 
     def _track(
-        self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, stiffer: Array, use: JointControl
+        self, estimate: Estimate, decision: Decision, *, friction: AdaptiveFriction, stiffer: Array, use: JointControl
     ) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
         helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
         rubbing = friction if helped else None
-        torque = self.feed_forward.torque(reference, rubbing, use.feed_forward, stiffer, references.push, references.fresh)
+        torque = self.feed_forward.torque(
+            reference, rubbing, motion=use.feed_forward, stiffer=stiffer, push=references.push, fresh=references.fresh
+        )
         desired = self.feed_forward.tau_J
         # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
         start = torque.copy() if references.fresh else None
@@ -134,7 +137,18 @@ class Controller:
         sticking = friction.breakaway if helped else self._nothing
         # What stands in the way of a motion that is stopped must not be pushed on: to take that back would need seconds.
         waits = decision.law is _BRAKE and self._followed and estimate.touched
-        self.feedback.add(reference, desired, estimate, use, self.motor.excess, waits, torque, start, sticking, stiffer)
+        self.feedback.add(
+            reference,
+            desired,
+            estimate,
+            use,
+            excess=self.motor.excess,
+            waits=waits,
+            torque=torque,
+            start=start,
+            sticking=sticking,
+            stiffer=stiffer,
+        )
         return torque
 
 

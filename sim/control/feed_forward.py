@@ -48,6 +48,7 @@ class FeedForward:
         self,
         reference: Reference,
         friction: AdaptiveFriction | None,
+        *,
         motion: bool,
         stiffer: Array,
         push: Array | None = None,

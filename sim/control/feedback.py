@@ -55,7 +55,9 @@ class Feedback:
     go while the joint slides its first tenths of a milliradian, for there the friction that is fed forward takes its place.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, bandwidth: float = BANDWIDTH) -> None:
+    def __init__(
+        self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, *, bandwidth: float = BANDWIDTH
+    ) -> None:
         spring = arm.transmissions
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         omega = 2.0 * math.pi * bandwidth
@@ -79,6 +81,7 @@ class Feedback:
         desired: Array,
         estimate: Estimate,
         use: JointControl,
+        *,
         excess: Array,
         waits: bool,
         torque: Array,

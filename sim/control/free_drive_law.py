@@ -51,7 +51,7 @@ class FreeDriveLaw:
         singularity: how near the arm is to one.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         """
         Args:
             arm: the arm's numbers.
@@ -96,7 +96,7 @@ class FreeDriveLaw:
         self._shaker.stop()
 
     def torque(
-        self, estimate: Estimate, decision: Decision, jacobian: Array, friction: AdaptiveFriction, with_friction: bool
+        self, estimate: Estimate, decision: Decision, jacobian: Array, *, friction: AdaptiveFriction, with_friction: bool
     ) -> Array:
         """Motor torque (n,) [N·m].
 
@@ -129,7 +129,7 @@ class FreeDriveLaw:
             constraint.prepare(estimate, locks, jacobian, static)
         help = 1.0
         if decision.damping is not None:
-            self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian, torque)
+            self._damping.add(estimate, decision.damping, decision.speed_limits, jacobian=jacobian, torque=torque)
             help = self._damping.help
         hand = self._hand
         if estimate.wrench_valid and decision.amplified:
@@ -143,7 +143,7 @@ class FreeDriveLaw:
             # Where nobody may lead the arm it gets no help, and brakes: who leads it pushes then, and is felt.
             self._help(estimate, friction, 0.0 if decision.doubtful else help * self.share, torque)
         if locks is not None:
-            self.singularity.resist(locks.near, locks.too_near, estimate.theta_d, static, torque)
+            self.singularity.resist(locks.near, locks.too_near, speed=estimate.theta_d, static=static, torque=torque)
             constraint.hold(torque)
         self._shake(estimate, decision, friction, torque)
         return torque

@@ -51,7 +51,7 @@ class Singularity:
         if self.gradient.size >= 6:
             self.value = _smallest(jacobian, self._u, self.gradient)
 
-    def resist(self, near: float, too_near: float, speed: Array, static: Array, torque: Array) -> None:
+    def resist(self, near: float, too_near: float, *, speed: Array, static: Array, torque: Array) -> None:
         """Resist motion towards the singularity: damp it, and take away what drives it on. The way back is free.
 
         Args:

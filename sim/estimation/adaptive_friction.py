@@ -65,7 +65,7 @@ class AdaptiveFriction:
         self.total, self.deviation, self.warmth = self._outcome
         self.warmth[:] = 1.0
 
-    def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, temperature: Array, free: bool) -> None:
+    def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, *, temperature: Array, free: bool) -> None:
         """One tick.
 
         Args:

@@ -85,6 +85,7 @@ class Estimator:
         sample: Sample,
         move_done: int,
         move_refused: str,
+        *,
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
@@ -188,12 +189,12 @@ class Estimator:
         if self._lost:
             surplus[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
         free = learn and self._started and use.adaptive and not transmission.contact
-        friction.learn(motor[1], surplus, tau_dyn, transmission.fused, sample.temperature, free)
+        friction.learn(motor[1], surplus, tau_dyn, transmission.fused, temperature=sample.temperature, free=free)
         rubs = (friction.total, friction.terms, friction.warmth)
         ways = transmission.ways
         ways[DEFLECTION] = self._deflection
         moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
-        transmission.update(friction.deviation, stiction, motor[2], moving and learn, self._ways)
+        transmission.update(friction.deviation, stiction, motor[2], moving=moving and learn, use=self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
 

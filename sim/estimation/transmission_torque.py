@@ -90,7 +90,7 @@ class TransmissionTorque:
         self._differ[:] = 0.0
 
     def update(
-        self, friction_deviation: Array, stiction: Array, acceleration: Array, moving: bool, use: NDArray[np.bool_]
+        self, friction_deviation: Array, stiction: Array, acceleration: Array, *, moving: bool, use: NDArray[np.bool_]
     ) -> None:
         """One tick, on the raw values that the caller has put into `ways`.
 

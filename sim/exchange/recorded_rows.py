@@ -10,7 +10,7 @@ from sim.plant.true_arm import SIGN_SPEED, Plant
 Array = NDArray[np.float64]
 
 
-def fill_rows(e: Estimate, plant: Plant, gain: float, configured: float, known: Array, truth: Array, k: int) -> None:
+def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, known: Array, truth: Array, k: int) -> None:
     """Write an estimate into row k of `known` (m, 9 n + 28 or more), the true state into row k of `truth` (m, 6 n + 11).
 
     Known, in this order: q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction (n each); w_sensor, F_user (6 each); a_F,

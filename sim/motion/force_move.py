@@ -36,7 +36,7 @@ class ForceTrajectory:
         MoveRefused: the tool cannot go everywhere from here.
     """
 
-    def __init__(self, q: Array, move: ApplyForce, dynamics: Dynamics, tcp: Array, position: Array) -> None:
+    def __init__(self, q: Array, move: ApplyForce, dynamics: Dynamics, *, tcp: Array, position: Array) -> None:
         """`position` are the joints' limits (±) (n,) [rad]."""
         self._line = Line(dynamics, tcp, q)
         if self._line.singular(q):

@@ -49,7 +49,7 @@ class MoveRefused(ValueError):
     """A move cannot be done; the text says why, with value and limit."""
 
 
-def stop_time(dynamics: Dynamics, q: Array, qd: Array, rotor: Array, torque: Array) -> float:
+def stop_time(dynamics: Dynamics, q: Array, qd: Array, *, rotor: Array, torque: Array) -> float:
     """Shortest time [s] in which the joints can brake from qd, all by the same law, half a cosine.
 
     It brakes hardest half-way, by pi/2 · speed / T; every joint has a share of its torque for that, less what gravity takes.
@@ -192,7 +192,7 @@ class LinearTrajectory:
     """
 
     def __init__(
-        self, q: Array, move: LinearMove, dynamics: Dynamics, tcp: Array, R_FT: Array, limits: tuple[Array, Array, Array]
+        self, q: Array, move: LinearMove, dynamics: Dynamics, *, tcp: Array, R_FT: Array, limits: tuple[Array, Array, Array]
     ) -> None:
         """`limits` are the joints' speed, acceleration and position (±), each (n,)."""
         self._line = line = Line(dynamics, tcp, q)

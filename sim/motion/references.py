@@ -42,7 +42,7 @@ class References:
         push: torque (n,) with which the joints push against the outside besides [N·m], None for none.
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, R_FT: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
         self._dynamics, self._tcp, self._R_FT = dynamics, tcp, R_FT
         self._pace = Pace(dynamics, tcp)
@@ -121,7 +121,7 @@ class References:
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
-        self._motion = Stop(q, qd, stop_time(self._dynamics, q, qd, self._rotor, self._torque))
+        self._motion = Stop(q, qd, stop_time(self._dynamics, q, qd, rotor=self._rotor, torque=self._torque))
         self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
 
     def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
@@ -140,9 +140,9 @@ class References:
             if isinstance(move, JointMove):
                 self._motion = JointTrajectory(q, move, self._limits, self._strength)
             elif isinstance(move, LinearMove):
-                self._motion = LinearTrajectory(q, move, self._dynamics, self._tcp, self._R_FT, self._limits)
+                self._motion = LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
-                self._motion = ForceTrajectory(q, move, self._dynamics, self._tcp, self._limits[2])
+                self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
             else:
                 self._motion = Stop(q, self._standing)
         except MoveRefused as refusal:

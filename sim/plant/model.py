@@ -93,9 +93,9 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
     _set_body(payload, load_body(scenario.payload_true))
     for name, site in (("flange", "flange"), ("tool", "tool")):
         for kind in ("accelerometer", "gyro"):
-            _add_sensor(spec, f"{kind}_{name}", _TYPES[kind], site, step)
+            _add_sensor(spec, f"{kind}_{name}", _TYPES[kind], site=site, step=step)
     for kind in ("force", "torque"):
-        _add_sensor(spec, kind, _TYPES[kind], "tool", step)
+        _add_sensor(spec, kind, _TYPES[kind], site="tool", step=step)
 
     if scenario.world:
         _add_shapes(spec, arm, scenario)
@@ -161,7 +161,7 @@ def _add_sensor_springs(flange: mujoco.MjsBody, sensor: ForceTorque, soft: bool)
         slide.damping[0] = damping
 
 
-def _add_sensor(spec: mujoco.MjSpec, name: str, kind: mujoco.mjtSensor, site: str, step: Step) -> None:
+def _add_sensor(spec: mujoco.MjSpec, name: str, kind: mujoco.mjtSensor, *, site: str, step: Step) -> None:
     sensor = spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site)
     sensor.nsample = step.substeps  # MuJoCo keeps every substep of a tick: the tick's mean costs no Python in between
 

@@ -28,7 +28,7 @@ class Dynamics:
         recursion: the same model, compiled for what every tick needs.
     """
 
-    def __init__(self, chain: Chain, links: tuple[Body, ...], load: Body, mounting: Vector, elbow: int) -> None:
+    def __init__(self, chain: Chain, links: tuple[Body, ...], load: Body, *, mounting: Vector, elbow: int) -> None:
         model = pin.Model()
         parent = 0
         for i, link in enumerate(links):

@@ -27,7 +27,7 @@ START = Settings()
 )
 def test_limits_are_locked_where_the_arm_may_be_touched(mode: Mode, trying: bool, where: str | None) -> None:
     """One that is locked keeps no other change off."""
-    settings, events = change(START, {LIMIT: 14.0, FREE: 5.0}, mode, trying, 7)
+    settings, events = change(START, {LIMIT: 14.0, FREE: 5.0}, mode=mode, trying=trying, tick=7)
     free = Event(Kind.SETTING_CHANGED, 7, {"name": FREE, "old": START.free_drive.period, "new": 5.0})
     if where is None:
         old = START.limits.activation.user_force.max
@@ -40,6 +40,8 @@ def test_limits_are_locked_where_the_arm_may_be_touched(mode: Mode, trying: bool
 
 
 def test_a_value_that_is_not_allowed_or_not_new_changes_nothing() -> None:
-    settings, events = change(START, {FREE: -1.0, LIMIT: START.limits.activation.user_force.max}, Mode.TEACH, False, 0)
+    settings, events = change(
+        START, {FREE: -1.0, LIMIT: START.limits.activation.user_force.max}, mode=Mode.TEACH, trying=False, tick=0
+    )
     assert settings == START
     assert [event.kind for event in events] == [Kind.SETTING_REFUSED]

@@ -21,7 +21,7 @@ NOTHING = Body(0.0, np.zeros(3), np.zeros((3, 3)))
 def dynamics() -> Dynamics:
     """The rigid model on the floor, with nothing beyond the flange."""
     rigid = chain(UR5E)
-    return Dynamics(rigid, rigid.links, NOTHING, [0.0, 0.0, 0.0], UR5E.chain.elbow)
+    return Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow)
 
 
 def estimate(**values: Any) -> Estimate:

@@ -49,7 +49,7 @@ class Scene:
     """What viser shows. `meshes` has a GLB file for each part that has a shape."""
 
     def __init__(
-        self, server: viser.ViserServer, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], first: Snapshot
+        self, server: viser.ViserServer, arm: Arm, scenario: Scenario, *, meshes: Mapping[str, bytes], first: Snapshot
     ) -> None:
         self._server = server
         self._scenario = scenario

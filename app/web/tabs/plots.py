@@ -105,7 +105,7 @@ class Plots:
                 force = chart("User force", "N", _xyz(history.force), marks)
                 return force, chart("Acceleration", "m/s²", _xyz(history.acceleration), marks)
             case View.LIMITS:
-                return chart("Nearest to its limit", "%", [Curve("share of the limit", history.share)], marks, 100.0), ""
+                return chart("Nearest to its limit", "%", [Curve("share of the limit", history.share)], marks, limit=100.0), ""
             case View.FRICTION:
                 true, estimated, deviation = history.friction[:, joint]
                 lines = [Curve("true", true), Curve("estimated", estimated, dashed=True)]

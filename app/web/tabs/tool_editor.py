@@ -59,12 +59,12 @@ class ToolEditor:
         with gui.add_folder("Edit the table", expand_by_default=False):
             self.name = gui.add_text("Name", BARE.name)
             self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
-            self.com = _vector(gui, "Centre [mm]", MILLIMETRES, FAR, "Centre of mass in the flange: x, y, z")
-            self.tcp = _vector(gui, "TCP [mm]", MILLIMETRES, FAR, "Tool centre point in the flange: x, y, z")
-            self.rpy = _vector(gui, "Turned [°]", DEGREES, FULLEST, "Roll, pitch, yaw of the tool in the flange")
+            self.com = _vector(gui, "Centre [mm]", MILLIMETRES, FAR, hint="Centre of mass in the flange: x, y, z")
+            self.tcp = _vector(gui, "TCP [mm]", MILLIMETRES, FAR, hint="Tool centre point in the flange: x, y, z")
+            self.rpy = _vector(gui, "Turned [°]", DEGREES, FULLEST, hint="Roll, pitch, yaw of the tool in the flange")
             self.known = gui.add_checkbox("Own inertia", False, hint="Else it follows from mass and shape")
-            self.moments = _vector(gui, "I [kg·cm²]", SQUARE_CENTIMETRES, HEAVIEST, "xx, yy, zz about the centre")
-            self.products = _vector(gui, "I xy xz yz", SQUARE_CENTIMETRES, HEAVIEST, "Products about the centre [kg·cm²]")
+            self.moments = _vector(gui, "I [kg·cm²]", SQUARE_CENTIMETRES, HEAVIEST, hint="xx, yy, zz about the centre")
+            self.products = _vector(gui, "I xy xz yz", SQUARE_CENTIMETRES, HEAVIEST, hint="Products about the centre [kg·cm²]")
             self.change = gui.add_button_group(
                 "Table", (ADD, SET, DELETE), hint="Add this, set the chosen one to it, delete that"
             )
@@ -177,7 +177,7 @@ class ToolEditor:
             self.read(self.load.value.name, self.load.value.content)
 
 
-def _vector(gui: viser.GuiApi, label: str, unit: Unit, most: float, hint: str) -> viser.GuiVector3Handle:
+def _vector(gui: viser.GuiApi, label: str, unit: Unit, most: float, *, hint: str) -> viser.GuiVector3Handle:
     step = 10.0**-unit.digits
     return gui.add_vector3(label, (0.0, 0.0, 0.0), min=(-most, -most, -most), max=(most, most, most), step=step, hint=hint)
 

@@ -24,7 +24,7 @@ class Curve(NamedTuple):
     dashed: bool = False  # what is told apart by more than colour
 
 
-def chart(title: str, unit: str, lines: Sequence[Curve], marks: Sequence[int] = (), limit: float | None = None) -> str:
+def chart(title: str, unit: str, lines: Sequence[Curve], marks: Sequence[int] = (), *, limit: float | None = None) -> str:
     """The picture.
 
     Args:

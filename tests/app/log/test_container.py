@@ -14,7 +14,9 @@ def add(summary: FileSummary, count: int, as_bytes: bool) -> None:
     """The indices of so many chunks, as a recording makes them."""
     for k in range(count):
         chunk = Chunk("zstd", bytes(10), 250_000_000 * (k + 1), 250_000_000 * k, 0, 400_000)
-        index = index_of(chunk, 100_000 * k, 100_000, {channel: 100_000 * k + 10 * channel for channel in range(1, 8)}, 4_000)
+        index = index_of(
+            chunk, 100_000 * k, 100_000, offsets={channel: 100_000 * k + 10 * channel for channel in range(1, 8)}, indices=4_000
+        )
         summary.done(index) if as_bytes else summary.chunks.append(index)
 
 

@@ -135,5 +135,8 @@ def test_replay_says_in_a_line_what_it_cannot_show(tmp_path: Path) -> None:
 
     (tmp_path / "x.mcap").write_bytes(b"no log")
     for name, says in (("x.mcap", "is no MCAP file"), ("none.mcap", "none.mcap")):
-        with pytest.raises(BadInput, match=says), replay_until_interrupted(tmp_path / name, "127.0.0.1", 0, 0, False):
+        with (
+            pytest.raises(BadInput, match=says),
+            replay_until_interrupted(tmp_path / name, host="127.0.0.1", port=0, usual=0, open_browser=False),
+        ):
             pass

@@ -49,7 +49,7 @@ def moving(
     )
     for _ in range(ticks):
         torque = np.zeros(N)
-        module.add(seen, limits, reduced, JACOBIAN, torque)
+        module.add(seen, limits, reduced, jacobian=JACOBIAN, torque=torque)
     return torque
 
 

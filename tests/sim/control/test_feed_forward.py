@@ -63,8 +63,8 @@ def test_what_it_gave_before_stays() -> None:
 def rubbed(module: FeedForward, friction: AdaptiveFriction, qd: float, stiffer: np.ndarray = AS_FILED) -> np.ndarray:
     """Friction that is fed forward for a uniform motion at one place."""
     motion = Reference(Q, np.full(UR5E.n, qd), np.zeros(UR5E.n))
-    return module.torque(motion, friction, True, stiffer) - FeedForward(UR5E, EXACT, dynamics()).torque(
-        motion, None, True, stiffer
+    return module.torque(motion, friction, motion=True, stiffer=stiffer) - FeedForward(UR5E, EXACT, dynamics()).torque(
+        motion, None, motion=True, stiffer=stiffer
     )
 
 
@@ -88,7 +88,7 @@ def test_friction_stays_where_the_motion_stops_and_is_unknown_where_it_begins() 
     for _ in range(500):
         moving = rubbed(module, friction, 0.01)
     np.testing.assert_allclose(rubbed(module, friction, 0.0), moving, rtol=0.1)
-    begun = module.torque(Reference(Q, np.zeros(UR5E.n), np.zeros(UR5E.n)), friction, True, AS_FILED, fresh=True)
+    begun = module.torque(Reference(Q, np.zeros(UR5E.n), np.zeros(UR5E.n)), friction, motion=True, stiffer=AS_FILED, fresh=True)
     np.testing.assert_allclose(begun, dynamics().gravity(Q), atol=1e-9)
 
 
@@ -99,9 +99,9 @@ def test_a_load_that_changes_turns_the_motor_against_its_friction() -> None:
         module, friction = FeedForward(UR5E, EXACT, dynamics()), AdaptiveFriction(UR5E)
         still = Reference(Q, np.zeros(UR5E.n), np.zeros(UR5E.n))
         push = np.zeros(UR5E.n)
-        module.torque(still, friction, True, stiffer, push, fresh=True)
+        module.torque(still, friction, motion=True, stiffer=stiffer, push=push, fresh=True)
         push = np.full(UR5E.n, 0.1)
-        fed.append(module.torque(still, friction, True, stiffer, push) - dynamics().gravity(Q) - push)
+        fed.append(module.torque(still, friction, motion=True, stiffer=stiffer, push=push) - dynamics().gravity(Q) - push)
     stiffness = np.array(UR5E.transmissions.stiffness) + np.array(UR5E.transmissions.hysteresis_stiffness)
     np.testing.assert_allclose(fed[0], 0.1 / stiffness * np.array(UR5E.frictions.presliding), rtol=0.05)
     np.testing.assert_allclose(fed[1], fed[0] / 1.2, rtol=0.05)

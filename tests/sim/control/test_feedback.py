@@ -42,7 +42,9 @@ STANDING = resting(ZERO)
 def correction(use: JointControl, seen: Estimate, reference: Reference = STANDING, load: np.ndarray = ZERO) -> np.ndarray:
     """What a fresh feedback adds to nothing."""
     torque = np.zeros(N)
-    Feedback(UR5E, EXACT, dynamics(), TCP).add(reference, load, seen, use, FREE, False, torque, None, ZERO, ZERO)
+    Feedback(UR5E, EXACT, dynamics(), TCP).add(
+        reference, load, seen, use, excess=FREE, waits=False, torque=torque, start=None, sticking=ZERO, stiffer=ZERO
+    )
     return torque
 
 
@@ -70,7 +72,18 @@ def test_a_spring_learned_to_be_stiffer_bends_less() -> None:
     bent = load * COMPLIANCE / (1.0 + stiffer)
     torque = np.zeros(N)
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    module.add(STANDING, load, estimate(theta=bent), only("theta"), FREE, False, torque, None, ZERO, stiffer)
+    module.add(
+        STANDING,
+        load,
+        estimate(theta=bent),
+        only("theta"),
+        excess=FREE,
+        waits=False,
+        torque=torque,
+        start=None,
+        sticking=ZERO,
+        stiffer=stiffer,
+    )
     np.testing.assert_allclose(torque, 0.0, atol=1e-12)
 
 
@@ -85,7 +98,18 @@ def test_motor_torque_against_what_was_asked_for() -> None:
     torque = np.full(N, 5.0)
     seen = estimate(tau_m=np.linspace(0.0, 10.0, N))
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    module.add(resting(ZERO), ZERO, seen, only("motor_torque"), FREE, False, torque, None, ZERO, ZERO)
+    module.add(
+        resting(ZERO),
+        ZERO,
+        seen,
+        only("motor_torque"),
+        excess=FREE,
+        waits=False,
+        torque=torque,
+        start=None,
+        sticking=ZERO,
+        stiffer=ZERO,
+    )
     np.testing.assert_allclose(torque, 5.0 + 0.1 * (5.0 - np.linspace(0.0, 10.0, N)))
 
 
@@ -111,7 +135,18 @@ def test_each_measurement_is_compared_with_its_own_reference() -> None:
         late = max(k - DELAY, 0)
         torque = np.zeros(N)
         seen = estimate(theta=np.full(N, 0.01 * late), q=np.full(N, 0.01 * late))
-        module.add(resting(np.full(N, 0.01 * k)), ZERO, seen, only("theta", "q"), FREE, False, torque, None, ZERO, ZERO)
+        module.add(
+            resting(np.full(N, 0.01 * k)),
+            ZERO,
+            seen,
+            only("theta", "q"),
+            excess=FREE,
+            waits=False,
+            torque=torque,
+            start=None,
+            sticking=ZERO,
+            stiffer=ZERO,
+        )
         assert np.abs(torque).max() < 1e-9
 
 
@@ -121,7 +156,18 @@ def test_the_integral_grows_with_the_output_error_and_waits_in_the_dead_band() -
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     for _ in range(10):
         torque = np.zeros(N)
-        module.add(resting(error), ZERO, estimate(), only("q"), FREE, False, torque, None, ZERO, ZERO)
+        module.add(
+            resting(error),
+            ZERO,
+            estimate(),
+            only("q"),
+            excess=FREE,
+            waits=False,
+            torque=torque,
+            start=None,
+            sticking=ZERO,
+            stiffer=ZERO,
+        )
     expected = 10 * 0.002 * ROTOR * OMEGA**2 / 0.1 * error
     expected[:3] = 0.0
     np.testing.assert_allclose(torque, expected)
@@ -132,7 +178,18 @@ def test_the_integral_keeps_its_value_while_it_is_told_to_wait() -> None:
     module, pushes = Feedback(UR5E, EXACT, dynamics(), TCP), []
     for waits in (False, True, True, False):
         torque = np.zeros(N)
-        module.add(resting(np.full(N, 0.01)), ZERO, estimate(), only("q"), FREE, waits, torque, None, ZERO, ZERO)
+        module.add(
+            resting(np.full(N, 0.01)),
+            ZERO,
+            estimate(),
+            only("q"),
+            excess=FREE,
+            waits=waits,
+            torque=torque,
+            start=None,
+            sticking=ZERO,
+            stiffer=ZERO,
+        )
         pushes.append(torque)
     np.testing.assert_allclose(pushes, np.outer([1, 1, 1, 2], pushes[0]))
     times = 0.002 * ROTOR * OMEGA**2 * 0.01 / pushes[0]
@@ -150,21 +207,65 @@ def test_what_the_integral_won_against_stiction_goes_over_to_the_friction_fed_fo
     torque = np.zeros(N)
     while torque.min() < 5.0:
         torque = np.zeros(N)
-        module.add(resting(np.full(N, 0.002)), ZERO, estimate(), only("q"), FREE, False, torque, None, sticking, ZERO)
+        module.add(
+            resting(np.full(N, 0.002)),
+            ZERO,
+            estimate(),
+            only("q"),
+            excess=FREE,
+            waits=False,
+            torque=torque,
+            start=None,
+            sticking=sticking,
+            stiffer=ZERO,
+        )
     won = torque.copy()
     there = estimate(q=np.full(N, 0.002))
     for _ in range(50):
         torque = np.zeros(N)
-        module.add(moving(np.full(N, 0.002), 0.02), ZERO, there, only("q"), FREE, False, torque, None, sticking, ZERO)
+        module.add(
+            moving(np.full(N, 0.002), 0.02),
+            ZERO,
+            there,
+            only("q"),
+            excess=FREE,
+            waits=False,
+            torque=torque,
+            start=None,
+            sticking=sticking,
+            stiffer=ZERO,
+        )
     np.testing.assert_allclose(torque, won - 2.0, atol=0.05)
 
 
 def test_a_load_that_comes_bends_the_spring_at_a_speed() -> None:
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
-    module.add(resting(ZERO), ZERO, estimate(), only("theta_speed"), FREE, False, np.zeros(N), ZERO, ZERO, ZERO)
+    module.add(
+        resting(ZERO),
+        ZERO,
+        estimate(),
+        only("theta_speed"),
+        excess=FREE,
+        waits=False,
+        torque=np.zeros(N),
+        start=ZERO,
+        sticking=ZERO,
+        stiffer=ZERO,
+    )
     for load in (10.0, 20.0, 30.0, 40.0):
         torque = np.zeros(N)
-        module.add(resting(ZERO), np.full(N, load), estimate(), only("theta_speed"), FREE, False, torque, None, ZERO, ZERO)
+        module.add(
+            resting(ZERO),
+            np.full(N, load),
+            estimate(),
+            only("theta_speed"),
+            excess=FREE,
+            waits=False,
+            torque=torque,
+            start=None,
+            sticking=ZERO,
+            stiffer=ZERO,
+        )
     np.testing.assert_allclose(torque, 2 * 1.25 * ROTOR * OMEGA * COMPLIANCE * 10.0 / 0.002)
 
 
@@ -176,7 +277,18 @@ def test_the_integral_goes_back_where_more_is_asked_than_the_motor_gives() -> No
     for error, ticks in ((0.1, 100), (-0.02, 100)):
         for _ in range(ticks):
             torque = np.zeros(N)
-            module.add(resting(np.full(N, error)), ZERO, estimate(), only("q"), excess, False, torque, None, ZERO, ZERO)
+            module.add(
+                resting(np.full(N, error)),
+                ZERO,
+                estimate(),
+                only("q"),
+                excess=excess,
+                waits=False,
+                torque=torque,
+                start=None,
+                sticking=ZERO,
+                stiffer=ZERO,
+            )
             excess = np.where(torque > limit, torque - limit, 0.0)
         if error > 0.0:
             assert (torque[limit < 1e9] < 5.0 + 1.01 * step[limit < 1e9]).all()
@@ -189,7 +301,9 @@ def test_taking_over_asks_for_the_feed_forward_alone() -> None:
     module = Feedback(UR5E, EXACT, dynamics(), TCP)
     seen = estimate(theta=np.linspace(-0.01, 0.01, N), theta_d=np.full(N, 0.3))
     torque, fed = np.linspace(1.0, 9.0, N), np.linspace(2.0, -4.0, N)
-    module.add(resting(ZERO), ZERO, seen, JointControl(), FREE, False, torque, fed, ZERO, ZERO)
+    module.add(
+        resting(ZERO), ZERO, seen, JointControl(), excess=FREE, waits=False, torque=torque, start=fed, sticking=ZERO, stiffer=ZERO
+    )
     np.testing.assert_allclose(torque, fed)
 
 
@@ -199,7 +313,9 @@ def test_switches_may_change_from_tick_to_tick() -> None:
     sums = []
     for use in (only("theta"), only(), only("theta")):
         torque = np.zeros(N)
-        module.add(resting(ZERO), ZERO, seen, use, FREE, False, torque, None, ZERO, ZERO)
+        module.add(
+            resting(ZERO), ZERO, seen, use, excess=FREE, waits=False, torque=torque, start=None, sticking=ZERO, stiffer=ZERO
+        )
         sums.append(float(torque.sum()))
     assert sums[0] == sums[2] > 0.0
     assert sums[1] == 0.0
@@ -223,7 +339,18 @@ def test_a_heavy_arm_on_its_springs_does_not_swing_by_itself(softer: float, damp
         module, torques = Feedback(arm, EXACT, model, TCP), []
         for _ in range(ticks):
             torques.append(np.zeros(N))
-            module.add(STANDING, ZERO, seen, only(*names), FREE, False, torques[-1], None, ZERO, ZERO)
+            module.add(
+                STANDING,
+                ZERO,
+                seen,
+                only(*names),
+                excess=FREE,
+                waits=False,
+                torque=torques[-1],
+                start=None,
+                sticking=ZERO,
+                stiffer=ZERO,
+            )
         return torques[-1] - (torques[-2] if ticks > 1 else 0.0)
 
     way = np.full(N, -0.01)

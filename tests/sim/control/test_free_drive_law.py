@@ -23,7 +23,7 @@ BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
 
 
 def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
-    module = FreeDriveLaw(UR5E, EXACT, dynamics(), np.zeros(3), np.eye(3))
+    module = FreeDriveLaw(UR5E, EXACT, dynamics(), tcp=np.zeros(3), R_FT=np.eye(3))
     module.start(estimate(q=Q, R_BF=R, tau_ext=np.zeros(N) if tau_ext is None else tau_ext))
     return module
 
@@ -31,7 +31,10 @@ def law(tau_ext: np.ndarray | None = None) -> FreeDriveLaw:
 def asked(wrench: np.ndarray, with_friction: bool = False, gain: float = 1.0, **values: object) -> np.ndarray:
     """Torque beyond gravity for the user's wrench."""
     seen = estimate(**{"q": Q, "R_BF": R, "F_user": wrench, **values})
-    return law().torque(seen, decision(Law.FREE, gain=gain), JACOBIAN, AdaptiveFriction(UR5E), with_friction) - GRAVITY
+    return (
+        law().torque(seen, decision(Law.FREE, gain=gain), JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=with_friction)
+        - GRAVITY
+    )
 
 
 def test_without_a_hand_it_is_gravity_alone() -> None:
@@ -51,14 +54,18 @@ def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:
     turn = rotation(2, 1.1)
     turned = np.concatenate([turn @ offset[:3], turn @ offset[3:]])
     seen = estimate(q=Q, R_BF=turn, F_user=turned)
-    torque = module.torque(seen, decision(Law.FREE, gain=1.0, baseline=tuple(offset)), JACOBIAN, AdaptiveFriction(UR5E), True)
+    torque = module.torque(
+        seen, decision(Law.FREE, gain=1.0, baseline=tuple(offset)), JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True
+    )
     np.testing.assert_allclose(torque, GRAVITY, atol=1e-9)
 
 
 def test_before_free_drive_is_entered_nothing_helps_the_hand() -> None:
     seen = estimate(q=Q, R_BF=R, F_user=np.array([30.0, 0, 0, 0, 0, 0]), tau_ext=np.full(N, 50.0))
     trying = decision(Law.FREE, phase=Phase.SEQUENCE)
-    np.testing.assert_allclose(law().torque(seen, trying, JACOBIAN, AdaptiveFriction(UR5E), True), GRAVITY, atol=1e-9)
+    np.testing.assert_allclose(
+        law().torque(seen, trying, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True), GRAVITY, atol=1e-9
+    )
 
 
 def test_friction_is_taken_off_where_the_hand_asks_never_where_the_arm_moves() -> None:
@@ -82,7 +89,10 @@ def test_where_nobody_may_lead_the_arm_it_gets_no_help_with_its_friction_and_bra
     ways = np.tile(felt, (3, 1))
     seen = estimate(q=Q, R_BF=R, F_user=wrench, friction=np.full(N, 7.0), theta_d=speed, tau_ext=felt, tau_ways=ways)
     free = decision(Law.FREE, gain=1.0)
-    torques = [law().torque(seen, how, JACOBIAN, AdaptiveFriction(UR5E), True) for how in (free, replace(free, doubtful=True))]
+    torques = [
+        law().torque(seen, how, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True)
+        for how in (free, replace(free, doubtful=True))
+    ]
     expected = GRAVITY + JACOBIAN.T @ wrench - BRAKE * BREAKAWAY * np.tanh(speed / BRAKE_SPEED)
     np.testing.assert_allclose(torques[1], expected)
     assert np.abs(torques[0] - torques[1]).max() > 1.0
@@ -96,7 +106,7 @@ def felt(torque: np.ndarray, away: float = 0.0, uncertain: float = 4.0, speed: f
     unsure, pace = np.full(N, uncertain), np.full(N, speed)
     seen = estimate(q=there, R_BF=R, tau_ext=torque, tau_ways=ways, tau_ext_deviation=unsure, theta_d=pace)
     for _ in range(60):
-        out = module.torque(seen, decision(Law.FREE, gain=1.0), JACOBIAN, AdaptiveFriction(UR5E), True)
+        out = module.torque(seen, decision(Law.FREE, gain=1.0), JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True)
     return out - MODEL.gravity(there)
 
 
@@ -157,7 +167,7 @@ def test_a_walls_force_acts_at_its_part_and_on_the_joints_that_move_it() -> None
     for part, place in points(Q).items():
         state = WallState("wall", part, tuple(place.tolist()), 0.0, (1.0, 0.0, 0.0), 1.0, False, tuple(force.tolist()))
         held = replace(decision(Law.FREE), walls=(state, replace(state, force=(0.0, 0.0, 0.0))))
-        torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True) - GRAVITY
+        torque = law().torque(seen, held, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True) - GRAVITY
         for i in range(N):
             step = np.zeros(N)
             step[i] = 1e-6
@@ -169,7 +179,7 @@ def test_before_the_end_of_a_joints_range_its_zone_is_added() -> None:
     zones = (0.0, -20.0, 0.0, 3.0, 0.0, 0.0)
     seen = estimate(q=Q, R_BF=R)
     held = replace(decision(Law.FREE), zones=zones)
-    torque = law().torque(seen, held, JACOBIAN, AdaptiveFriction(UR5E), True)
+    torque = law().torque(seen, held, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True)
     np.testing.assert_allclose(torque - GRAVITY, zones, atol=1e-9)
 
 

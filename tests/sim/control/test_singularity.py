@@ -54,7 +54,7 @@ def test_in_a_singularity_nothing_blows_up() -> None:
         module = found(q)
         assert module.value < 1e-4
         torque = np.full(N, 5.0)
-        module.resist(0.04, 0.01, np.ones(N), np.zeros(N), torque)
+        module.resist(0.04, 0.01, speed=np.ones(N), static=np.zeros(N), torque=torque)
         assert np.isfinite(torque).all()
         assert np.abs(torque).max() < 100.0
 
@@ -70,21 +70,21 @@ def test_motion_towards_it_is_resisted_and_the_way_back_is_free() -> None:
     near, too_near = 2.0 * module.value, 0.5 * module.value
     towards, still, nothing = -module.gradient / np.linalg.norm(module.gradient), np.zeros(N), np.zeros(N)
     resisted, back = np.zeros(N), np.zeros(N)
-    module.resist(near, too_near, towards, nothing, resisted)
+    module.resist(near, too_near, speed=towards, static=nothing, torque=resisted)
     assert resisted @ towards < -0.1
-    module.resist(near, too_near, -towards, nothing, back)
+    module.resist(near, too_near, speed=-towards, static=nothing, torque=back)
     assert not back.any()
     far = np.zeros(N)
-    module.resist(0.9 * module.value, too_near, towards, nothing, far)
+    module.resist(0.9 * module.value, too_near, speed=towards, static=nothing, torque=far)
     assert not far.any()
     # What drives it on is taken away: a part of it near, all of it too near.
     for limits, left in (((near, too_near), 1.0 / 3.0), ((4.0 * module.value, 1.5 * module.value), 0.0)):
         driven = towards.copy()
-        module.resist(*limits, still, nothing, driven)
+        module.resist(*limits, speed=still, static=nothing, torque=driven)
         before, after = module.gradient @ (towards / ROTOR), module.gradient @ (driven / ROTOR)
         np.testing.assert_allclose(after, left * before, rtol=1e-9, atol=1e-9)
     driven = -towards
-    module.resist(4.0 * module.value, 1.5 * module.value, still, nothing, driven)
+    module.resist(4.0 * module.value, 1.5 * module.value, speed=still, static=nothing, torque=driven)
     np.testing.assert_array_equal(driven, -towards)
 
 
@@ -92,8 +92,8 @@ def test_in_the_singularity_the_resistance_has_ended() -> None:
     """There the way on is the way back, and its direction jumps: what jumps with it must be nothing."""
     module = found(NEARLY)
     towards, whole, ended = -module.gradient, np.zeros(N), np.zeros(N)
-    module.resist(4.0 * module.value, 2.0 * module.value, towards, np.zeros(N), whole)
-    module.resist(4e4 * module.value, 2e4 * module.value, towards, np.zeros(N), ended)
+    module.resist(4.0 * module.value, 2.0 * module.value, speed=towards, static=np.zeros(N), torque=whole)
+    module.resist(4e4 * module.value, 2e4 * module.value, speed=towards, static=np.zeros(N), torque=ended)
     assert np.abs(ended).max() < 1e-3 * np.abs(whole).max()
 
 
@@ -102,5 +102,5 @@ def test_it_only_ever_takes_energy() -> None:
     module = found(NEARLY)
     for _ in range(200):
         speed, torque = rng.normal(size=N), np.zeros(N)
-        module.resist(0.1, 0.001, speed, np.zeros(N), torque)
+        module.resist(0.1, 0.001, speed=speed, static=np.zeros(N), torque=torque)
         assert torque @ speed <= 0.0

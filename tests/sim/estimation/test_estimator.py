@@ -38,7 +38,7 @@ def sample(theta: np.ndarray, q: np.ndarray, *, joints: bool = True) -> Sample:
 def estimator() -> Estimator:
     rigid = chain(UR5E)
     nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    dynamics = Dynamics(rigid, rigid.links, nothing, FLOOR, UR5E.chain.elbow)
+    dynamics = Dynamics(rigid, rigid.links, nothing, mounting=FLOOR, elbow=UR5E.chain.elbow)
     return Estimator(UR5E, calibration.nominal(UR5E), dynamics, np.array(PROBE.tcp))
 
 
@@ -311,7 +311,7 @@ def test_a_load_that_swings_with_the_wrists_is_mostly_no_user_force(frequency: f
     """FD-3: the share of its inertia that is taken for a hand's, in the modes of a guided arm, about the flange's origin."""
     rigid, mass, lever = chain(UR5E), 3.0, 0.1
     load = Body(mass, np.array([0.0, 0.0, lever]), np.zeros((3, 3)))
-    dynamics = Dynamics(rigid, rigid.links, load, FLOOR, UR5E.chain.elbow)
+    dynamics = Dynamics(rigid, rigid.links, load, mounting=FLOOR, elbow=UR5E.chain.elbow)
     dynamics.update(np.array(BENT))
     forces, turning = FlangeForces(dynamics), 2.0 * np.pi * frequency
     off = 0.0
@@ -360,7 +360,9 @@ def test_gravity_is_given_in_the_axes_of_the_base(mounting: list[float], down: l
     """On a wall z of B is along x of W, so that down is along x of B."""
     rigid = chain(UR5E)
     nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
-    device = Estimator(UR5E, calibration.nominal(UR5E), Dynamics(rigid, rigid.links, nothing, mounting, 2), np.zeros(3))
+    device = Estimator(
+        UR5E, calibration.nominal(UR5E), Dynamics(rigid, rigid.links, nothing, mounting=mounting, elbow=2), np.zeros(3)
+    )
     result = device.update(sample(np.zeros(6), np.zeros(6)), 0, "")
     np.testing.assert_allclose(result.g_B, down, atol=1e-12)
     assert result.copy().g_B is not result.g_B

@@ -37,7 +37,7 @@ class Gears:
     ) -> TransmissionTorque:
         for row, value in zip(self.module.ways, (dynamics, deflection, motor), strict=True):
             row[:] = value
-        self.module.update(np.full(N, friction_deviation), CALM, np.full(N, acceleration), moving, use)
+        self.module.update(np.full(N, friction_deviation), CALM, np.full(N, acceleration), moving=moving, use=use)
         return self.module
 
 

@@ -86,9 +86,11 @@ def test_a_stop_uses_a_share_of_some_joint_s_torque_and_no_joint_more(qd: list[f
         np.array(UR5E.motors.rotor_inertia),
         np.array(UR5E.limits.torque),
     )
-    dynamics = Dynamics(chain(UR5E), links, Body(3.0, np.array([0.0, 0.0, 0.1]), np.zeros((3, 3))), [0.0, 0.0, 0.0], 2)
+    dynamics = Dynamics(
+        chain(UR5E), links, Body(3.0, np.array([0.0, 0.0, 0.1]), np.zeros((3, 3))), mounting=[0.0, 0.0, 0.0], elbow=2
+    )
     speed = np.array(qd)
-    length = stop_time(dynamics, HOME, speed, rotor, limit)
+    length = stop_time(dynamics, HOME, speed, rotor=rotor, torque=limit)
     half_way = -0.5 * np.pi / length * speed
     torque = dynamics.inverse(HOME, np.zeros(6), half_way) + rotor * half_way
     assert (np.abs(torque) <= BRAKING_SHARE * limit + 1e-9).all()
@@ -99,9 +101,11 @@ def test_a_stop_uses_a_share_of_some_joint_s_torque_and_no_joint_more(qd: list[f
 
 def test_a_joint_that_gravity_loads_fully_still_brakes() -> None:
     """A limit that the arm's own weight reaches leaves a tenth of it, not nothing and not a negative time."""
-    dynamics = Dynamics(chain(UR5E), chain(UR5E).links, Body(0.0, np.zeros(3), np.zeros((3, 3))), [0.0, 0.0, 0.0], 2)
+    dynamics = Dynamics(
+        chain(UR5E), chain(UR5E).links, Body(0.0, np.zeros(3), np.zeros((3, 3))), mounting=[0.0, 0.0, 0.0], elbow=2
+    )
     limit = np.abs(dynamics.gravity(HOME)) + 1.0
-    assert 0.0 < stop_time(dynamics, HOME, np.full(6, 0.5), np.zeros(6), limit) < np.inf
+    assert 0.0 < stop_time(dynamics, HOME, np.full(6, 0.5), rotor=np.zeros(6), torque=limit) < np.inf
 
 
 def test_a_slow_stop_is_not_shorter_than_the_arm_can_follow() -> None:
@@ -167,7 +171,9 @@ def test_a_joint_move_beyond_a_limit_is_refused(joint: int, angle: float) -> Non
 
 def model() -> Dynamics:
     rigid = chain(UR5E)
-    return Dynamics(rigid, rigid.links, Body(0.0, np.zeros(3), np.zeros((3, 3))), [0.0, 0.0, 0.0], UR5E.chain.elbow)
+    return Dynamics(
+        rigid, rigid.links, Body(0.0, np.zeros(3), np.zeros((3, 3))), mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow
+    )
 
 
 def tool(q: Array) -> tuple[Array, Array]:
@@ -182,14 +188,14 @@ def line(
     p, R = tool(q)
     goal = R if turn is None else R @ turn
     move = LinearMove(position=tuple(p + way), quaternion=tuple(quaternion_from_matrix(goal)), **speeds)
-    return LinearTrajectory(q, move, model(), TCP, np.eye(3), limits)
+    return LinearTrajectory(q, move, model(), tcp=TCP, R_FT=np.eye(3), limits=limits)
 
 
 def test_a_line_ends_with_the_tools_own_frame_where_it_was_told() -> None:
     p, R = tool(HOME)
     R_FT, goal = rotation_from_rpy([0.0, 0.4, 1.2]), R @ rotation_from_rpy([0.2, 0.0, 0.3])
     move = LinearMove(position=tuple(np.add(p, [0.0, 0.1, 0.05])), quaternion=tuple(quaternion_from_matrix(goal @ R_FT)))
-    rows = play(LinearTrajectory(HOME, move, model(), TCP, R_FT, LIMITS))
+    rows = play(LinearTrajectory(HOME, move, model(), tcp=TCP, R_FT=R_FT, limits=LIMITS))
     end, flange = tool(rows[-1].q)
     assert np.linalg.norm(end - p - [0.0, 0.1, 0.05]) < 1.5e-4
     assert angle_between(flange @ R_FT, goal @ R_FT) < 1e-3
@@ -306,7 +312,7 @@ def test_a_move_that_needs_more_torque_than_there_is_is_accelerated_less() -> No
     move = JointMove(q=tuple((stretched - [0.0, 1.2, 0.0, 0.0, 0.0, 0.0]).tolist()))
     rigid = chain(UR5E)
     loads = [Body(mass, np.array([0.0, 0.0, 0.1]), np.eye(3) * 0.01 * mass) for mass in (0.0, 5.0)]
-    nothing, heavy = (Dynamics(rigid, rigid.links, load, [0.0, 0.0, 0.0], UR5E.chain.elbow) for load in loads)
+    nothing, heavy = (Dynamics(rigid, rigid.links, load, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow) for load in loads)
     rotor, torque = np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque)
 
     def needed(dynamics: Dynamics, rows: list[Reference]) -> float:

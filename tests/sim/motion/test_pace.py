@@ -30,7 +30,7 @@ def line() -> LinearTrajectory:
     p, R, _ = MODEL.update(HOME)
     place = p + R @ TCP + [0.0, 0.25, -0.1]
     move = LinearMove(id=1, position=tuple(place.tolist()), quaternion=tuple(quaternion_from_matrix(R)), speed=1.0)
-    return LinearTrajectory(HOME, move, MODEL, TCP, np.eye(3), LIMITS)
+    return LinearTrajectory(HOME, move, MODEL, tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
 
 
 def speeds(before: np.ndarray, after: np.ndarray) -> tuple[float, float, float]:

@@ -51,7 +51,7 @@ def pressed(item: AnyObject, forces: tuple[float, ...]) -> list[tuple[float, flo
     """(force, penetration) once the contact bears each of `forces`, the probe driven down ever deeper by stiff motors."""
     plant = Plant(UR5E, Scenario(posture=LOW, tool=PROBE, world=[item]))
     rigid, rotor = chain(UR5E), np.array(UR5E.motors.rotor_inertia)
-    dynamics = Dynamics(rigid, rigid.links, plate_body(UR5E) + tool_body(PROBE), [0.0] * 3, 2)
+    dynamics = Dynamics(rigid, rigid.links, plate_body(UR5E) + tool_body(PROBE), mounting=[0.0] * 3, elbow=2)
     target, force, found = plant.theta.copy(), 0.0, []
     for wanted in forces:
         for _ in range(1500):
@@ -97,7 +97,7 @@ def impact(stiffness: float, explicit: bool, substeps: int = 8) -> np.ndarray:
     dofs = np.array([model.joint(f"q/{name}").dofadr[0] for name in UR5E.chain.joints])
     thetas = np.array([model.joint(f"theta/{name}").dofadr[0] for name in UR5E.chain.joints])
     rigid = chain(UR5E)
-    dynamics = Dynamics(rigid, rigid.links, plate_body(UR5E) + tool_body(PROBE), [0.0] * 3, 2)
+    dynamics = Dynamics(rigid, rigid.links, plate_body(UR5E) + tool_body(PROBE), mounting=[0.0] * 3, elbow=2)
     jacobian = dynamics.update(plant.q)[2]
     speed = np.linalg.lstsq(jacobian, [0.0, 0.0, -0.25, 0.0, 0.0, 0.0], rcond=None)[0]
     data.qvel[dofs] = data.qvel[thetas] = speed
@@ -137,7 +137,7 @@ def onset(substeps: int) -> float:
     dofs = np.array([model.joint(f"q/{name}").dofadr[0] for name in UR5E.chain.joints])
     thetas = np.array([model.joint(f"theta/{name}").dofadr[0] for name in UR5E.chain.joints])
     rigid = chain(UR5E)
-    jacobian = Dynamics(rigid, rigid.links, plate_body(UR5E), [0.0] * 3, 2).update(plant.q)[2]
+    jacobian = Dynamics(rigid, rigid.links, plate_body(UR5E), mounting=[0.0] * 3, elbow=2).update(plant.q)[2]
     data.qvel[dofs] = data.qvel[thetas] = np.linalg.lstsq(jacobian, [0.0, 0.0, -0.1, 0.0, 0.0, 0.0], rcond=None)[0]
     rotor, wanted = np.array(UR5E.motors.rotor_inertia), data.qvel[thetas].copy()
     base, before = data.qfrc_bias[dofs].copy(), 0.0
@@ -159,7 +159,7 @@ def test_contact_force_and_acceleration_are_opposite_with_the_arms_effective_mas
     rigid = chain(UR5E)
     touching, free = (approach([below(0.001, BoxObject, stiffness=2e4)]), approach([]))
     normal = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
-    links = Dynamics(rigid, rigid.links, Body(0.0, np.zeros(3), np.zeros((3, 3))), [0.0] * 3, 2)
+    links = Dynamics(rigid, rigid.links, Body(0.0, np.zeros(3), np.zeros((3, 3))), mounting=[0.0] * 3, elbow=2)
     jacobian = links.update(np.array(LOW))[2].copy()
     mass, push = links.mass(np.array(LOW)), jacobian.T @ normal
     wrists = np.diag([0.0, 0.0, 0.0, *UR5E.motors.rotor_inertia[3:]])
@@ -184,7 +184,7 @@ def approach(world: list[AnyObject]) -> list[tuple[float, np.ndarray, np.ndarray
     dofs = np.array([plant.model.joint(f"q/{name}").dofadr[0] for name in UR5E.chain.joints])
     thetas = np.array([plant.model.joint(f"theta/{name}").dofadr[0] for name in UR5E.chain.joints])
     rigid = chain(UR5E)
-    jacobian = Dynamics(rigid, rigid.links, plate_body(UR5E), [0.0] * 3, 2).update(plant.q)[2]
+    jacobian = Dynamics(rigid, rigid.links, plate_body(UR5E), mounting=[0.0] * 3, elbow=2).update(plant.q)[2]
     speed = np.linalg.lstsq(jacobian, [0.0, 0.0, -0.25, 0.0, 0.0, 0.0], rcond=None)[0]
     plant.data.qvel[dofs] = plant.data.qvel[thetas] = speed
     torque, rows = plant.data.qfrc_bias[dofs].copy(), []

@@ -19,7 +19,7 @@ def both(arm: Arm, loaded: bool) -> tuple[Plant, Dynamics]:
     scenario = Scenario(mounting=MOUNTING, tool=PROBE if loaded else None, payload_true=TWO_KG if loaded else Load(mass=0.0))
     rigid = chain(arm)
     load = plate_body(arm) + tool_body(scenario.tool) + load_body(scenario.payload_true)
-    return Plant(arm, scenario), Dynamics(rigid, rigid.links, load, scenario.mounting, arm.chain.elbow)
+    return Plant(arm, scenario), Dynamics(rigid, rigid.links, load, mounting=scenario.mounting, elbow=arm.chain.elbow)
 
 
 @pytest.mark.parametrize("loaded", [False, True], ids=["bare", "loaded"])

@@ -17,7 +17,7 @@ TCP = np.array([0.02, -0.03, 0.12])
 
 def rigid(arm: Arm, load: Load) -> Dynamics:
     links = chain(arm)
-    return Dynamics(links, links.links, plate_body(arm) + load_body(load), MOUNTING, arm.chain.elbow)
+    return Dynamics(links, links.links, plate_body(arm) + load_body(load), mounting=MOUNTING, elbow=arm.chain.elbow)
 
 
 def any_motion(arm: Arm, seed: int) -> tuple[np.ndarray, np.ndarray]:
