@@ -180,7 +180,7 @@ class Estimator:
     def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
         friction, transmission, motor = self.friction, self.transmission, self._theta
-        surplus, stiction = self._surplus, self._stiction
+        surplus, stiction, ways = self._surplus, self._stiction, transmission.ways
         if use is not self._use:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
@@ -191,7 +191,6 @@ class Estimator:
         free = learn and self._started and use.adaptive and not transmission.contact
         friction.learn(motor[1], surplus, tau_dyn, transmission.fused, temperature=sample.temperature, free=free)
         rubs = (friction.total, friction.terms, friction.warmth)
-        ways = transmission.ways
         ways[DEFLECTION] = self._deflection
         moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
         transmission.update(friction.deviation, stiction, motor[2], moving=moving and learn, use=self._ways)
