@@ -176,8 +176,8 @@ def test_truth_never_reaches_the_controller(monkeypatch: pytest.MonkeyPatch) -> 
     for name in ("Estimator", "Controller"):
         real = getattr(sim.simulation, name)
 
-        def blind(arm: Arm, errors: Calibration, *rest: Any, real: Any = real) -> Any:
-            return real(blinded_arm(arm), blinded_calibration(errors), *rest)
+        def blind(arm: Arm, errors: Calibration, *rest: Any, real: Any = real, **named: Any) -> Any:
+            return real(blinded_arm(arm), blinded_calibration(errors), *rest, **named)
 
         monkeypatch.setattr(sim.simulation, name, blind)
     simulation = Simulation(UR5E, SCENARIO, SETTINGS)
