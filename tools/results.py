@@ -21,7 +21,7 @@ RESULTS = ROOT / "out" / "bench"
 HEADER = """\
 # Results
 
-Written by `python -m tools.results` from what the benches wrote. Times are of the machine that ran them. To measure anew:
+Written by `python -m tools.results` from what the benches wrote. Times are of the machine that ran them. To measure again:
 
 ```
 make bench SEED=14000
