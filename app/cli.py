@@ -226,7 +226,7 @@ def setting(text: str) -> tuple[str, float | bool | str]:
     try:
         find_setting(name)
     except SettingError as error:
-        raise BadInput("--set", name, ABSENT, f"no such setting; allowed: {error.allowed}") from None
+        raise BadInput("--set", name, ABSENT, error.allowed) from None
     if value in ("true", "false"):
         return name, value == "true"
     try:

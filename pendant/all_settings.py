@@ -1,6 +1,7 @@
 """The one settings schema: every period and limit with default, range, unit, requirement and a line of text."""
 
 import hashlib
+from enum import Enum
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import msgspec
@@ -19,6 +20,7 @@ from pendant.freedrive.settings import (
 from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
 from pendant.limits.settings import AxisSettings, JointLimits, LimitSettings, Soft, Static
+from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
 from pendant.settings.schema import switch as _switch
 from pendant.signals.settings import Handshake, LetGo, SignalSettings
@@ -29,22 +31,24 @@ from pendant.walls.settings import WallSettings
 class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Which terms make the motor torque, and which ways lead to the transmission torque."""
 
-    feed_forward: Annotated[bool, _switch("AF-4", "inertia and speed of a motion are fed forward")] = True
-    friction: Annotated[bool, _switch("AF-7", "the friction estimate helps motor and hand")] = True
+    BASIC = ("friction", "adaptive")
+
+    feed_forward: Annotated[bool, _switch("AF-4", "torques for inertia and speed of a planned motion are added")] = True
+    friction: Annotated[bool, _switch("AF-7", "the friction estimate compensates friction of motion and hand guiding")] = True
     adaptive: Annotated[bool, _switch("AF-2", "friction is learned while the robot works")] = True
-    torque_feedback: Annotated[bool, _switch("AF-5", "the transmission-torque error is corrected")] = True
-    theta: Annotated[bool, _switch("AF-5", "the motor angle's error is corrected")] = True
-    theta_speed: Annotated[bool, _switch("AF-5", "the motor speed's error is corrected")] = True
-    theta_acceleration: Annotated[bool, _switch("AF-5", "the motor acceleration's error is corrected")] = False
-    q: Annotated[bool, _switch("AF-5", "the output angle's error is integrated")] = True
-    q_speed: Annotated[bool, _switch("AF-5", "the output speed's error is corrected")] = False
-    q_acceleration: Annotated[bool, _switch("AF-5", "the output acceleration's error is corrected")] = False
-    motor_torque: Annotated[bool, _switch("AF-5", "the motor torque's error is corrected")] = False
-    tcp_pose: Annotated[bool, _switch("AF-5", "the tool centre point's error is corrected")] = False
-    tcp_speed: Annotated[bool, _switch("AF-5", "the error of its speed is corrected")] = False
-    from_dynamics: Annotated[bool, _switch("AF-3", "transmission torque from output angle and model")] = True
-    from_deflection: Annotated[bool, _switch("AF-3", "transmission torque from both angles")] = True
-    from_motor: Annotated[bool, _switch("AF-3", "transmission torque from the motor angle and torque")] = True
+    torque_feedback: Annotated[bool, _switch("AF-5", "the error of the transmission torque is fed back")] = True
+    theta: Annotated[bool, _switch("AF-5", "the error of the motor angle is fed back")] = True
+    theta_speed: Annotated[bool, _switch("AF-5", "the error of the motor speed is fed back")] = True
+    theta_acceleration: Annotated[bool, _switch("AF-5", "the error of the motor acceleration is fed back")] = False
+    q: Annotated[bool, _switch("AF-5", "the error of the output angle is integrated")] = True
+    q_speed: Annotated[bool, _switch("AF-5", "the error of the output speed is fed back")] = False
+    q_acceleration: Annotated[bool, _switch("AF-5", "the error of the output acceleration is fed back")] = False
+    motor_torque: Annotated[bool, _switch("AF-5", "the error of the motor torque is fed back")] = False
+    tcp_pose: Annotated[bool, _switch("AF-5", "the error of the tool centre point's pose is fed back")] = False
+    tcp_speed: Annotated[bool, _switch("AF-5", "the error of the tool centre point's speed is fed back")] = False
+    from_dynamics: Annotated[bool, _switch("AF-3", "transmission torque is estimated from output angle and rigid model")] = True
+    from_deflection: Annotated[bool, _switch("AF-3", "transmission torque is estimated from the two angles")] = True
+    from_motor: Annotated[bool, _switch("AF-3", "transmission torque is estimated from motor angle and motor torque")] = True
 
 
 class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -85,18 +89,20 @@ def _rows(section: type[Section], prefix: str) -> list[SettingRow]:
             continue
         meta: Meta = get_args(hint)[1]
         extra: dict[str, Any] = meta.extra or {}
+        basic, text = field.name in section.BASIC, meta.description or ""
         if isinstance(field.default, Limit):
-            rows += _limit_rows(prefix + field.name, field.default, meta.description or "", extra)
+            limit, *others = _limit_rows(prefix + field.name, field.default, text, extra)
+            rows += [limit._replace(basic=basic), *others]
             continue
         low, high = (None, None) if meta.ge is None else (float(meta.ge), float(meta.le or 0.0))
-        text = meta.description or ""
-        rows.append(SettingRow(prefix + field.name, field.default, low, high, extra["unit"], extra["id"], text, extra["locked"]))
+        marks = {key: extra[key] for key in ("unit", "id", "locked")}
+        rows.append(SettingRow(prefix + field.name, field.default, low, high, text=text, basic=basic, **marks))
     return rows
 
 
 def _limit_rows(name: str, default: Limit, text: str, extra: dict[str, Any]) -> list[SettingRow]:
     """The rows of one limit: its value and what all limits have."""
-    first = SettingRow(f"{name}.max", default.max, extra["low"], extra["high"], extra["unit"], extra["id"], text, True)
+    first = SettingRow(f"{name}.max", default.max, text=text, locked=True, basic=False, **extra)
     rows = [first]
     for row in _rows(type(default), f"{name}."):
         rows.append(row._replace(default=getattr(default, row.name.rpartition(".")[2]), text=f"{text}: {row.text}"))
@@ -115,12 +121,15 @@ def find(name: str) -> SettingRow:
     """The row of a dotted name.
 
     Raises:
-        SettingError: there is no such setting.
+        SettingError: there is no such setting, or none of this name any more; then the error says the name of now.
     """
     row = _ROWS.get(name)
-    if row is None:
-        raise SettingError(name, None, "one of " + ", ".join(_ROWS))
-    return row
+    if row is not None:
+        return row
+    if name in RENAMED:
+        now = _ROWS[RENAMED[name]]
+        raise SettingError(name, None, f"is called {now.name} now; allowed there: {_allowed(now)}")
+    raise SettingError(name, None, "no such setting; there are " + ", ".join(_ROWS))
 
 
 def value_of(settings: Settings, name: str) -> Value:
@@ -129,21 +138,31 @@ def value_of(settings: Settings, name: str) -> Value:
     value: Any = settings
     for part in name.split("."):
         value = getattr(value, part)
-    return value
+    return value.value if isinstance(value, Enum) else value
+
+
+def _allowed(row: SettingRow) -> str:
+    if row.choices:
+        return "one of " + ", ".join(row.choices)
+    if row.is_switch:
+        return "true or false"
+    unit = f" {row.unit}" if row.unit else ""
+    return f"a {'whole ' if row.is_count else ''}number from {row.low:g} to {row.high:g}{unit}"
 
 
 def _checked(row: SettingRow, value: object) -> Value:
-    if row.low is None or row.high is None:
-        if not isinstance(value, bool):
-            raise SettingError(row.name, value, "true or false")
+    """The value as the setting holds it: a float, an int, a bool, or a member of the enumeration."""
+    if row.choices and isinstance(value, str) and value in row.choices:
+        return type(row.default)(value)
+    if row.is_switch and isinstance(value, bool):
         return value
-    unit = f" {row.unit}" if row.unit else ""
-    allowed = f"a number from {row.low:g} to {row.high:g}{unit}"
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise SettingError(row.name, value, allowed)
-    if not row.low <= value <= row.high:  # NaN is in no range
-        raise SettingError(row.name, value, allowed)
-    return float(value)
+    if row.low is not None and row.high is not None and isinstance(value, (int, float)) and not isinstance(value, bool):
+        inside = row.low <= value <= row.high  # NaN is in no range
+        if inside and not row.is_count:
+            return float(value)
+        if inside and value == int(value):
+            return int(value)
+    raise SettingError(row.name, value, _allowed(row))
 
 
 def _replaced(section: Any, path: list[str], value: Value) -> Any:

@@ -54,16 +54,18 @@ RHYTHMS: dict[Pattern, tuple[int, ...]] = {
 class HapticUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Feedback that is felt: which patterns, and how far they turn the last joint."""
 
-    on: Annotated[bool, switch("HF-1", "the robot can be felt: patterns of small motions", locked=False)] = False
-    amplitude: Annotated[float, number(0.001, 0.008, "rad", "HF-2", text="of a cycle; its centre wanders 1.5 times as far")] = (
-        0.004
-    )
-    left: Annotated[bool, switch("HF-1", "free-drive was left", locked=False)] = True
-    entered: Annotated[bool, switch("HF-1", "free-drive was entered", locked=False)] = True
-    confirmation: Annotated[bool, switch("HF-1", "a confirmation is asked for", locked=False)] = True
-    border: Annotated[bool, switch("HF-1", "a wall or border comes close", locked=False)] = True
-    ending: Annotated[bool, switch("HF-1", "a period of free-drive ends in 1 s", locked=False)] = True
-    contact: Annotated[bool, switch("HF-1", "a change in contact was detected", locked=False)] = True
+    BASIC = ("on", "amplitude")
+
+    on: Annotated[bool, switch("HF-1", "haptic feedback: patterns of small motions of the last joint", locked=False)] = False
+    amplitude: Annotated[
+        float, number(0.001, 0.008, "rad", "HF-2", text="amplitude of a cycle; its centre wanders 1.5 times as far")
+    ] = 0.004
+    left: Annotated[bool, switch("HF-1", "pattern when free-drive has ended", locked=False)] = True
+    entered: Annotated[bool, switch("HF-1", "pattern when free-drive was entered", locked=False)] = True
+    confirmation: Annotated[bool, switch("HF-1", "pattern when a confirmation is asked for", locked=False)] = True
+    border: Annotated[bool, switch("HF-1", "pattern when a wall or another border comes close", locked=False)] = True
+    ending: Annotated[bool, switch("HF-1", "pattern 1 s before a period of free-drive ends", locked=False)] = True
+    contact: Annotated[bool, switch("HF-1", "pattern when a change in contact was detected", locked=False)] = True
 
 
 class Shake(NamedTuple):

@@ -211,7 +211,7 @@ class Supervisor:
                 if free.phase is not Phase.OFF:
                     robot.happen(Event(Kind.DEACTIVATED, estimate.tick), self.settings, events)
             elif command is Command.RESTART_PERIOD:
-                if not self.settings.free_drive.anew:
+                if not self.settings.free_drive.signal_renews:
                     robot.refuse(command, estimate, "periods are not started again here", events)
                 elif not free.ask_anew():
                     robot.refuse(command, estimate, "no period of free-drive runs", events)

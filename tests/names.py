@@ -10,14 +10,16 @@ from typing import Any
 from app.session.json_schema import KINDS, schema_of
 from pendant.all_settings import describe
 from pendant.event_table import TABLE
+from pendant.settings.renamed import RENAMED
 
 FILE = Path(__file__).parent / "names.json"
 
 GONE = {
     "session expect=contact_delay": "never accepted: each session that named it was refused",
     "session control=confirm": "never accepted: each session that named it was refused",
+    **{f"setting {old}": f"is called {new}, and who uses the old name is told so" for old, new in RENAMED.items()},
 }
-"""What was a name once, and why it is none now. No name that was accepted is gone."""
+"""What was a name once, and why it is none now."""
 
 
 def names() -> list[str]:

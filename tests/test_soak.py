@@ -57,7 +57,7 @@ def test_whoever_comes_back_knows_the_page() -> None:
     client.look(1.0)
     named = {thing.get("label"): thing for thing in client.things.values()}
     section = client.called("Section")
-    client.set(section, "static")
+    client.set(section, "walls")
     client.look(0.5)
     kept = {thing.get("label") for thing in client.things.values()}
     said, mode = first_use.page_text(client), first_use.mode(client)

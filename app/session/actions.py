@@ -194,7 +194,7 @@ class Axes(Action, tag="axes", frozen=True, kw_only=True):
         """The changes of settings, by dotted name."""
         free = PRESETS[self.preset] if self.preset is not None else frozenset[str](self.free or ())
         turned = dict(zip(("axes.roll", "axes.pitch", "axes.yaw"), self.rpy, strict=True))
-        return {**freeing(free), "axes.tool": self.frame == "tool", **turned}
+        return {**freeing(free), "axes.frame": "tool" if self.frame == "tool" else "base", **turned}
 
 
 class Laboratory(Action, tag="change", frozen=True, kw_only=True):

@@ -13,7 +13,7 @@ from app.session.actions import Action, Axes, ChangeSettings, Effort, Laboratory
 from app.session.claims import CLAIMS
 from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session, Setup, WorldSection, bundled, folder
-from pendant.all_settings import Settings, apply, describe
+from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.freedrive.settings import SequenceDynamic
 from pendant.limits.settings import MaintainLimits, OperationLimits
 from pendant.program.steps import Program as Steps
@@ -81,8 +81,10 @@ FEATURES: dict[str, dict[str, float | bool]] = {
 }
 """Requirement id -> the settings, by dotted name, that turn it off. Features without a switch are not in it."""
 
-SWITCHES = [row.name for row in describe() if row.low is None]
-"""Settings that are true or false, by dotted name."""
+SWITCHES = {
+    row.name: value_of(Settings(), row.name) if row.choices else False for row in describe() if row.choices or row.is_switch
+}
+"""Settings that are true or false, or a choice, by dotted name, with what stands for off: false, or the default."""
 
 LAST_OF = {"FD": 25, "VW": 10, "HF": 2, "CD": 18, "AF": 9}
 """The highest number of each group of requirements."""
@@ -198,7 +200,7 @@ def without(session: Session) -> Session:
     switch = session.switch or ""
     if switch in FEATURES:
         return msgspec.structs.replace(session, features={**session.features, switch: "off"})
-    return msgspec.structs.replace(session, settings={**session.settings, switch: False})
+    return msgspec.structs.replace(session, settings={**session.settings, switch: SWITCHES[switch]})
 
 
 def _check_claims(session: Session, where: str) -> None:
@@ -209,7 +211,7 @@ def _check_claims(session: Session, where: str) -> None:
     if session.claims and session.switch is None:
         raise BadInput(where, "switch", ABSENT, "missing: the feature, such as FD-7, without which the claims do not hold")
     if session.switch is not None and session.switch not in {*FEATURES, *SWITCHES}:
-        allowed = f"one of {', '.join(FEATURES)}, or a setting that is true or false, such as sequence.on"
+        allowed = f"one of {', '.join(FEATURES)}, or a setting that is true or false or a choice, such as sequence.on"
         raise BadInput(where, "switch", session.switch, allowed)
 
 

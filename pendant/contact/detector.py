@@ -8,7 +8,7 @@ from pendant.contact.contact_change import Change
 from pendant.contact.contact_limits import ContactLimits
 from pendant.contact.contact_rules import NEW, STEP, Rule, clear, contact_force, hard, slow, statistical, values
 from pendant.contact.history import History, Six
-from pendant.contact.settings import ContactUse
+from pendant.contact.settings import ContactUse, RulesNeeded
 from pendant.tick.pose import Vector
 from pendant.tick.source_signal import Signal
 
@@ -106,7 +106,7 @@ class Detector:
 
     def _rule(self, use: ContactUse, limit: ContactLimits) -> tuple[Rule, int, bool] | None:
         """The rule that saw a change, how far back the change may reach, and whether the acceleration has died out."""
-        history, counts, misses, hard_count = self.history, self._counts, int(use.misses), int(use.hard_count)
+        history, counts, misses, hard_count = self.history, self._counts, use.misses, use.hard_count
         of_values = ratio_of_values = False
         if use.instant or use.ratio_of_values:
             of_values, ratio_of_values = values(history, limit)
@@ -118,20 +118,20 @@ class Detector:
                 seen.append((Rule.INSTANT, NEW, False))
         if use.statistical:
             wanted += 1
-            if counts[Rule.STATISTICAL].step(statistical(history, limit), int(use.soft_count), misses):
-                seen.append((Rule.STATISTICAL, NEW + int(use.soft_count), False))
+            if counts[Rule.STATISTICAL].step(statistical(history, limit), use.soft_count, misses):
+                seen.append((Rule.STATISTICAL, NEW + use.soft_count, False))
         if use.slow:
             wanted += 1
             sightings, dead = slow(history, limit)
-            if counts[Rule.SLOW].step(sightings, int(use.slow_count), misses):
+            if counts[Rule.SLOW].step(sightings, use.slow_count, misses):
                 seen.append((Rule.SLOW, LONGEST, dead))
-        if not seen or (use.all_rules and len(seen) < wanted):
+        if not seen or (use.rules_needed is RulesNeeded.ALL and len(seen) < wanted):
             return None
         return seen[0]
 
     def _hard(self, use: ContactUse, limit: ContactLimits, of_values: bool) -> list[tuple[Rule, int, bool]]:
         """Difference and ratio rule, as `_rule`; `of_values`: the values of now show the ratio, too (CD-4, CD-5)."""
-        counts, misses, hard_count = self._counts, int(use.misses), int(use.hard_count)
+        counts, misses, hard_count = self._counts, use.misses, use.hard_count
         seen: list[tuple[Rule, int, bool]] = []
         change = hard(self.history, limit)
         if use.difference:

@@ -10,6 +10,7 @@ from pendant.freedrive.gate import Gate
 from pendant.freedrive.origins import may_enter, origins
 from pendant.freedrive.periods import Remaining
 from pendant.freedrive.sequence import SHORTEST, Sequence
+from pendant.freedrive.settings import BeyondLimit
 from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.settings.schema import ticks
@@ -210,7 +211,7 @@ class Activation:
         else:
             assert reading is not None
             refusal = _behind(reading, tick, settings)
-        if settings.sequence.protective_stop or not settings.sequence.compensate:
+        if settings.sequence.beyond_limit is not BeyondLimit.BALANCE:
             return becomes(Transition.REFUSED, refusal, reasons)
         balancing = self._compensation = Compensation(refusal, around)
         self._sequence = None
@@ -251,7 +252,7 @@ def _not_from(mode: Mode, tick: int, settings: Settings) -> Happened:
 def _behind(reading: Reading, tick: int, settings: Settings) -> Event:
     """The activation shape is exceeded (VW-6, FD-10)."""
     values = facts(reading)
-    if settings.sequence.protective_stop:
+    if settings.sequence.beyond_limit is BeyondLimit.PROTECTIVE_STOP:
         metres = float(values["distance"]) / 1000.0
         values = {"parameter": f"wall {values['wall']}", "part": values["part"], "value": metres, "limit": 0.0, "unit": "m"}
         return Event(Kind.SEQUENCE_STOPPED, tick, values)

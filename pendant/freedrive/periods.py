@@ -11,6 +11,7 @@ from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.gate import Gate
 from pendant.freedrive.manipulation import Maintained
+from pendant.freedrive.settings import RestartBegins
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK, Phase
 from pendant.tick.pose import Vector, Wrench, norm
@@ -116,7 +117,7 @@ class Periods:
             return self._count(around, settings, anew=anew, registered=registered, wrench=wrench)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
-        if settings.free_drive.maintained and self._left == 0 and self._rests(around, settings):
+        if settings.free_drive.ends_by_period and self._left == 0 and self._rests(around, settings):
             self._begin(Phase.RESTART, around, settings, wrench)
             return Happened([Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})])
         return Happened([])
@@ -161,7 +162,7 @@ class Periods:
 
     def _guide(self, around: Surroundings, settings: Settings, maintained: Maintained, wrench: Wrench | None) -> None:
         """The arm is guided: until it rests, or the restart period begins with every tick of it anew (FD-15)."""
-        if settings.free_drive.restart_at_manipulation:
+        if settings.free_drive.restart_begins is RestartBegins.MANIPULATION:
             self.phase = Phase.RESTART
             self._total = self._left = ticks(min(settings.free_drive.restart_period, settings.free_drive.longest))
             maintained.anew(around.estimate, wrench)
@@ -172,14 +173,14 @@ class Periods:
 
     def _rests(self, around: Surroundings, settings: Settings) -> bool:
         """The guided arm is static again, or nobody pushes it (FD-15)."""
-        if not settings.free_drive.restart_after_force:
+        if settings.free_drive.restart_begins is not RestartBegins.FORCE_ENDS:
             return around.still.count >= self._total
         return self._unpushed >= self._total
 
     def _begin(self, phase: Phase, around: Surroundings, settings: Settings, wrench: Wrench | None) -> None:
         """The free-drive or the restart period begins; where none ends free-drive, the arm counts as guided (FD-24)."""
         use = settings.free_drive
-        self.phase = phase if use.maintained else Phase.GUIDED
+        self.phase = phase if use.ends_by_period else Phase.GUIDED
         self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
         self._stirred = False
         self._maintained = Maintained(around.estimate, settings, wrench, self._joints)

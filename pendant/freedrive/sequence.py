@@ -5,6 +5,7 @@ import math
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
+from pendant.freedrive.settings import BeyondLimit
 from pendant.limits.dynamic_limits import DynamicLimits, Shares, in_activation
 from pendant.limits.parameters import ZEROS, EntryValues, Monitor, Observed
 from pendant.limits.residual import Split, Vector, mass_error, split, upward
@@ -131,7 +132,7 @@ class Sequence:
         tick = around.estimate.tick
         gauge = next((gauge for gauge in beyond if gauge.name in PAYLOAD_LIKE), beyond[0])
         excess = gauge.excess
-        if settings.sequence.protective_stop:
+        if settings.sequence.beyond_limit is BeyondLimit.PROTECTIVE_STOP:
             return Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict()))
         if gauge.name in PAYLOAD_LIKE:
             force = split(around.mean.mean(), self._up).payload_force

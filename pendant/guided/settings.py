@@ -10,9 +10,11 @@ from pendant.settings.schema import switch as _switch
 class Unexplained(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Motion that nobody causes, and payloads that drop or change, are STOP."""
 
-    motion: Annotated[bool, _switch("FD-19", "motion in free-drive that nobody causes is STOP")] = True
-    payload: Annotated[bool, _switch("FD-19", "a payload that drops or changes in free-drive is STOP")] = True
-    speed: Annotated[float, _number(0.005, 0.25, "m/s", "FD-19", text="of the flange, from which on it counts as moving")] = 0.02
-    time: Annotated[float, _number(0.02, 2.0, "s", "FD-19", text="that it may move alone")] = 0.3
-    force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", text="a smaller force does not count as a user force")] = 1.0
-    sensor: Annotated[bool, _switch("FD-19", "a flange sensor that drifts or steps drives no arm")] = True
+    BASIC = ("motion", "payload")
+
+    motion: Annotated[bool, _switch("FD-19", "motion in free-drive that no hand causes is a STOP")] = True
+    payload: Annotated[bool, _switch("FD-19", "a payload that drops or changes in free-drive is a STOP")] = True
+    speed: Annotated[float, _number(0.005, 0.25, "m/s", "FD-19", text="the flange counts as moving from this speed on")] = 0.02
+    time: Annotated[float, _number(0.02, 2.0, "s", "FD-19", text="time for which it may move without a hand")] = 0.3
+    force: Annotated[float, _number(0.5, 20.0, "N", "FD-19", text="a force below this does not count as a hand's")] = 1.0
+    sensor: Annotated[bool, _switch("FD-19", "a flange sensor that drifts or steps does not move the arm")] = True

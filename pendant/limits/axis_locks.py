@@ -1,10 +1,9 @@
 """Which of the directions x y z and the turns rx ry rz of the tool are free in free-drive, and in which frame (FD-4)."""
 
-import math
 from typing import NamedTuple
 
-from pendant.limits.settings import AxisSettings
-from pendant.tick.pose import Rotation, Vector
+from pendant.limits.settings import AxisSettings, LockFrame
+from pendant.tick.pose import Rotation, from_rpy
 
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -33,25 +32,9 @@ def axis_locks(axes: AxisSettings) -> AxisLocks | None:
     if not (axes.on and any(locked)):
         return None
     near = axes.near if axes.resistance else 0.0
-    return AxisLocks(locked, axes.tool, from_rpy((axes.roll, axes.pitch, axes.yaw)), near, axes.too_near)
+    return AxisLocks(locked, axes.frame is LockFrame.TOOL, from_rpy(axes.roll, axes.pitch, axes.yaw), near, axes.too_near)
 
 
 def freeing(free: frozenset[str]) -> dict[str, float | bool | str]:
     """The changes of settings, by dotted name, that free these axes and lock the others."""
     return {f"axes.{axis}": axis in free for axis in AXES}
-
-
-def from_rpy(rpy: Vector) -> Rotation:
-    """The matrix of roll, pitch, yaw [rad] about the fixed axes x, y, z in this order."""
-    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(angle), math.sin(angle)) for angle in rpy)
-    return (
-        cy * cp,
-        cy * sp * sr - sy * cr,
-        cy * sp * cr + sy * sr,
-        sy * cp,
-        sy * sp * sr + cy * cr,
-        sy * sp * cr - cy * sr,
-        -sp,
-        cp * sr,
-        cp * cr,
-    )

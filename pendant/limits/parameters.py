@@ -9,6 +9,7 @@ import msgspec
 
 from pendant.limits.dynamic_limits import WHOLE, Shares
 from pendant.limits.residual import Split
+from pendant.limits.settings import LimitReaction
 from pendant.settings.schema import Limit, Section, ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.limit_engine import Gauge, Monitored
@@ -198,7 +199,7 @@ class Monitor:
         for name in names:
             parameter, limit = PARAMETERS[name], getattr(limits, name, None)
             if isinstance(limit, Limit) and limit.on:
-                stop = bool(getattr(limit, "stop", False))
+                stop = getattr(limit, "reaction", None) is LimitReaction.STOP
                 low = -limit.max if parameter.signed else -math.inf
                 text, allowed = parameter.text + suffix, ticks(limit.time)
                 gauge = Gauge(text, parameter.unit, low=low, high=limit.max, allowed=allowed, stop=stop)

@@ -31,7 +31,7 @@ class Calls:
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         use = settings.signals
-        by_hand = (use.push.on, use.push.told, use.twist.on, use.joints.on, use.pattern.on, use.turn.on)
+        by_hand = (use.push.on, use.push.reported, use.twist.on, use.joints.on, use.pattern.on, use.turn.on)
         self.feeling = any((*by_hand, use.force_step.on, use.tap.on))
         self._sources.refresh(use)
         if not self.feeling:
@@ -73,13 +73,13 @@ class Calls:
             if push is not None:
                 events.append(_told(push, estimate.tick))
                 self.commands = _steered(use.push, state)
-        leaving = use.leaving and int(use.leaving_input) in inputs.high
+        leaving = use.leaving and use.leaving_input in inputs.high
         if leaving and not self._leaving:
             self.commands += (Command.LEAVE_FREE_DRIVE,)
         self._leaving = leaving
         if use.button and button:
             self.signal = BUTTON
-        elif use.digital and int(use.digital_input) in inputs.high:
+        elif use.digital and use.digital_input in inputs.high:
             self.signal = DIGITAL
         return events
 

@@ -38,7 +38,7 @@ class JointPushSignal:
     def step(self, torques: Sequence[float], use: JointPush) -> bool:
         """One tick of the external torques, base to flange [N·m]."""
         needed = max(use.threshold, NOISES * self._torques.noise)
-        asked = self._torques.step(torques)[int(use.first) - 1 : int(use.last)]
+        asked = self._torques.step(torques)[use.first - 1 : use.last]
         most = max(map(abs, asked), default=0.0)
         self.touched = most > OFF * needed
         self.present = most > (STAYS * needed if self.present else needed)

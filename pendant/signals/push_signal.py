@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from pendant.settings.schema import ticks
-from pendant.signals.settings import PushSettings, Twist
+from pendant.signals.settings import PushDirection, PushFrame, PushSettings, Twist
 from pendant.tick.pose import Rotation, Vector, turned
 
 STAYS = 0.75
@@ -43,16 +43,16 @@ class PushSignal:
 
 
 def _right_way(f: Vector, force: float, R_BF: Rotation, use: PushSettings) -> bool:
-    """Within the cone around the axis or, for a band, near the plane across it; not too much force off the axis."""
+    """Within the cone around the axis or, for pushes across it, near the plane across it; not too much force off the axis."""
     length = math.hypot(use.x, use.y, use.z)
     if length == 0.0:
         return True
     axis = (use.x / length, use.y / length, use.z / length)
-    if use.flange_axes:
+    if use.frame is PushFrame.FLANGE:
         axis = turned(R_BF, axis)
     along = f[0] * axis[0] + f[1] * axis[1] + f[2] * axis[2]
     across = math.sqrt(max(force * force - along * along, 0.0))
-    if use.band:
+    if use.direction is PushDirection.ACROSS:
         return math.atan2(abs(along), across) <= math.radians(use.angle)
     return across <= use.off_axis and math.atan2(across, along) <= math.radians(use.angle)
 

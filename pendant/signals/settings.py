@@ -2,95 +2,154 @@
 
 from typing import Annotated
 
-from pendant.settings.schema import Section, number, switch
+from pendant.settings.schema import Section
+from pendant.settings.schema import choice as _choice
+from pendant.settings.schema import count as _count
+from pendant.settings.schema import number as _number
+from pendant.settings.schema import switch as _switch
+from pendant.tick.words import Word
+
+
+class PushDirection(Word):
+    """How a push lies to its axis (FD-6)."""
+
+    ALONG = "along"
+    ACROSS = "across"
+
+
+class PushFrame(Word):
+    """Whose axes a push's axis is given in (FD-6)."""
+
+    BASE = "base"
+    FLANGE = "flange"  # it turns with the flange
 
 
 class PushSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(c) The user pushes at the flange."""
 
-    on: Annotated[bool, switch("FD-5", "a push at the flange is an activation signal")] = False
-    threshold: Annotated[float, number(5.0, 50.0, "N", "FD-5", text="a push changes the force by more than this")] = 15.0
-    force_limit: Annotated[float, number(10.0, 200.0, "N", "FD-6", text="a larger force is no push")] = 80.0
-    torque_limit: Annotated[float, number(0.2, 20.0, "N·m", "FD-6", text="more torque about the sensor's origin is no push")] = (
-        2.5
-    )
-    torque_period: Annotated[float, number(0.0, 5.0, "s", "FD-6", text="the torque must have been within it for so long")] = 0.0
-    angle: Annotated[float, number(0.0, 90.0, "°", "FD-6", text="largest angle to the axis, or to the band")] = 30.0
-    band: Annotated[bool, switch("FD-6", "pushes across the axis, instead of along it")] = False
-    x: Annotated[float, number(-1.0, 1.0, "", "FD-6", text="axis, x component")] = 0.0
-    y: Annotated[float, number(-1.0, 1.0, "", "FD-6", text="axis, y component")] = 0.0
-    z: Annotated[float, number(-1.0, 1.0, "", "FD-6", text="axis, z component; no axis: any direction")] = 0.0
-    flange_axes: Annotated[bool, switch("FD-6", "the axis turns with the flange; otherwise base axes")] = False
-    off_axis: Annotated[float, number(1.0, 200.0, "N", "FD-6", text="more force across the axis is no push")] = 30.0
-    radius: Annotated[float, number(0.0, 1.0, "m", "FD-6", text="its line passes the place within this; 0: anywhere")] = 0.0
-    place_x: Annotated[float, number(-1.0, 1.0, "m", "FD-6", text="place in the flange's axes, x")] = 0.0
-    place_y: Annotated[float, number(-1.0, 1.0, "m", "FD-6", text="place in the flange's axes, y")] = 0.0
-    place_z: Annotated[float, number(-1.0, 1.0, "m", "FD-6", text="place in the flange's axes, z")] = 0.0
-    told: Annotated[bool, switch("FD-6a", "every push is an event, in every mode")] = False
-    pauses: Annotated[bool, switch("FD-6a", "a push that is told pauses a running program")] = False
-    resumes: Annotated[bool, switch("FD-6a", "a push that is told resumes a paused program")] = False
-    stops: Annotated[bool, switch("FD-6a", "a push that is told stops a program")] = False
+    BASIC = ("on", "threshold")
+
+    on: Annotated[bool, _switch("FD-5", "a push at the flange is an activation signal")] = False
+    threshold: Annotated[
+        float, _number(5.0, 50.0, "N", "FD-5", text="a push changes the force at the flange by more than this")
+    ] = 15.0
+    force_limit: Annotated[
+        float, _number(10.0, 200.0, "N", "FD-6", text="a change of force by more than this is not taken for a push")
+    ] = 80.0
+    torque_limit: Annotated[
+        float, _number(0.2, 20.0, "N·m", "FD-6", text="a push has no more torque than this about the sensor's origin")
+    ] = 2.5
+    torque_period: Annotated[
+        float, _number(0.0, 5.0, "s", "FD-6", text="time for which the torque must have been within its limit")
+    ] = 0.0
+    angle: Annotated[
+        float, _number(0.0, 90.0, "°", "FD-6", text="largest angle between push and axis, or plane across the axis")
+    ] = 30.0
+    direction: Annotated[PushDirection, _choice("FD-6", "a push lies along the axis, or across it")] = PushDirection.ALONG
+    x: Annotated[float, _number(-1.0, 1.0, "", "FD-6", text="x component of the axis of a push")] = 0.0
+    y: Annotated[float, _number(-1.0, 1.0, "", "FD-6", text="y component of the axis of a push")] = 0.0
+    z: Annotated[
+        float, _number(-1.0, 1.0, "", "FD-6", text="z component of the axis of a push; without an axis any direction counts")
+    ] = 0.0
+    frame: Annotated[PushFrame, _choice("FD-6", "the frame in which the axis of a push is given")] = PushFrame.BASE
+    off_axis: Annotated[float, _number(1.0, 200.0, "N", "FD-6", text="a push has no more force across its axis than this")] = 30.0
+    radius: Annotated[
+        float, _number(0.0, 1.0, "m", "FD-6", text="the push's line passes the place within this distance; 0: any place")
+    ] = 0.0
+    place_x: Annotated[float, _number(-1.0, 1.0, "m", "FD-6", text="x of the place of a push, in axes of the flange")] = 0.0
+    place_y: Annotated[float, _number(-1.0, 1.0, "m", "FD-6", text="y of the place of a push, in axes of the flange")] = 0.0
+    place_z: Annotated[float, _number(-1.0, 1.0, "m", "FD-6", text="z of the place of a push, in axes of the flange")] = 0.0
+    reported: Annotated[bool, _switch("FD-6a", "every push is reported as an event, in every mode")] = False
+    pauses: Annotated[bool, _switch("FD-6a", "a reported push pauses a running program")] = False
+    resumes: Annotated[bool, _switch("FD-6a", "a reported push resumes a paused program")] = False
+    stops: Annotated[bool, _switch("FD-6a", "a reported push stops a program")] = False
 
 
 class Twist(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(d) The user twists the flange."""
 
-    on: Annotated[bool, switch("FD-5", "a twist at the flange is an activation signal")] = False
-    threshold: Annotated[float, number(0.5, 20.0, "N·m", "FD-5", text="a twist changes the torque by more than this")] = 3.0
-    force_limit: Annotated[float, number(1.0, 50.0, "N", "FD-5", text="more force is no twist")] = 10.0
+    BASIC = ("on", "threshold")
+
+    on: Annotated[bool, _switch("FD-5", "a twist at the flange is an activation signal")] = False
+    threshold: Annotated[
+        float, _number(0.5, 20.0, "N·m", "FD-5", text="a twist changes the torque at the flange by more than this")
+    ] = 3.0
+    force_limit: Annotated[float, _number(1.0, 50.0, "N", "FD-5", text="a twist has no more force than this")] = 10.0
 
 
 class JointPush(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(e) A push that the joints feel, without the flange's sensor."""
 
-    on: Annotated[bool, switch("FD-5", "a push felt by the joints is an activation signal")] = False
-    threshold: Annotated[float, number(1.0, 100.0, "N·m", "FD-5", text="change of a joint's external torque")] = 6.0
-    first: Annotated[float, number(1.0, 12.0, "", "FD-5", text="first joint that is asked, counted from the base")] = 1.0
-    last: Annotated[float, number(1.0, 12.0, "", "FD-5", text="last joint that is asked")] = 6.0
+    BASIC = ("on", "threshold")
+
+    on: Annotated[bool, _switch("FD-5", "a push felt by the joints is an activation signal")] = False
+    threshold: Annotated[
+        float, _number(1.0, 100.0, "N·m", "FD-5", text="a push changes the external torque of a joint by more than this")
+    ] = 6.0
+    first: Annotated[int, _count(1, 12, "FD-5", text="first joint that is watched for pushes, counted from the base")] = 1
+    last: Annotated[int, _count(1, 12, "FD-5", text="last joint that is watched for pushes")] = 6
 
 
 class PushPattern(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(f) Short pushes in a row, such as push, release, push."""
 
-    on: Annotated[bool, switch("FD-5", "short pushes in a row are an activation signal")] = False
-    count: Annotated[float, number(2.0, 5.0, "", "FD-5", text="pushes")] = 2.0
-    shortest: Annotated[float, number(0.02, 1.0, "s", "FD-5", text="shortest push, shortest gap")] = 0.08
-    longest: Annotated[float, number(0.05, 2.0, "s", "FD-5", text="longest push, longest gap")] = 0.28
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "short pushes in a row are an activation signal")] = False
+    count: Annotated[int, _count(2, 5, "FD-5", text="number of pushes in a row")] = 2
+    shortest: Annotated[
+        float, _number(0.02, 1.0, "s", "FD-5", text="shortest duration of a push in a row, and of the gap between two")
+    ] = 0.08
+    longest: Annotated[
+        float, _number(0.05, 2.0, "s", "FD-5", text="longest duration of a push in a row, and of the gap between two")
+    ] = 0.28
 
 
 class Turn(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(g) A joint is turned by hand against its hold."""
 
-    on: Annotated[bool, switch("FD-5", "a joint turned against its hold is an activation signal")] = False
-    joint: Annotated[float, number(1.0, 12.0, "", "FD-5", text="which joint, counted from the base")] = 6.0
-    angle: Annotated[float, number(0.0005, 0.5, "rad", "FD-5", text="turned by more than this")] = 0.005
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "a joint turned against its hold is an activation signal")] = False
+    joint: Annotated[int, _count(1, 12, "FD-5", text="number of the joint that is turned, counted from the base")] = 6
+    angle: Annotated[float, _number(0.0005, 0.5, "rad", "FD-5", text="the joint is turned by more than this")] = 0.005
 
 
 class ForceStep(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(h) The force changes at once, and nothing explains it."""
 
-    on: Annotated[bool, switch("FD-5", "an unexplained step of the force is an activation signal")] = False
-    threshold: Annotated[float, number(5.0, 50.0, "N", "FD-5", text="change of the force")] = 10.0
-    rise: Annotated[float, number(0.01, 0.5, "s", "FD-5", text="within this time")] = 0.1
-    quiet: Annotated[float, number(0.1, 5.0, "s", "FD-5", text="no commanded motion or payload change for so long")] = 0.5
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "a step of the force that nothing explains is an activation signal")] = False
+    threshold: Annotated[float, _number(5.0, 50.0, "N", "FD-5", text="the force steps by more than this")] = 10.0
+    rise: Annotated[float, _number(0.01, 0.5, "s", "FD-5", text="the force steps within this time")] = 0.1
+    quiet: Annotated[
+        float, _number(0.1, 5.0, "s", "FD-5", text="time without commanded motion or payload change before the step")
+    ] = 0.5
 
 
 class TapSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(i) A tap that the flange's accelerometer feels."""
 
-    on: Annotated[bool, switch("FD-5", "a tap at the flange is an activation signal")] = False
-    threshold: Annotated[float, number(1.0, 70.0, "m/s²", "FD-5", text="acceleration beyond gravity")] = 6.0
-    longest: Annotated[float, number(0.01, 0.5, "s", "FD-5", text="what lasts longer is no tap")] = 0.1
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "a tap at the flange is an activation signal")] = False
+    threshold: Annotated[
+        float, _number(1.0, 70.0, "m/s²", "FD-5", text="a tap accelerates the flange by more than this, gravity aside")
+    ] = 6.0
+    longest: Annotated[float, _number(0.01, 0.5, "s", "FD-5", text="a tap lasts no longer than this")] = 0.1
 
 
 class SignalSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Every source of an activation signal."""
 
-    button: Annotated[bool, switch("FD-5", "the pendant's button is an activation signal")] = True
-    digital: Annotated[bool, switch("FD-5", "a digital input is an activation signal")] = False
-    digital_input: Annotated[float, number(0.0, 7.0, "", "FD-5", text="which digital input")] = 0.0
-    leaving: Annotated[bool, switch("FD-17", "a digital input that rises leaves free-drive")] = False
-    leaving_input: Annotated[float, number(0.0, 7.0, "", "FD-17", text="which digital input")] = 1.0
+    BASIC = ("button", "digital")
+
+    button: Annotated[bool, _switch("FD-5", "the pendant's button is an activation signal")] = True
+    digital: Annotated[bool, _switch("FD-5", "a digital input is an activation signal")] = False
+    digital_input: Annotated[int, _count(0, 7, "FD-5", text="number of the digital input that is an activation signal")] = 0
+    leaving: Annotated[bool, _switch("FD-17", "a digital input that rises ends free-drive")] = False
+    leaving_input: Annotated[int, _count(0, 7, "FD-17", text="number of the digital input that ends free-drive")] = 1
     push: PushSettings = PushSettings()
     twist: Twist = Twist()
     joints: JointPush = JointPush()
@@ -103,16 +162,26 @@ class SignalSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=T
 class LetGo(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A hand that gave the signal must be off the arm before the activation sequence."""
 
-    on: Annotated[bool, switch("FD-8a", "a hand that gave the signal must leave the arm first")] = True
-    force: Annotated[float, number(0.5, 10.0, "N", "FD-8a", text="off: the change of the force is below this")] = 3.0
-    time: Annotated[float, number(0.0, 1.0, "s", "FD-8a", text="for so long")] = 0.1
-    within: Annotated[float, number(0.2, 10.0, "s", "FD-8a", text="refused when the hand is still on after so long")] = 2.0
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-8a", "a hand that gave the signal must leave the arm before the check")] = True
+    force: Annotated[
+        float, _number(0.5, 10.0, "N", "FD-8a", text="the hand is off when the force has changed by less than this")
+    ] = 3.0
+    time: Annotated[float, _number(0.0, 1.0, "s", "FD-8a", text="time for which the hand must be off")] = 0.1
+    within: Annotated[
+        float, _number(0.2, 10.0, "s", "FD-8a", text="free-drive is refused when the hand is still on after this time")
+    ] = 2.0
 
 
 class Handshake(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A second signal that confirms the first."""
 
-    on: Annotated[bool, switch("FD-8", "a signal must be confirmed")] = False
-    feedback: Annotated[float, number(0.0, 5.0, "s", "FD-8", text="how long the robot asks for it; signals do not count")] = 0.5
-    window: Annotated[float, number(1.0, 10.0, "s", "FD-8", text="the confirmation begins within this time")] = 3.0
-    hold: Annotated[float, number(0.0, 1.0, "s", "FD-8", text="and lasts for so long")] = 0.2
+    BASIC = ("on", "window")
+
+    on: Annotated[bool, _switch("FD-8", "a second signal must confirm the first")] = False
+    feedback: Annotated[
+        float, _number(0.0, 5.0, "s", "FD-8", text="time for which the robot asks to confirm; signals do not count in it")
+    ] = 0.5
+    window: Annotated[float, _number(1.0, 10.0, "s", "FD-8", text="the confirmation must begin within this time")] = 3.0
+    hold: Annotated[float, _number(0.0, 1.0, "s", "FD-8", text="the confirmation must last for this time")] = 0.2

@@ -126,8 +126,8 @@ class Sources:
                 self._joints.restart()
             elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and not found.source:
                 found = Presence("push felt by joints", by_hand=True)
-        if use.turn.on and joints_ok and int(use.turn.joint) <= len(self._held_at):
-            angle = float(estimate.q[int(use.turn.joint) - 1])
+        if use.turn.on and joints_ok and use.turn.joint <= len(self._held_at):
+            angle = float(estimate.q[use.turn.joint - 1])
             if self._turn.step(angle, holding, use.turn) and not found.source:
                 found = Presence("turned joint", by_hand=True)
         if use.tap.on and estimate.acceleration_valid:
@@ -195,7 +195,7 @@ class Sources:
         found = NONE
         if pushing:
             present = self._push.step(change, flat(estimate.R_BF), use.push)
-            self._told = min(self._told + 1, TOLD_AFTER + 1) if present and use.push.told else 0
+            self._told = min(self._told + 1, TOLD_AFTER + 1) if present and use.push.reported else 0
             if present and use.push.on:
                 found = Presence("push", by_hand=True)
             if use.pattern.on and self._pattern.step(present, use.pattern):
@@ -209,5 +209,5 @@ class Sources:
 
 def _asked(use: SignalSettings) -> tuple[bool, bool]:
     """Whether pushes are looked for, and whether anything is that the flange sensor feels."""
-    pushing = use.push.on or use.push.told or use.pattern.on
+    pushing = use.push.on or use.push.reported or use.pattern.on
     return pushing, pushing or use.twist.on or use.force_step.on

@@ -9,5 +9,9 @@ from pendant.settings.schema import number as _number
 class ToolUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """How tool and payload are changed and measured."""
 
-    ramp: Annotated[float, _number(0.0, 10.0, "s", "tools", text="time to go over to another payload in", locked=False)] = 1.0
-    measure: Annotated[float, _number(0.1, 5.0, "s", "tools", text="time to measure a posture for", locked=False)] = 0.5
+    BASIC = ("ramp",)
+
+    ramp: Annotated[
+        float, _number(0.0, 10.0, "s", "tools", text="time in which the arm goes over to another payload", locked=False)
+    ] = 1.0
+    measure: Annotated[float, _number(0.1, 5.0, "s", "tools", text="time for which a posture is measured", locked=False)] = 0.5

@@ -11,7 +11,8 @@ from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.settings.schema import ticks
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, dot, finite, product, rotation, seen_from, turned, turned_back
 from pendant.walls.anchors import Anchor, Stay
-from pendant.walls.definitions import AnyBorder, Measure, Policy, Reaction, Wall
+from pendant.walls.definitions import AnyBorder, Measure, Policy, Wall
+from pendant.walls.settings import Reaction
 
 WRONG_WAY = 0.005
 """A part that started outside has gone further out when it is so far beyond its place [m]."""

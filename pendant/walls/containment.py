@@ -10,7 +10,7 @@ from pendant.events.event import Values
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
 from pendant.walls.barrier import Around, Consequence, Place, Reading, WatchedPart, placed
-from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Reaction, Start, Wall
+from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Start, Wall
 from pendant.walls.enclosure import Enclosure, worst
 from pendant.walls.settings import WallSettings
 from pendant.walls.shapes import Sphere
@@ -36,7 +36,7 @@ def tether(walls: WallSettings) -> Wall:
         band=min(walls.band, 0.8 * walls.operation_radius),
         activation_size=max(walls.activation_radius / walls.operation_radius, 0.05),
         push_back=walls.push_back,
-        reaction=Reaction.STOP if walls.stop else Reaction.LEAVE if walls.leave else Reaction.STAY,
+        reaction=walls.tether_reaction,
     )
 
 
@@ -163,7 +163,7 @@ def _switched(border: AnyBorder, walls: WallSettings) -> AnyBorder:
         border = replace(border, band=0.0)
     if not walls.sizes and border.size is not None:
         border = replace(border, size=replace(border.size, at_low=border.least, at_high=border.least))
-    if not walls.anew and isinstance(border, Wall):
+    if not walls.new_anchors and isinstance(border, Wall):
         border = replace(border, policy=Policy.FIXED)
     return border
 

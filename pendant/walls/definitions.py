@@ -11,6 +11,7 @@ from msgspec import Meta
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Quaternion, Vector, rotation, turned_back
 from pendant.tick.words import Word
+from pendant.walls.settings import Reaction
 from pendant.walls.shapes import AnyShape, Coordinate
 
 Period = Annotated[float, Meta(ge=0.1, le=10.0)]  # [s]
@@ -20,14 +21,6 @@ Name = Annotated[str, Meta(min_length=1, max_length=60)]
 SAMPLED = 2.0 * TICK
 """A spring sampled every tick gives back energy unless its damper is at least half of stiffness times tick; four times that is
 asked for here, since the force acts a tick late as well (Colgate and Schenkel, Passivity of a class of sampled-data systems)."""
-
-
-class Reaction(StrEnum):
-    """What follows when a wall is exceeded in FREE_DRIVE (VW-6). In the activation sequence entry is refused (FD-10)."""
-
-    STAY = "stay"  # the arm stops at the wall and stays there
-    LEAVE = "leave"
-    STOP = "stop"
 
 
 class Policy(StrEnum):

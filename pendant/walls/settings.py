@@ -3,27 +3,44 @@
 from typing import Annotated
 
 from pendant.settings.schema import Section
+from pendant.settings.schema import choice as _choice
 from pendant.settings.schema import number as _number
 from pendant.settings.schema import switch as _switch
+from pendant.tick.words import Word
+
+
+class Reaction(Word):
+    """What follows when a wall is exceeded in FREE_DRIVE (VW-6). In the activation sequence entry is refused (FD-10)."""
+
+    STAY = "stay"  # the arm stops at the wall and stays there
+    LEAVE = "leave"
+    STOP = "stop"
 
 
 class WallSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Virtual walls: those of the session, and the tether, a sphere round the flange that follows the user's hand."""
 
-    on: Annotated[bool, _switch("FD-24", "walls and areas hold")] = True
-    anew: Annotated[bool, _switch("VW-3", "walls get new anchors by their policies")] = True
-    sizes: Annotated[bool, _switch("VW-8", "sizes follow posture or payload, or the smallest holds")] = True
-    resistance: Annotated[bool, _switch("VW-7", "walls resist before they are reached")] = True
-    tether: Annotated[bool, _switch("VW-4", "a sphere round the flange follows the hand")] = True
-    activation_radius: Annotated[float, _number(0.001, 0.1, "m", "VW-6", text="of the tether in the activation sequence")] = 0.005
+    BASIC = ("on", "resistance", "tether", "operation_radius", "tether_reaction")
+
+    on: Annotated[bool, _switch("FD-24", "virtual walls and areas are active")] = True
+    new_anchors: Annotated[bool, _switch("VW-3", "walls get new anchors, each by its policy")] = True
+    sizes: Annotated[bool, _switch("VW-8", "sizes of walls follow posture or payload; otherwise the smallest holds")] = True
+    resistance: Annotated[bool, _switch("VW-7", "walls resist the arm before it reaches them")] = True
+    tether: Annotated[bool, _switch("VW-4", "a sphere round the flange, the tether, follows the user's hand")] = True
+    activation_radius: Annotated[
+        float, _number(0.001, 0.1, "m", "VW-6", text="radius of the tether in the activation sequence")
+    ] = 0.005
     operation_radius: Annotated[
-        float, _number(0.005, 1.0, "m", "VW-6", text="of the tether in free-drive; the arm stops at it")
+        float, _number(0.005, 1.0, "m", "VW-6", text="radius of the tether in free-drive; the arm stops at it")
     ] = 0.03
-    band: Annotated[float, _number(0.0, 0.5, "m", "VW-7", text="before the tether, where it resists")] = 0.005
-    averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", text="the tether lies round the flange's mean place")] = 0.02
+    band: Annotated[
+        float, _number(0.0, 0.5, "m", "VW-7", text="width of the band before the tether in which the arm is resisted")
+    ] = 0.005
+    averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", text="time over which the tether's centre is averaged")] = 0.02
     safety_period: Annotated[
-        float, _number(0.1, 10.0, "s", "VW-3", text="the tether follows a hand that was felt so long ago")
+        float, _number(0.1, 10.0, "s", "VW-3", text="time after a felt hand in which the tether still follows")
     ] = 1.0
-    push_back: Annotated[float, _number(1.0, 50.0, "N", "VW-5", text="smallest force that the tether takes for a hand's")] = 1.0
-    leave: Annotated[bool, _switch("VW-6", "beyond the tether, free-drive is left")] = False
-    stop: Annotated[bool, _switch("VW-6", "beyond the tether is STOP")] = False
+    push_back: Annotated[float, _number(1.0, 50.0, "N", "VW-5", text="smallest force that counts as a hand's for the tether")] = (
+        1.0
+    )
+    tether_reaction: Annotated[Reaction, _choice("VW-6", "what follows when the tether is exceeded")] = Reaction.STAY

@@ -443,7 +443,7 @@ def _stays(w: World, t: int, i: Step, s: Settings, present: bool, kinds: list[Ki
         beyond.append(abs(i.tau - torque) > 100.0 * limits.joint_torque.max)
         beyond.append(w.tried and abs(_mean(w) - force) > limits.user_force.max)
     if any(beyond):
-        stop = s.sequence.protective_stop
+        stop = s.sequence.beyond_limit == "protective_stop"
         kinds += [Kind.ENTRY_PREVENTED] * sum(beyond) + [Kind.SEQUENCE_STOPPED if stop else Kind.REFUSED_LIMIT]
         _end(w, t, present, cool=True)
         if stop:

@@ -6,6 +6,7 @@ import msgspec
 import pytest
 
 from pendant.all_settings import Settings, apply, describe, digest, find, limits_checksum, value_of
+from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import SettingError, SettingRow, Value, ticks
 
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
@@ -16,8 +17,7 @@ EXPECTED = {
     "sequence.stored": (False, None, None, "", "FD-9", True),
     "sequence.age": (2.0, 0.5, 15.0, "s", "FD-9", True),
     "sequence.amplified": (False, None, None, "", "FD-9", True),
-    "sequence.protective_stop": (False, None, None, "", "FD-10", True),
-    "sequence.compensate": (False, None, None, "", "FD-10", True),
+    "sequence.beyond_limit": ("refuse", None, None, "", "FD-10", True),
     "sequence.dynamic.acceleration": (False, None, None, "", "FD-12b", True),
     "sequence.dynamic.payload": (False, None, None, "", "FD-12b", True),
     "sequence.dynamic.drift": (False, None, None, "", "FD-12b", True),
@@ -29,12 +29,11 @@ EXPECTED = {
     "free_drive.period": (3.0, 0.5, 30.0, "s", "FD-14", False),
     "free_drive.restart_period": (3.0, 0.5, 30.0, "s", "FD-15", False),
     "unexplained.sensor": (True, None, None, "", "FD-19", True),
-    "free_drive.restart_at_manipulation": (False, None, None, "", "FD-15", True),
-    "free_drive.restart_after_force": (False, None, None, "", "FD-15", True),
+    "free_drive.restart_begins": ("standstill", None, None, "", "FD-15", True),
     "limits.maintain.load_share": (0.0, 0.0, 1.0, "", "FD-13", True),
-    "free_drive.anew": (True, None, None, "", "FD-16", True),
+    "free_drive.signal_renews": (True, None, None, "", "FD-16", True),
     "free_drive.longest": (30.0, 0.5, 30.0, "s", "FD-16", True),
-    "free_drive.maintained": (True, None, None, "", "FD-24", True),
+    "free_drive.ends_by_period": (True, None, None, "", "FD-24", True),
     "free_drive.remainders": (True, None, None, "", "FD-20", True),
     "free_drive.way_back": (True, None, None, "", "FD-22", True),
     "free_drive.cool_down": (2.0, 0.0, 30.0, "s", "FD-12c", True),
@@ -67,7 +66,7 @@ EXPECTED = {
     "axes.rx": (True, None, None, "", "FD-4", False),
     "axes.ry": (True, None, None, "", "FD-4", False),
     "axes.rz": (True, None, None, "", "FD-4", False),
-    "axes.tool": (False, None, None, "", "FD-4", False),
+    "axes.frame": ("base", None, None, "", "FD-4", False),
     "axes.roll": (0.0, -3.15, 3.15, "rad", "FD-4", False),
     "axes.pitch": (0.0, -3.15, 3.15, "rad", "FD-4", False),
     "axes.yaw": (0.0, -3.15, 3.15, "rad", "FD-4", False),
@@ -90,7 +89,7 @@ EXPECTED = {
     "unexplained.time": (0.3, 0.02, 2.0, "s", "FD-19", True),
     "unexplained.force": (1.0, 0.5, 20.0, "N", "FD-19", True),
     "walls.on": (True, None, None, "", "FD-24", True),
-    "walls.anew": (True, None, None, "", "VW-3", True),
+    "walls.new_anchors": (True, None, None, "", "VW-3", True),
     "walls.sizes": (True, None, None, "", "VW-8", True),
     "walls.resistance": (True, None, None, "", "VW-7", True),
     "walls.tether": (True, None, None, "", "VW-4", True),
@@ -100,8 +99,7 @@ EXPECTED = {
     "walls.averaging": (0.02, 0.02, 10.0, "s", "VW-4", True),
     "walls.safety_period": (1.0, 0.1, 10.0, "s", "VW-3", True),
     "walls.push_back": (1.0, 1.0, 50.0, "N", "VW-5", True),
-    "walls.leave": (False, None, None, "", "VW-6", True),
-    "walls.stop": (False, None, None, "", "VW-6", True),
+    "walls.tether_reaction": ("stay", None, None, "", "VW-6", True),
     "enabling.on": (False, None, None, "", "FD-23", True),
     "reduced.on": (True, None, None, "", "FD-1", True),
     "reduced.tcp_speed": (0.25, 0.05, 0.25, "m/s", "FD-1", True),
@@ -125,17 +123,17 @@ SIGNALS = {
     "signals.push.torque_limit": (2.5, 0.2, 20.0, "N·m", "FD-6", True),
     "signals.push.torque_period": (0.0, 0.0, 5.0, "s", "FD-6", True),
     "signals.push.angle": (30.0, 0.0, 90.0, "°", "FD-6", True),
-    "signals.push.band": (False, None, None, "", "FD-6", True),
+    "signals.push.direction": ("along", None, None, "", "FD-6", True),
     "signals.push.x": (0.0, -1.0, 1.0, "", "FD-6", True),
     "signals.push.y": (0.0, -1.0, 1.0, "", "FD-6", True),
     "signals.push.z": (0.0, -1.0, 1.0, "", "FD-6", True),
-    "signals.push.flange_axes": (False, None, None, "", "FD-6", True),
+    "signals.push.frame": ("base", None, None, "", "FD-6", True),
     "signals.push.off_axis": (30.0, 1.0, 200.0, "N", "FD-6", True),
     "signals.push.radius": (0.0, 0.0, 1.0, "m", "FD-6", True),
     "signals.push.place_x": (0.0, -1.0, 1.0, "m", "FD-6", True),
     "signals.push.place_y": (0.0, -1.0, 1.0, "m", "FD-6", True),
     "signals.push.place_z": (0.0, -1.0, 1.0, "m", "FD-6", True),
-    "signals.push.told": (False, None, None, "", "FD-6a", True),
+    "signals.push.reported": (False, None, None, "", "FD-6a", True),
     "signals.push.pauses": (False, None, None, "", "FD-6a", True),
     "signals.push.resumes": (False, None, None, "", "FD-6a", True),
     "signals.push.stops": (False, None, None, "", "FD-6a", True),
@@ -223,7 +221,7 @@ for stage, parameters in LIMITS.items():
         EXPECTED[f"limits.{where}.time"] = (TIMES.get(where, 0.0), 0.0, 2.0, "s", "FD-12a", True)
         EXPECTED[f"limits.{where}.on"] = (where not in OFF, None, None, "", "FD-25", True)
         if stage == "operation":
-            EXPECTED[f"limits.{where}.stop"] = (where in STOPS, None, None, "", "FD-18", True)
+            EXPECTED[f"limits.{where}.reaction"] = ("stop" if where in STOPS else "leave", None, None, "", "FD-18", True)
 TERMS = {
     "feed_forward": ("AF-4", True),
     "friction": ("AF-7", True),
@@ -257,7 +255,7 @@ CONTACT_SWITCHES = {
     "ratio_of_values": (True, "CD-5", True),
     "statistical": (True, "CD-6", True),
     "slow": (True, "CD-7", True),
-    "all_rules": (False, "CD-10", True),
+    "rules_needed": ("any", "CD-10", True),
     "look_back": (True, "CD-14", True),
     "retrospective": (True, "CD-9", True),
 }
@@ -295,8 +293,27 @@ CONTACT_NUMBERS = {
 EXPECTED |= {f"contact.{name}": (on, None, None, "", ident, locked) for name, (on, ident, locked) in CONTACT_SWITCHES.items()}
 EXPECTED |= {f"contact.{name}": cell for name, cell in CONTACT_NUMBERS.items()}
 
-NUMBERS = [row for row in describe() if row.low is not None]
-SWITCHES = [row for row in describe() if row.low is None]
+NUMBERS = [row for row in describe() if row.low is not None and not row.is_count]
+COUNTS = [row for row in describe() if row.is_count]
+SWITCHES = [row for row in describe() if row.is_switch]
+CHOICES = [row for row in describe() if row.choices]
+
+
+def test_every_setting_is_a_number_a_count_a_switch_or_a_choice() -> None:
+    names = [row.name for row in (*NUMBERS, *COUNTS, *SWITCHES, *CHOICES)]
+    assert sorted(names) == sorted(EXPECTED)
+    assert {row.name for row in COUNTS} == {
+        "contact.hard_count", "contact.soft_count", "contact.slow_count", "contact.misses", "signals.digital_input",
+        "signals.leaving_input", "signals.joints.first", "signals.joints.last", "signals.pattern.count", "signals.turn.joint",
+    }  # fmt: skip
+
+
+def test_a_user_is_shown_a_tenth_to_a_quarter_of_all_settings() -> None:
+    """Everybody needs what starts free-drive, how long it lasts, walls, contact and the locks; experts the rest."""
+    basic = {row.name for row in describe() if row.basic}
+    assert 0.1 * len(EXPECTED) < len(basic) < 0.25 * len(EXPECTED)
+    assert {"activation.period", "free_drive.period", "walls.on", "contact.on", "limits.operation.tcp_speed.max"} <= basic
+    assert not {"limits.operation.tcp_speed.time", "contact.hard_count", "static.speed"} & basic
 
 
 def test_every_setting_is_as_the_spec_says() -> None:
@@ -306,7 +323,7 @@ def test_every_setting_is_as_the_spec_says() -> None:
 
 def test_every_setting_has_a_short_text() -> None:
     for row in describe():
-        assert 5 < len(row.text) <= 60, row.name
+        assert 5 < len(row.text) <= 80, row.name
 
 
 def test_what_all_limits_have_says_which_limit_it_is_of() -> None:
@@ -334,6 +351,44 @@ def test_a_number_is_taken_up_to_its_range_and_not_beyond(row: SettingRow) -> No
         assert caught.value.name == row.name
         assert caught.value.value is value
         assert caught.value.allowed == f"a number from {row.low:g} to {row.high:g} {row.unit}".rstrip()
+
+
+@pytest.mark.parametrize("row", COUNTS, ids=lambda row: row.name)
+def test_a_count_is_a_whole_number_of_its_range(row: SettingRow) -> None:
+    assert row.low is not None
+    assert row.high is not None
+    low, high = int(row.low), int(row.high)
+    for value in (low, high, float(low), float(low + 1)):  # a file may say 3.0
+        taken = value_of(apply(Settings(), {row.name: value}), row.name)
+        assert taken == value
+        assert isinstance(taken, int)
+    for value in (low - 1, high + 1, low + 0.5, math.nextafter(low, math.inf), math.nan, math.inf, "1", True, None):
+        with pytest.raises(SettingError) as caught:
+            apply(Settings(), {row.name: value})
+        assert caught.value.value is value
+        assert caught.value.allowed == f"a whole number from {low} to {high}"
+
+
+@pytest.mark.parametrize("row", CHOICES, ids=lambda row: row.name)
+def test_a_choice_is_one_of_its_words(row: SettingRow) -> None:
+    for word in row.choices:
+        taken = value_of(apply(Settings(), {row.name: word}), row.name)
+        assert taken == word
+        assert type(taken) is str  # as a file says it
+    for value in ("", "Stop", True, False, 0, 1.0, None, ["leave"]):
+        with pytest.raises(SettingError) as caught:
+            apply(Settings(), {row.name: value})
+        assert caught.value.value is value
+        assert caught.value.allowed == "one of " + ", ".join(row.choices)
+
+
+@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+def test_an_old_name_is_answered_with_the_new_one(old: str, new: str) -> None:
+    assert old not in EXPECTED
+    with pytest.raises(SettingError) as caught:
+        apply(Settings(), {old: True})
+    assert caught.value.name == old
+    assert caught.value.allowed.startswith(f"is called {new} now; allowed there: ")
 
 
 @pytest.mark.parametrize("row", SWITCHES, ids=lambda row: row.name)
@@ -386,6 +441,8 @@ def test_the_schema_refuses_unknown_fields_and_values_out_of_range() -> None:
 
 
 def other(row: SettingRow) -> Value:
+    if row.choices:
+        return row.choices[-1] if row.default == row.choices[0] else row.choices[0]
     if row.low is None or row.high is None:
         return not row.default
     return row.low if row.high == row.default else row.high

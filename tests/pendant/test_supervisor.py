@@ -196,7 +196,7 @@ def test_an_emergency_stop_in_a_protective_stop_is_the_greater_one() -> None:
         (Bench, Command.STOP_PROGRAM, "no program is running"),
         (Bench, Command.RESET, "nothing to reset"),
         (Bench, Command.RESTART_PERIOD, "no period of free-drive runs"),
-        (lambda: Bench(free_drive__anew=False), Command.RESTART_PERIOD, "periods are not started again here"),
+        (lambda: Bench(free_drive__signal_renews=False), Command.RESTART_PERIOD, "periods are not started again here"),
         (running, Command.START_PROGRAM, "stop the program first"),
         (running, Command.RESUME_PROGRAM, "it is running already"),
         (running, Command.NORMAL, "stop the program first"),
@@ -350,7 +350,9 @@ def test_a_wall_that_holds_before_free_drive_is_not_felt() -> None:
 @pytest.mark.parametrize("pauses", [True, False])
 def test_a_push_that_is_told_pauses_the_program_and_other_commands_of_its_tick_count(pauses: bool) -> None:
     """FD-6a: told in the tick in which it pauses, before what follows from it, with everything else of that tick."""
-    bench = running(Program(name="rest", steps=(Wait(duration=60.0),)), signals__push__told=True, signals__push__pauses=pauses)
+    bench = running(
+        Program(name="rest", steps=(Wait(duration=60.0),)), signals__push__reported=True, signals__push__pauses=pauses
+    )
     bench.run(120)
     bench.events.clear()
     inputs = Inputs(commands=(Command.NORMAL,), settings={"free_drive.cool_down": 3.0})

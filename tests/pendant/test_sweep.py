@@ -34,7 +34,7 @@ COMPARED = apply(CHECKED, {"sequence.period": 0.1, "sequence.stored": True, "seq
 
 AT_A_GLANCE = apply(COMPARED, {"sequence.period": 0.0})
 TOO_SHORT = apply(CHECKED, {"sequence.period": 0.248})
-STOPPING = apply(CHECKED, {"sequence.protective_stop": True})
+STOPPING = apply(CHECKED, {"sequence.beyond_limit": "protective_stop"})
 AT_ONCE = apply(SHORT, {"activation.period": 0.0})
 
 TRIED = ticks_of(15) + ticks_of(40, held=True)

@@ -189,7 +189,7 @@ def test_a_hand_that_rests_on_the_arm_is_refused_however_it_came(size: float) ->
 
 
 def test_no_push_and_no_signal_is_felt_and_no_mode_changes() -> None:
-    robot = Robot(signals__push__on=True, signals__push__told=True, signals__push__threshold=5.0)
+    robot = Robot(signals__push__on=True, signals__push__reported=True, signals__push__threshold=5.0)
     robot.valid = False
     robot.run(1)
     robot.valid, robot.offset[:] = True, (4.0, -4.0, 4.0, 0.0, 0.0, 0.0)

@@ -149,7 +149,7 @@ def test_what_the_joints_learned_from_the_old_load_is_forgotten() -> None:
 @pytest.mark.parametrize("wished", [wish("gripper"), wish(load=Load(mass=3.0))], ids=["tool", "payload"])
 def test_a_change_at_once_is_no_contact_and_no_push(wished: Wishes) -> None:
     """With every detector and source on; the estimates jump by 20 N and 10 N."""
-    names = ("contact.on", "contact.flange", "signals.push.on", "signals.push.told", "signals.joints.on", "signals.twist.on")
+    names = ("contact.on", "contact.flange", "signals.push.on", "signals.push.reported", "signals.joints.on", "signals.twist.on")
     two = Load(mass=2.0)
     settings = apply(Settings(), {"tools.ramp": 0.0, "signals.push.angle": 90.0} | dict.fromkeys(names, True))
     device = Bench(Scenario(seed=1, payload_true=two, payload_configured=two, tools=[GRIPPER]), settings)

@@ -13,7 +13,7 @@ from sim.plant.touch import Push
 from sim.simulation import Simulation
 from tests.sim.arms import TWO_KG, UR5E
 
-FELT = {"contact.on": True, "signals.push.on": True, "signals.push.told": True, "signals.push.threshold": 5.0}
+FELT = {"contact.on": True, "signals.push.on": True, "signals.push.reported": True, "signals.push.threshold": 5.0}
 IDLE = Wishes(NOTHING, (), ())
 ZERO = Wishes(Inputs(commands=(Command.ZERO_SENSOR,)), (), ())
 

@@ -57,8 +57,8 @@ class Wires:
 def _label(number: int, settings: Settings) -> str:
     """The input's name, and what it does with free-drive."""
     use = settings.signals
-    enters = use.digital and int(use.digital_input) == number
-    leaves = use.leaving and int(use.leaving_input) == number
+    enters = use.digital and use.digital_input == number
+    leaves = use.leaving and use.leaving_input == number
     does = ": both" if enters and leaves else ": enter" if enters else ": leave" if leaves else ""
     return f"Input {number}{does}"
 

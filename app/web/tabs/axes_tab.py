@@ -12,6 +12,7 @@ from app.web.widgets.svg import Colour
 from pendant.all_settings import Settings
 from pendant.limits.axis_locks import AXES, PRESETS, freeing
 from pendant.limits.nearness import Nearness
+from pendant.limits.settings import LockFrame
 from sim.exchange.snapshot import Snapshot
 
 NAMES = {name.capitalize(): name for name in PRESETS}
@@ -42,7 +43,11 @@ class AxesTab:
 
         for axis, control in self.free.items():
             control.on_update(self._sets(f"axes.{axis}", control))
-        self.tool.on_update(self._sets("axes.tool", self.tool))
+
+        @self.tool.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                loop.desk.set({"axes.frame": LockFrame.TOOL if self.tool.value else LockFrame.BASE})
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show what is free and the nearness; True if anything changed."""
@@ -52,7 +57,7 @@ class AxesTab:
             self._settings = settings
             for axis, control in self.free.items():
                 _bring(control, getattr(settings.axes, axis))
-            _bring(self.tool, settings.axes.tool)
+            _bring(self.tool, settings.axes.frame is LockFrame.TOOL)
         return any([fresh, self.now.show(svg.facts(_facts(settings, snapshot))), self.singularity.show(_told(snapshot))])
 
     def _sets(self, name: str, control: viser.GuiCheckboxHandle) -> Callable[[viser.GuiEvent], Any]:
@@ -75,7 +80,7 @@ def _label(axis: str) -> str:
 def _facts(settings: Settings, snapshot: Snapshot) -> list[tuple[str, str]]:
     axes = settings.axes
     locked = [axis for axis in AXES if not getattr(axes, axis)]
-    if axes.tool:
+    if axes.frame is LockFrame.TOOL:
         frame = "tool, as it stands when locked"
     else:
         frame = "base, turned" if any((axes.roll, axes.pitch, axes.yaw)) else "base"

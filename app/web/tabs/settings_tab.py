@@ -25,6 +25,8 @@ def section_of(row: SettingRow) -> str:
 
 
 SECTIONS = tuple(dict.fromkeys(section_of(row) for row in describe()))
+BASIC = tuple(dict.fromkeys(section_of(row) for row in describe() if row.basic))
+"""The sections that hold a basic setting."""
 
 
 class SettingsTab:
@@ -36,7 +38,8 @@ class SettingsTab:
         self._locked = False
         self._lock = threading.Lock()  # controls are made on viser's event loop and brought up to date by the painter
         self._line = Html(gui)
-        self.section = gui.add_dropdown("Section", SECTIONS)
+        self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
+        self.section = gui.add_dropdown("Section", BASIC)
         self.defaults = gui.add_button("Section to defaults", color="gray")
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
@@ -48,9 +51,15 @@ class SettingsTab:
             with self._lock, self._tab:
                 self._fill()
 
+        @self.expert.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            with self._lock, self._tab:
+                self._offer()
+                self._fill()
+
         @self.defaults.on_click
         async def _(_: viser.GuiEvent) -> None:
-            self._loop.desk.set({row.name: row.default for row in self._rows})
+            self._loop.desk.set({row.name: row.default for row in describe() if section_of(row) == self.section.value})
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Bring the controls up to date with the settings that hold; True if anything changed."""
@@ -74,8 +83,8 @@ class SettingsTab:
             handle.remove()
         controls: dict[str, Any] = {}
         self._texts = []
-        self._rows = [row for row in describe() if section_of(row) == self.section.value]
         settings = self._loop.settings
+        self._rows = [row for row in describe() if section_of(row) == self.section.value and self._shows(row, settings)]
         for row in self._rows:
             controls[row.name] = self._control(row, value_of(settings, row.name))
             self._texts.append(self._gui.add_html(svg.fine_print(_about(row))))
@@ -83,10 +92,26 @@ class SettingsTab:
         self._let()
         self._refresh(settings)
 
+    def _shows(self, row: SettingRow, settings: Settings) -> bool:
+        return self.expert.value or row.basic or value_of(settings, row.name) != row.default
+
+    def _offer(self) -> None:
+        """Offer the sections that have something to show."""
+        settings = self._loop.settings
+        offered = tuple(dict.fromkeys(section_of(row) for row in describe() if self._shows(row, settings)))
+        chosen = self.section.value
+        self.section.options = offered
+        if chosen in offered:
+            self.section.value = chosen
+
     def _control(self, row: SettingRow, value: Value) -> Any:
         label = _label(row, value)
-        if row.low is None or row.high is None:
-            handle: Any = self._gui.add_checkbox(label, bool(value), hint=row.name)
+        if row.choices:
+            handle: Any = self._gui.add_dropdown(label, row.choices, initial_value=str(value), hint=row.name)
+        elif row.low is None or row.high is None:
+            handle = self._gui.add_checkbox(label, bool(value), hint=row.name)
+        elif row.is_count:
+            handle = self._gui.add_number(label, int(value), min=int(row.low), max=int(row.high), step=1, hint=row.name)
         else:
             step = 10.0 ** round_down(row.high - row.low)
             handle = self._gui.add_number(label, float(value), min=row.low, max=row.high, step=step, hint=row.name)
@@ -132,6 +157,8 @@ def _label(row: SettingRow, value: Value) -> str:
 
 
 def _about(row: SettingRow) -> str:
+    if row.choices:
+        return f"{row.id} · {row.text} · default {row.default}"
     if row.low is None or row.high is None:
         return f"{row.id} · {row.text} · default {'on' if row.default else 'off'}"
     return f"{row.id} · {row.text} · {row.low:g} … {row.high:g} {row.unit} · default {row.default:g}"

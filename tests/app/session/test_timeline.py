@@ -81,9 +81,9 @@ def test_axes_are_freed_and_locked_by_settings() -> None:
     first, second = (wishes.inputs.settings for wishes in play([plane, own], 2))
     free = {"x": True, "y": True, "z": False, "rx": False, "ry": False, "rz": True}
     turned = {"axes.roll": 0.0, "axes.pitch": 0.0, "axes.yaw": 0.0}
-    assert first == {**{f"axes.{axis}": value for axis, value in free.items()}, "axes.tool": True, **turned}
+    assert first == {**{f"axes.{axis}": value for axis, value in free.items()}, "axes.frame": "tool", **turned}
     assert [axis for axis in free if second[f"axes.{axis}"] is True] == ["z", "rx"]
-    assert (second["axes.tool"], second["axes.roll"], second["axes.yaw"]) == (False, 0.1, 0.3)
+    assert (second["axes.frame"], second["axes.roll"], second["axes.yaw"]) == ("base", 0.1, 0.3)
 
 
 @pytest.mark.parametrize(

@@ -111,7 +111,7 @@ def test_limits_follow_the_settings_at_once() -> None:
 
 def test_links_know_the_slow_rule_alone_and_all_else_as_it_is_set() -> None:
     """CD-2."""
-    use = msgspec.structs.replace(USE, instant=True, ratio_of_values=True, slow_count=7.0)
+    use = msgspec.structs.replace(USE, instant=True, ratio_of_values=True, slow_count=7)
     same = {name: value for name, value in msgspec.structs.asdict(use).items() if name not in HASTY}
     assert msgspec.structs.asdict(for_links(use)) == {**same, **dict.fromkeys(HASTY, False)}
     assert use.slow

@@ -11,7 +11,7 @@ from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_rules import NEW, Rule, hard, slow, statistical, values
 from pendant.contact.detector import GONE, SILENCE, Detector
 from pendant.contact.history import History
-from pendant.contact.settings import ContactUse
+from pendant.contact.settings import ContactUse, RulesNeeded
 from tests.pendant.contact.test_detector import ringing
 from tests.pendant.contacts import USE, found, limit, ramp, signals
 
@@ -29,7 +29,7 @@ def test_a_change_is_found_by_any_of_the_rules_that_are_on_or_by_all(of_values: 
     """CD-9, CD-10: in the first tick in which one of them is confirmed, or all of them; the first of them is named."""
     stream = signals(100, push=ramp(100, START, 2.0, top=60.0), noise=0.3, seed=3)
     history, limits, counts = History(), limit(), {rule: Confirmation() for rule in Rule}
-    needed = dict.fromkeys(Rule, int(USE.hard_count)) | {Rule.STATISTICAL: int(USE.soft_count), Rule.SLOW: int(USE.slow_count)}
+    needed = dict.fromkeys(Rule, USE.hard_count) | {Rule.STATISTICAL: USE.soft_count, Rule.SLOW: USE.slow_count}
     confirmed: list[set[Rule]] = []
     for signal in stream:
         history.push(signal)
@@ -45,11 +45,11 @@ def test_a_change_is_found_by_any_of_the_rules_that_are_on_or_by_all(of_values: 
         confirmed.append({rule for rule in Rule if counts[rule].step(seen[rule], needed[rule], int(USE.misses))})
     assert len({frozenset(rules) for rules in confirmed}) > 5
     for rules in SETS:
-        for all_rules in (False, True):
-            enough = len(rules) if all_rules else 1
+        for needed in RulesNeeded:
+            enough = len(rules) if needed is RulesNeeded.ALL else 1
             expected = next(tick for tick, seen in enumerate(confirmed) if len(seen & set(rules)) >= enough)
-            (tick, finding), *_ = found(stream, only(rules, all_rules=all_rules, ratio_of_values=of_values))
-            assert (tick, finding.rule in confirmed[tick]) == (expected, True), (rules, all_rules)
+            (tick, finding), *_ = found(stream, only(rules, rules_needed=needed, ratio_of_values=of_values))
+            assert (tick, finding.rule in confirmed[tick]) == (expected, True), (rules, needed)
 
 
 @pytest.mark.parametrize("off", [only([]), only([Rule.SLOW]), only([Rule.RATIO])])

@@ -23,7 +23,7 @@ def sinking(position: float = 0.003, force: list[float] | None = None, speed: fl
 
 def balanced(**changes: float | bool) -> Bench:
     """In the tick in which the flange is found beyond its limit, tick 561."""
-    bench = Bench(**{"sequence__on": True, "sequence__compensate": True, **changes})
+    bench = Bench(**{"sequence__on": True, "sequence__beyond_limit": "balance", **changes})
     bench.run(60)
     bench.run(501, HOLD)
     bench.step(LET_GO, sinking())
@@ -47,7 +47,7 @@ def test_beyond_a_limit_the_arm_stays_free_and_is_balanced() -> None:
 
 
 def test_help_for_the_hand_is_off_even_where_the_check_has_it() -> None:
-    bench = Bench(sequence__on=True, sequence__compensate=True, sequence__amplified=True)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance", sequence__amplified=True)
     bench.run(60)
     assert bench.run(501, HOLD).gain == 1.0
     assert bench.step(LET_GO, sinking()).gain == 0.0
@@ -77,7 +77,7 @@ def test_what_it_bears_then_is_reported(force: float, mass: float, way: str) -> 
 
 
 def test_the_way_is_from_where_it_was_found() -> None:
-    bench = Bench(sequence__on=True, sequence__compensate=True)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance")
     bench.run(60)
     bench.run(501, HOLD)
     bench.step(LET_GO, estimate(position=[0.003, -0.001, 0.002], qd=0.05))
@@ -86,7 +86,7 @@ def test_the_way_is_from_where_it_was_found() -> None:
 
 
 def test_a_payload_seen_at_once_is_refused_as_one_and_the_verdict_waits() -> None:
-    bench = Bench(sequence__on=True, sequence__compensate=True)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance")
     heavy = estimate(force=HEAVIER)
     bench.run(60, NOTHING, heavy)
     bench.run(501, HOLD, heavy)
@@ -100,7 +100,7 @@ def test_a_payload_seen_at_once_is_refused_as_one_and_the_verdict_waits() -> Non
 
 
 def test_without_the_flange_sensor_nothing_is_said_of_the_load() -> None:
-    bench = Bench(sequence__on=True, sequence__compensate=True)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance")
     bare = estimate(wrench_valid=False)
     bench.run(60, NOTHING, bare)
     bench.run(501, HOLD, bare)
@@ -132,7 +132,7 @@ def test_an_arm_that_does_not_come_to_rest_is_held_after_two_seconds() -> None:
 @pytest.mark.parametrize(("way", "held"), [(0.0099, False), (0.01, False), (math.nextafter(0.01, 1.0), True), (0.0101, True)])
 def test_one_that_goes_too_far_is_held_at_once(way: float, held: bool) -> None:
     """10 mm from where its load was found beyond the limit."""
-    bench = Bench(sequence__on=True, sequence__compensate=True)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance")
     heavy = estimate(force=HEAVIER)
     bench.run(60, NOTHING, heavy)
     bench.run(501, HOLD, heavy)
@@ -165,14 +165,14 @@ def test_what_ends_the_check_ends_this_too(command: Command, kind: Kind, mode: M
 
 
 def test_a_protective_stop_comes_before_it() -> None:
-    bench = balanced(sequence__protective_stop=True)
+    bench = balanced(sequence__beyond_limit="protective_stop")
     assert kinds(bench) == [Kind.ENTRY_PREVENTED, Kind.SEQUENCE_STOPPED]
     assert bench.last.safety is Safety.PROTECTIVE_STOP
 
 
 def test_beyond_a_wall_it_is_balanced_as_well() -> None:
     """VW-6: 5 mm from where the check began; no other limit is on the way."""
-    bench = Bench(sequence__on=True, sequence__compensate=True, limits__activation__flange_displacement__on=False)
+    bench = Bench(sequence__on=True, sequence__beyond_limit="balance", limits__activation__flange_displacement__on=False)
     bench.run(60)
     bench.run(501, HOLD)
     bench.step(LET_GO, estimate(position=0.0051))

@@ -102,7 +102,7 @@ def test_where_no_period_runs_none_begins() -> None:
 
 
 def test_none_begins_anew_where_that_is_switched_off() -> None:
-    bench = Quick(free_drive__anew=False).in_period()
+    bench = Quick(free_drive__signal_renews=False).in_period()
     bench.run(248)
     refused = {"command": Command.RESTART_PERIOD, "mode": Mode.FREE_DRIVE, "reason": "periods are not started again here"}
     assert bench.step(ANEW).events == (Event(Kind.COMMAND_REFUSED, bench.tick, refused),)
@@ -120,7 +120,7 @@ def test_no_period_is_longer_than_the_longest(longest: float, period: float, res
 
 
 def test_without_periods_free_drive_lasts() -> None:
-    bench = Quick(free_drive__maintained=False).entered()
+    bench = Quick(free_drive__ends_by_period=False).entered()
     bench.events.clear()
     assert bench.step(LET_GO).phase is Phase.GUIDED
     bench.run(10, NOTHING, MOVING)
@@ -171,7 +171,7 @@ def test_registering_a_waypoint_elsewhere_changes_nothing() -> None:
 
 def test_the_restart_period_may_begin_with_the_manipulation() -> None:
     """FD-15: and every tick of it begins it anew."""
-    bench = Quick(free_drive__restart_at_manipulation=True, free_drive__restart_period=1.0).in_period()
+    bench = Quick(free_drive__restart_begins="manipulation", free_drive__restart_period=1.0).in_period()
     bench.run(200)
     for _ in range(40):
         bench.step(NOTHING, MOVING)
@@ -185,7 +185,7 @@ def test_the_restart_period_may_begin_with_the_manipulation() -> None:
 
 
 def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
-    bench = Quick(free_drive__restart_at_manipulation=True, free_drive__restart_period=1.0).in_period()
+    bench = Quick(free_drive__restart_begins="manipulation", free_drive__restart_period=1.0).in_period()
     pushed = estimate(force=20.0, felt=20.0)
     bench.step(NOTHING, pushed)
     assert bench.last.phase is Phase.RESTART
@@ -196,7 +196,9 @@ def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
 @pytest.mark.parametrize(("after_force", "rests"), [(True, True), (False, False)])
 def test_the_restart_period_may_begin_when_the_hand_is_off_while_the_arm_still_moves(after_force: bool, rests: bool) -> None:
     names = {f"limits__maintain__{name}__on": False for name in ("joint_speed", "flange_speed")}
-    bench = Quick(free_drive__restart_after_force=after_force, unexplained__motion=False, **names).in_period()
+    bench = Quick(
+        free_drive__restart_begins="force_ends" if after_force else "standstill", unexplained__motion=False, **names
+    ).in_period()
     bench.run(200, NOTHING, estimate(force=20.0, felt=20.0, qd=0.3))
     assert bench.last.phase is Phase.GUIDED
     bench.run(150, NOTHING, estimate(qd=0.3))
@@ -204,7 +206,7 @@ def test_the_restart_period_may_begin_when_the_hand_is_off_while_the_arm_still_m
 
 
 def test_the_hand_must_be_off_for_as_long_as_the_arm_must_be_static() -> None:
-    bench = Quick(free_drive__restart_after_force=True, static__time=0.2, activation__period=0.2).in_period()
+    bench = Quick(free_drive__restart_begins="force_ends", static__time=0.2, activation__period=0.2).in_period()
     bench.step(NOTHING, estimate(force=20.0))
     assert bench.run(99).phase is Phase.GUIDED
     assert bench.step().phase is Phase.RESTART
@@ -212,7 +214,7 @@ def test_the_hand_must_be_off_for_as_long_as_the_arm_must_be_static() -> None:
 
 def test_the_hand_is_off_from_the_tick_after_its_last_push() -> None:
     """FD-15: a push at the limit is one."""
-    alone = Alone(False, free_drive__restart_after_force=True, free_drive__longest=1.0, static__time=0.1, let_go__force=3.0)
+    alone = Alone(False, free_drive__restart_begins="force_ends", free_drive__longest=1.0, static__time=0.1, let_go__force=3.0)
     assert [event.kind for event in alone.step(PUSHED)] == [Kind.MANIPULATION]
     assert alone.run(70, PUSHED, (1.0, 2.0, 2.0)) == []
     assert alone.run(49, PUSHED, (1.0, 2.0, 1.99)) == []
@@ -295,7 +297,7 @@ def test_a_push_that_moves_nothing_guides_for_the_static_time() -> None:
 @pytest.mark.parametrize("start", [Phase.PERIOD, Phase.GUIDED, Phase.RESTART])
 def test_a_press_of_any_length_leaves_if_it_is_short(start: Phase, held: int, leaves: bool) -> None:
     """FD-8a, to the tick: 0.4 s are 200 ticks."""
-    alone = Alone(False, free_drive__restart_at_manipulation=start is Phase.RESTART)
+    alone = Alone(False, free_drive__restart_begins="manipulation" if start is Phase.RESTART else "standstill")
     if start is not Phase.PERIOD:
         alone.step(PUSHED)
     assert alone.periods.phase is start

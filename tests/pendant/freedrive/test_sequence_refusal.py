@@ -100,7 +100,7 @@ def test_without_sensor_or_cool_down_there_is_no_verdict() -> None:
 
 def test_the_option_is_a_protective_stop() -> None:
     """FD-10."""
-    bench = tried(sequence__protective_stop=True)
+    bench = tried(sequence__beyond_limit="protective_stop")
     bench.step(HOLD, estimate(position=0.003))
     assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.PROTECTIVE_STOP, Law.BRAKE)
     values = {"parameter": "flange displacement", "part": "flange", "value": 0.003, "limit": 0.002, "unit": "m"}

@@ -20,7 +20,8 @@ from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import ORIGIN
 from pendant.walls.containment import Containment
-from pendant.walls.definitions import AnyBorder, Area, Reaction
+from pendant.walls.definitions import AnyBorder, Area
+from pendant.walls.settings import Reaction
 from pendant.walls.shapes import HalfSpace
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole_transition

@@ -143,7 +143,7 @@ def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_o
 @pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
 def test_pushes_leave_no_offset_behind(anew: bool) -> None:
     """Each grows by 10 N/s for 0.3 s before the arm moves; 3 N/s would pass for drift. It is gone before the arm rests."""
-    bench = Bench(free_drive__period=30.0, free_drive__restart_at_manipulation=anew).in_period()
+    bench = Bench(free_drive__period=30.0, free_drive__restart_begins="manipulation" if anew else "standstill").in_period()
     for _ in range(6):
         for tick in range(300):
             bench.step(NOTHING, estimate(force=[min(0.02 * tick, 6.0), 0.0, 0.0], qd=0.3 if tick > 150 else 0.0))

@@ -8,11 +8,12 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.limits.axis_locks import AXES, PRESETS, axis_locks, freeing, from_rpy
+from pendant.limits.axis_locks import AXES, PRESETS, axis_locks, freeing
 from pendant.limits.nearness import Nearness
-from pendant.limits.settings import AxisSettings
+from pendant.limits.settings import AxisSettings, LockFrame
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Mode
+from pendant.tick.pose import from_rpy
 from sim.arm.frames import rotation_from_rpy
 from tests.pendant.estimates import estimate
 
@@ -40,11 +41,11 @@ def test_switched_off_nothing_is_locked() -> None:
 
 def test_the_frame_is_turned_by_roll_pitch_yaw() -> None:
     for rpy in ((0.3, 0.0, 0.0), (0.0, -0.7, 0.0), (0.0, 0.0, 2.0), (0.4, -1.1, 2.5)):
-        np.testing.assert_allclose(np.reshape(from_rpy(rpy), (3, 3)), rotation_from_rpy(rpy), atol=1e-12)
-    locks = axis_locks(AxisSettings(x=False, yaw=0.5, tool=True))
+        np.testing.assert_allclose(np.reshape(from_rpy(*rpy), (3, 3)), rotation_from_rpy(rpy), atol=1e-12)
+    locks = axis_locks(AxisSettings(x=False, yaw=0.5, frame=LockFrame.TOOL))
     assert locks is not None
     assert locks.tool
-    assert from_rpy((0.0, 0.0, 0.5)) == locks.R_BU
+    assert from_rpy(0.0, 0.0, 0.5) == locks.R_BU
 
 
 def test_without_resistance_singularities_resist_nowhere() -> None:

@@ -67,7 +67,7 @@ def test_before_a_source_by_hand_is_on_nothing_is_felt() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["push.on", "push.told", "twist.on", "joints.on", "pattern.on", "turn.on", "force_step.on", "tap.on"]
+    "name", ["push.on", "push.reported", "twist.on", "joints.on", "pattern.on", "turn.on", "force_step.on", "tap.on"]
 )
 def test_each_source_by_hand_feels(name: str) -> None:
     calls = Calls(6)
@@ -109,7 +109,7 @@ def test_a_hand_is_off_after_a_tenth_of_a_second() -> None:
 @pytest.mark.parametrize(
     ("switch", "state", "commands"),
     [
-        ("told", ProgramState.RUNNING, ()),
+        ("reported", ProgramState.RUNNING, ()),
         ("pauses", ProgramState.RUNNING, PAUSE),
         ("pauses", ProgramState.PAUSED, ()),
         ("resumes", ProgramState.PAUSED, RESUME),
@@ -121,7 +121,7 @@ def test_a_hand_is_off_after_a_tenth_of_a_second() -> None:
 )
 def test_a_push_is_told_once_and_steers_the_program(switch: str, state: ProgramState, commands: tuple[Command, ...]) -> None:
     """FD-6a: when it has lasted 0.1 s."""
-    bench = Bench(**{"push__told": True, f"push__{switch}": True}).quiet()
+    bench = Bench(**{"push__reported": True, f"push__{switch}": True}).quiet()
     found = [bench.step(PUSHED, state=state) for _ in range(120)]
     (push,) = [one for one in found if one != (NONE, (), [])]
     assert push[:2] == (NONE, commands)
@@ -134,10 +134,10 @@ def test_a_push_is_told_once_and_steers_the_program(switch: str, state: ProgramS
 @pytest.mark.parametrize("told", [True, False])
 def test_a_rising_input_leaves_besides_what_a_push_does(told: bool) -> None:
     """FD-17, FD-6a."""
-    first = Bench(push__told=True, push__pauses=True).quiet()
+    first = Bench(push__reported=True, push__pauses=True).quiet()
     running = ProgramState.RUNNING
     count = next(count for count in range(200) if first.step(PUSHED, state=running)[1])
-    bench = Bench(push__told=told, push__pauses=True, leaving=True).quiet()
+    bench = Bench(push__reported=told, push__pauses=True, leaving=True).quiet()
     for _ in range(count):
         assert bench.step(PUSHED, state=running) == (NONE, (), [])
     _, commands, events = bench.step(PUSHED, state=running, inputs=Inputs(high=frozenset({1})))

@@ -33,11 +33,11 @@ def test_a_change_beyond_the_threshold_is_a_push(size: float, there: bool) -> No
 
 @pytest.mark.parametrize(("joint", "there"), [(0, False), (1, True), (3, True), (4, False)])
 def test_only_the_joints_that_are_asked(joint: int, there: bool) -> None:
-    assert any(felt(lambda _: 20.0, 0.3, JointPush(on=True, first=2.0, last=4.0), joint)) is there
+    assert any(felt(lambda _: 20.0, 0.3, JointPush(on=True, first=2, last=4), joint)) is there
 
 
-@pytest.mark.parametrize(("first", "last"), [(4.0, 2.0), (7.0, 12.0), (12.0, 1.0)])
-def test_where_no_joint_of_the_arm_is_asked_no_hand_is_felt(first: float, last: float) -> None:
+@pytest.mark.parametrize(("first", "last"), [(4, 2), (7, 12), (12, 1)])
+def test_where_no_joint_of_the_arm_is_asked_no_hand_is_felt(first: int, last: int) -> None:
     signal, use = JointPushSignal(6), JointPush(on=True, threshold=1.0, first=first, last=last)
     for tick in range(100):
         assert not signal.step([20.0 * (tick > 60)] * 6, use)

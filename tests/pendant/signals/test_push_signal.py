@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pendant.signals.push_signal import PushSignal
-from pendant.signals.settings import PushSettings
+from pendant.signals.settings import PushDirection, PushFrame, PushSettings
 from pendant.tick.pose import UNTURNED, flat
 
 CALM = (0.0, 0.0, 0.0)
@@ -55,13 +55,21 @@ def test_the_cone_is_about_the_axis_and_the_band_across_it(
     cosine = np.dot(force, along) / np.linalg.norm(force) / np.linalg.norm(along)
     angle = math.degrees(math.asin(abs(cosine)) if band else math.acos(cosine))
     for more, there in ((-0.01, False), (0.01, True)):
-        use = PushSettings(x=x, y=y, z=z, angle=angle + more, band=band, off_axis=LARGEST, flange_axes=R_BF is not None)
+        use = PushSettings(
+            x=x,
+            y=y,
+            z=z,
+            angle=angle + more,
+            direction=PushDirection.ACROSS if band else PushDirection.ALONG,
+            off_axis=LARGEST,
+            frame=PushFrame.BASE if R_BF is None else PushFrame.FLANGE,
+        )
         assert pushes(force, use, R_BF=R_BF) is there
 
 
 @pytest.mark.parametrize(("band", "force"), [(False, (0.0, 0.0, 20.0)), (True, (12.0, -16.0, 0.0))])
 def test_a_cone_or_band_without_width_takes_a_push_along_it(band: bool, force: tuple[float, ...]) -> None:
-    assert pushes(force, PushSettings(z=1.0, angle=0.0, band=band))
+    assert pushes(force, PushSettings(z=1.0, angle=0.0, direction=PushDirection.ACROSS if band else PushDirection.ALONG))
 
 
 @pytest.mark.parametrize(("most", "there"), [(4.99, False), (5.0, True), (5.01, True)])

@@ -93,7 +93,7 @@ def test_a_hand_that_stays_is_refused_and_counts_again_after_an_absence(name: st
     """FD-8a: 2 s; FD-7: 0.2 s and the cool-down."""
     felt = BY_HAND[name][1]
     valid = {key: value for key, value in felt.items() if key == "wrench_valid"}
-    bench = Bench(valid, **{name.replace(".", "__"): True, "signals__push__told": True})
+    bench = Bench(valid, **{name.replace(".", "__"): True, "signals__push__reported": True})
     bench.run(3.2, **felt)
     assert Kind.REFUSED_STILL_HELD in bench.kinds
     bench.run(3.0, **felt)
@@ -110,12 +110,12 @@ def test_a_hand_that_stays_is_refused_and_counts_again_after_an_absence(name: st
         ({}, {"force": 20.0, "torque": 2.6}, False),
         ({"z": -1.0}, {"force": [0.0, 0.0, -20.0]}, True),
         ({"z": -1.0}, {"force": [0.0, 0.0, 20.0]}, False),
-        ({"z": -1.0, "flange_axes": True}, {"force": [0.0, 0.0, -20.0]}, True),
+        ({"z": -1.0, "frame": "flange"}, {"force": [0.0, 0.0, -20.0]}, True),
         ({"z": -1.0}, {"force": [11.0, 0.0, -20.0]}, True),
         ({"z": -1.0}, {"force": [12.0, 0.0, -20.0]}, False),
         ({"z": -1.0, "off_axis": 10.0}, {"force": [11.0, 0.0, -20.0]}, False),
-        ({"z": 1.0, "band": True}, {"force": [20.0, 0.0, 11.0]}, True),
-        ({"z": 1.0, "band": True}, {"force": [20.0, 0.0, 12.0]}, False),
+        ({"z": 1.0, "direction": "across"}, {"force": [20.0, 0.0, 11.0]}, True),
+        ({"z": 1.0, "direction": "across"}, {"force": [20.0, 0.0, 12.0]}, False),
         ({"radius": 0.05}, {"force": 20.0, "torque": [0.0, 0.9, 0.0]}, True),
         ({"radius": 0.05}, {"force": 20.0, "torque": [0.0, 1.1, 0.0]}, False),
         ({"radius": 0.05, "place_z": 0.1}, {"force": 20.0, "torque": [0.0, 1.1, 0.0]}, True),
@@ -320,7 +320,7 @@ def test_the_deactivation_signal_and_another_mode_end_an_attempt(phase: Phase) -
 
 def test_a_push_is_told_in_every_mode() -> None:
     """FD-6a."""
-    bench = Bench(signals__push__told=True)
+    bench = Bench(signals__push__reported=True)
     bench.run(0.5, force=[6.0, -12.0, 12.0])
     assert bench.kinds == [Kind.PUSHED]
     assert bench.events[0].values == {
@@ -351,7 +351,7 @@ RUNS, PAUSED, ENDED = ProgramState.RUNNING, ProgramState.PAUSED, ProgramState.ST
 )
 def test_a_push_does_to_a_program_what_is_set(switches: str, before: ProgramState, after: ProgramState) -> None:
     """FD-6a."""
-    bench = Bench(signals__push__told=True, **{f"signals__push__{name}": True for name in switches.split()})
+    bench = Bench(signals__push__reported=True, **{f"signals__push__{name}": True for name in switches.split()})
     bench.run(0.002, Inputs(program=PROGRAM))
     bench.run(0.2, Inputs(commands=(Command.START_PROGRAM,)))
     if before is PAUSED:

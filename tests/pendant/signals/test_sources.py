@@ -214,18 +214,18 @@ def test_before_the_arm_was_ever_held_no_joint_is_turned() -> None:
 def test_a_push_is_told_so_many_ticks_after_it_began() -> None:
     """FD-6a."""
     bench = Bench()
-    bench.run(100, "push.on", "push.told")
-    seen = bench.run(2 * TOLD_AFTER, "push.on", "push.told", force=20.0)
+    bench.run(100, "push.on", "push.reported")
+    seen = bench.run(2 * TOLD_AFTER, "push.on", "push.reported", force=20.0)
     began = [signal.source for signal, _ in seen].index("push")
     assert [told for _, told in seen].index(True) == began + TOLD_AFTER - 1
 
 
-@pytest.mark.parametrize(("meanwhile", "wrench"), [("joints.on", True), ("twist.on", True), ("push.told", False)])
+@pytest.mark.parametrize(("meanwhile", "wrench"), [("joints.on", True), ("twist.on", True), ("push.reported", False)])
 def test_a_push_is_told_once_though_it_is_asked_for_no_more_or_the_sensor_is_lost(meanwhile: str, wrench: bool) -> None:
     """FD-6a."""
     bench = Bench()
-    bench.run(100, "push.told")
-    assert any(bench.run(1, "push.told", force=20.0)[0][1] for _ in range(2 * TOLD_AFTER))
+    bench.run(100, "push.reported")
+    assert any(bench.run(1, "push.reported", force=20.0)[0][1] for _ in range(2 * TOLD_AFTER))
     assert not any(told for _, told in bench.run(60, meanwhile, wrench=wrench, force=20.0))
 
 
@@ -234,7 +234,7 @@ def test_a_push_counts_from_the_tick_in_which_it_is_asked_for() -> None:
     bench = Bench()
     bench.run(100, "push.on")
     bench.run(200, "push.on", force=20.0)
-    told = [told for _, told in bench.run(2 * TOLD_AFTER, "push.told", force=20.0)]
+    told = [told for _, told in bench.run(2 * TOLD_AFTER, "push.reported", force=20.0)]
     assert told == [tick == TOLD_AFTER for tick in range(1, 2 * TOLD_AFTER + 1)]
 
 

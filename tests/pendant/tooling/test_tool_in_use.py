@@ -452,7 +452,7 @@ def test_a_change_of_the_payload_is_nobodys_push() -> None:
     """The user's force jumps by 20 N as the configured payload does; without the change it is told as a push."""
     pushed = estimate(force=[0.0, 0.0, 20.0])
     for changed in (False, True):
-        robot = Robot(signals__push__on=True, signals__push__told=True, signals__push__angle=90.0, tools__ramp=0.0)
+        robot = Robot(signals__push__on=True, signals__push__reported=True, signals__push__angle=90.0, tools__ramp=0.0)
         robot.run(200)
         if changed:
             robot.step(Inputs(load=Load(mass=3.0)), pushed)

@@ -4,7 +4,8 @@ import pytest
 
 from pendant.tick.pose import ORIGIN, Pose, Quaternion, Vector
 from pendant.walls.barrier import Barrier, Consequence, Reading, Stage
-from pendant.walls.definitions import Area, Policy, Reaction, Wall
+from pendant.walls.definitions import Area, Policy, Wall
+from pendant.walls.settings import Reaction
 from pendant.walls.shapes import Box, HalfSpace, Sphere
 from tests.pendant.walls.test_enclosure import around
 

@@ -16,8 +16,8 @@ from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import HERE, Pose, from_rpy, turned
 from pendant.tick.state import state_of
 from pendant.walls.containment import NOBODY, Containment, WallState, _measures, facts, tether
-from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
-from pendant.walls.settings import WallSettings
+from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Start, Wall, problem
+from pendant.walls.settings import Reaction, WallSettings
 from pendant.walls.shapes import Box, HalfSpace, Sphere
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
@@ -88,9 +88,8 @@ def test_the_tether_has_the_sizes_of_the_settings() -> None:
     assert (wall.band, wall.push_back, wall.averaging_period, wall.safety_period) == (pytest.approx(0.04), 6.0, 0.1, 2.0)
     assert wall.policy is Policy.AVERAGE
     assert tether(WallSettings(operation_radius=1.0, activation_radius=0.001)).activation_size == 0.05
-    cases = ((False, False, Reaction.STAY), (True, False, Reaction.LEAVE), (True, True, Reaction.STOP))
-    for leave, stop, reaction in cases:
-        assert tether(WallSettings(leave=leave, stop=stop)).reaction is reaction
+    for reaction in Reaction:
+        assert tether(WallSettings(tether_reaction=reaction)).reaction is reaction
     assert problem((tether(WallSettings()),), frozenset({"flange"}), frozenset({"base"})) is None
 
 
@@ -108,7 +107,7 @@ def test_a_limit_comes_before_a_wall_and_a_protective_stop_says_the_wall() -> No
     bench.step(LET_GO, at(0.02, speed=0.5))
     assert Kind.REFUSED_WALL not in bench.kinds()
     assert bench.kinds()[-1] is Kind.REFUSED_LIMIT
-    bench = Bench(sequence__protective_stop=True).trying()
+    bench = Bench(sequence__beyond_limit="protective_stop").trying()
     assert bench.step(LET_GO, at(0.01)).mode is Mode.STOP
     assert bench.events[-1].values == {
         "parameter": "wall tether", "part": "flange", "value": pytest.approx(0.005), "limit": 0.0, "unit": "m",
@@ -183,7 +182,10 @@ def test_the_tether_follows_a_hand_and_no_payload() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "kind", "mode"),
-    [({"walls__leave": True}, Kind.LEFT_WALL, Mode.TEACH), ({"walls__stop": True}, Kind.STOPPED_WALL, Mode.STOP)],
+    [
+        ({"walls__tether_reaction": "leave"}, Kind.LEFT_WALL, Mode.TEACH),
+        ({"walls__tether_reaction": "stop"}, Kind.STOPPED_WALL, Mode.STOP),
+    ],
 )
 def test_the_tether_leaves_or_stops_instead(changes: dict[str, bool], kind: Kind, mode: Mode) -> None:
     bench = Bench(**changes).entered()
@@ -291,7 +293,7 @@ def test_without_sizes_the_smallest_holds(reach: float, at_low: float, at_high: 
 @pytest.mark.parametrize(("anew", "law"), [(True, Law.FREE), (False, Law.HOLD)])
 def test_without_new_anchors_a_hand_reaches_the_tether(anew: bool, law: Law) -> None:
     """VW-3 to VW-5."""
-    bench = Bench(walls__anew=anew).entered()
+    bench = Bench(walls__new_anchors=anew).entered()
     bench.run(50, NOTHING, at(0.0, force=10.0))
     decision = bench.step()
     for k in range(1, 200):
@@ -305,7 +307,7 @@ def test_without_new_anchors_a_hand_reaches_the_tether(anew: bool, law: Law) -> 
 def test_without_new_anchors_every_wall_is_a_fixed_one(anew: bool) -> None:
     """VW-3 to VW-5; an area is one anyhow."""
     containment = Containment((Wall(name="w", shape=Sphere(radius=0.2), policy=Policy.USER), FLOOR), {})
-    containment.enter(WallSettings(anew=anew))
+    containment.enter(WallSettings(new_anchors=anew))
     containment.step(at(0.0), *NOBODY)
     policies = [border.policy for border, _ in containment.places() if isinstance(border, Wall)]
     assert policies == ([Policy.AVERAGE, Policy.USER] if anew else [Policy.FIXED, Policy.FIXED])

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, in_shape, problem
+from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Start, Wall, in_shape, problem
+from pendant.walls.settings import Reaction
 from pendant.walls.shapes import Box, HalfSpace, Sphere
 
 BALL = {"kind": "sphere", "radius": 0.1}

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from pendant.tick.modes import TICK
 from pendant.tick.pose import HERE, ORIGIN, Pose, Quaternion, Vector, rotation
 from pendant.walls.barrier import WRONG_WAY, Around, Barrier, Consequence, Reading, Stage, WatchedPart
-from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Reaction, Start, Wall, problem
+from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Start, Wall, problem
 from pendant.walls.enclosure import Enclosure, worst
+from pendant.walls.settings import Reaction
 from pendant.walls.shapes import Box, HalfSpace, Shape, Sphere
 from tests.pendant.tick.test_pose import matrix, quaternions, vectors
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from pendant.all_settings import Settings, apply
 from pendant.inputs import Inputs
-from pendant.limits.axis_locks import AXES, PRESETS, AxisLocks, freeing, from_rpy
+from pendant.limits.axis_locks import AXES, PRESETS, AxisLocks, freeing
 from pendant.tick.modes import TICK, Mode
-from pendant.tick.pose import UNTURNED
+from pendant.tick.pose import UNTURNED, from_rpy
 from sim.arm.frames import matrix_from_quaternion, rotation
 from sim.arm.scenario import Scenario
 from sim.control.axis_constraint import FURTHEST, HEAVIEST, MOST, AxisConstraint
@@ -28,7 +28,7 @@ TURNED = rotation(0, 0.6)  # orientation of the tool in F
 ROTOR, RATED = np.array(UR5E.motors.rotor_inertia), np.array(UR5E.limits.torque)
 NOTHING = np.zeros(N)
 FLANGE = tuple(MODEL.update(HOME)[1].ravel().tolist())
-FRAME = from_rpy((0.3, -0.4, 1.2))
+FRAME = from_rpy(0.3, -0.4, 1.2)
 
 
 def locks(*free: str, tool: bool = False, R_BU: tuple[float, ...] = FRAME) -> AxisLocks:

@@ -109,7 +109,7 @@ def test_motion_is_damped() -> None:
 
 def tried(true: float) -> Bench:
     """In the check of an arm that believes to carry nothing, in its 100th tick or refused before."""
-    settings = apply(Settings(), {"activation.period": 0.1, "sequence.compensate": True})
+    settings = apply(Settings(), {"activation.period": 0.1, "sequence.beyond_limit": "balance"})
     bench = Bench(Scenario(seed=3, payload_true=Load(mass=true, com=[0.0, 0.0, 0.05])), settings=settings)
     bench.run(0.8)
     for _ in range(150):

@@ -29,7 +29,7 @@ def test_an_axis_and_the_frame_go_to_the_desk(served: Served, join: Join, loop: 
     client.set(tab.free["rz"]._impl.uuid, value=False)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"axes.rz": False}, "the axis")
     client.set(tab.tool._impl.uuid, value=True)
-    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"axes.tool": True}, "the frame")
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"axes.frame": "tool"}, "the frame")
 
 
 def test_it_shows_what_holds(served: Served, join: Join, loop: FakeLoop) -> None:
@@ -42,8 +42,10 @@ def test_it_shows_what_holds(served: Served, join: Join, loop: FakeLoop) -> None
     loop.locks, loop.mode = axis_locks(PLANE.axes), Mode.FREE_DRIVE
     until(lambda: "hold in free-drive" not in tab.now.shown, "they hold")
     for changes, text in (
-        ({"axes.yaw": 0.3}, "base, turned"), ({"axes.tool": True}, "tool, as it stands when locked"), ({"axes.on": False}, "off"),
-    ):  # fmt: skip
+        ({"axes.yaw": 0.3}, "base, turned"),
+        ({"axes.frame": "tool"}, "tool, as it stands when locked"),
+        ({"axes.on": False}, "off"),
+    ):
         loop.settings = apply(PLANE, changes)
         until(lambda text=text: text in tab.now.shown, text)
 

@@ -5,13 +5,19 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.settings_tab import CHANGED, SECTIONS, section_of
+from app.web.tabs.settings_tab import BASIC, CHANGED, SECTIONS, section_of
 from pendant.all_settings import Settings, apply, describe, limits_checksum
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
+
+
+def expert(served: Served, client: RawClient) -> None:
+    tab = served.docks.settings
+    client.set(tab.expert._impl.uuid, value=True)
+    until(lambda: tab.section.options == SECTIONS, "all sections")
 
 
 def choose(served: Served, client: RawClient, section: str) -> None:
@@ -23,6 +29,7 @@ def choose(served: Served, client: RawClient, section: str) -> None:
 def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: Served, join: Join) -> None:
     client = join()
     tab = served.docks.settings
+    expert(served, client)
     seen: set[str] = set()
     for section in (*SECTIONS[1:], SECTIONS[0]):
         choose(served, client, section)
@@ -35,6 +42,33 @@ def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: 
         texts = "".join(text.content for text in tab._texts)
         assert all(row.id in texts for row in describe() if section_of(row) == section)
     assert seen == {row.name for row in describe()}
+
+
+def test_the_basic_settings_are_shown_and_what_was_changed(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    tab = served.docks.settings
+    assert tab.section.options == BASIC
+    choose(served, client, "walls")
+    basic = {row.name for row in describe() if row.basic}
+    assert set(tab.controls) == {name for name in basic if name.startswith("walls.")}
+    loop.settings = apply(Settings(), {"walls.averaging": 0.5})
+    choose(served, client, "contact")
+    choose(served, client, "walls")
+    assert set(tab.controls) == {name for name in basic if name.startswith("walls.")} | {"walls.averaging"}
+    client.set(tab.defaults._impl.uuid, value=True)
+    of_walls = {row.name: row.default for row in describe() if row.name.startswith("walls.")}
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == of_walls, "the whole section")
+
+
+def test_a_choice_is_a_list_of_its_words(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    choose(served, client, "walls")
+    control = served.docks.settings.controls["walls.tether_reaction"]
+    assert control.options == ("stay", "leave", "stop")
+    client.set(control._impl.uuid, value="leave")
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"walls.tether_reaction": "leave"}, "the wish")
+    client.set(control._impl.uuid, value="fly")
+    until(lambda: served.guard.refused["value not allowed"] == 1, "refused")
 
 
 def test_a_changed_value_goes_to_the_desk_and_is_marked_once_it_holds(served: Served, join: Join, loop: FakeLoop) -> None:
