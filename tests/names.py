@@ -1,6 +1,6 @@
 """The names that users write in their files and read in logs: none may go without a word.
 
-`python -m tests.names` writes them anew; look at its difference: a name that is gone needs a line in `GONE`.
+`python -m tests.names` adds those that are new. A name that is gone stays in the list and needs a line in `GONE`.
 """
 
 import json
@@ -46,4 +46,5 @@ def _of(definition: dict[str, Any]) -> set[str]:
 
 
 if __name__ == "__main__":
-    FILE.write_text(json.dumps(names(), indent=0) + "\n", encoding="utf-8")
+    every = sorted({*json.loads(FILE.read_text(encoding="utf-8")), *names()})
+    FILE.write_text(json.dumps(every, indent=0, ensure_ascii=False) + "\n", encoding="utf-8")
