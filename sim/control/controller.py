@@ -50,6 +50,7 @@ class Controller:
         self._followed = False  # a motion was followed before the arm was told to brake
         self._blind = False  # some joint had no motor angle in the last tick
         self._fed_back = False  # the torque feedback was on in the last tick
+        self._torque: Array | None = None  # of the last tick (n,) [N·m]; None: no power
 
     def update(
         self,
@@ -83,13 +84,13 @@ class Controller:
         elif law is _FREE:
             self.references.skip()
             if self._law is not _FREE:
-                self.free_drive.start(estimate)
+                self.free_drive.start(estimate, self._torque)
             torque = self.free_drive.torque(estimate, decision, jacobian, friction=friction, with_friction=use.friction)
         else:
             torque = self._track(estimate, decision, friction=friction, stiffer=stiffer, use=use)
         if blind:
             self._let_blind_joints_rest(estimate, torque)
-        self._law = law
+        self._law, self._torque = law, None if law is _OFF else torque
         if law is not _BRAKE:
             self._followed = law is _FOLLOW
         return self.motor.current(torque, estimate.theta_d)

@@ -35,6 +35,9 @@ HERE = 0.25  # share of that uncertainty in the posture of entry, where nobody t
 APART = 0.25 * math.pi  # all of it so far away [rad]: gears err once and twice a turn
 USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
 FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
+HANDOVER = math.exp(-TICK / 0.05)
+"""What the motors bore in the hold, beyond what the model says, goes within some 0.05 s: at once, it would shake the arm. That is
+slower than the arm's lowest modes, and far shorter than the activation sequence, at whose end nothing of it is left."""
 LATE, BEGAN = 3, 6  # rows of the memory: the first of three, and that after them
 
 
@@ -74,6 +77,7 @@ class FreeDriveLaw:
         self._hand = np.zeros((2, n))  # what the flange sensor explains of each joint's torque, and that with its force capped
         # Asked and felt, filtered; what is usual; transmission torque, `_late`; angles in which free-drive began.
         self._memory = np.zeros((7, n))
+        self._handover = np.zeros(n)  # what is left of the hold's torque beyond the model's [N·m]
 
     def _moving(self, part: str) -> int:
         """How many joints move a part."""
@@ -84,8 +88,14 @@ class FreeDriveLaw:
         """Torque (n,) that balances a load nobody told of, as far as it was found since free-drive began [N·m] (FD-10)."""
         return self._balancing.torque
 
-    def start(self, estimate: Estimate) -> None:
-        """Free-drive begins: what the joints feel now is no hand."""
+    def start(self, estimate: Estimate, held: Array | None) -> None:
+        """Free-drive begins: what the joints feel now is no hand.
+
+        Args:
+            estimate: this tick's estimate.
+            held: motor torque (n,) that held the arm until now [N·m]; None: the brakes did.
+        """
+        self._handover[:] = 0.0 if held is None else held - self._dynamics.gravity(estimate.q)
         self._memory[:] = 0.0
         self._memory[2] = estimate.tau_ext
         self._memory[LATE:BEGAN] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
@@ -108,7 +118,7 @@ class FreeDriveLaw:
             friction: its estimate.
             with_friction: take friction off the hand.
         """
-        torque = self._dynamics.gravity(estimate.q)
+        torque = self._static(estimate, decision)
         for wall in decision.walls:
             if wall.force != ORIGIN:
                 _push(jacobian, estimate.p_BF, wall.p, wall.force, self._moving(wall.part), torque)
@@ -146,6 +156,16 @@ class FreeDriveLaw:
             self.singularity.resist(locks.near, locks.too_near, speed=estimate.theta_d, static=static, torque=torque)
             constraint.hold(torque)
         self._shake(estimate, decision, friction, torque)
+        return torque
+
+    def _static(self, estimate: Estimate, decision: Decision) -> Array:
+        """Torque against gravity (n,) [N·m], with what is left of the hold's."""
+        torque = self._dynamics.gravity(estimate.q)
+        if decision.balance is None:
+            torque += self._handover
+            self._handover *= HANDOVER
+        else:  # balancing begins with all that the motors bear
+            self._handover[:] = 0.0
         return torque
 
     def _shake(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, torque: Array) -> None:
