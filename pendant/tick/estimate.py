@@ -1,7 +1,8 @@
 """What the controller knows in one tick: measured or derived from measurement, never the truth."""
 
 import math
-from dataclasses import dataclass, field
+from copy import copy
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,44 +75,9 @@ class Estimate:
 
     def copy(self) -> "Estimate":
         """The same values in arrays of their own, which no later update changes."""
-        return Estimate(
-            self.tick,
-            self.joints_valid,
-            self.wrench_valid,
-            self.acceleration_valid,
-            self.q.copy(),
-            self.qd.copy(),
-            self.qdd.copy(),
-            self.theta.copy(),
-            self.theta_d.copy(),
-            self.tau_m.copy(),
-            self.tau_J.copy(),
-            self.tau_ext.copy(),
-            self.w_sensor.copy(),
-            self.F_user.copy(),
-            self.a_F.copy(),
-            self.p_BF.copy(),
-            self.R_BF.copy(),
-            self.v_F.copy(),
-            self.v_tcp,
-            self.v_elbow,
-            self.move_done,
-            self.move_refused,
-            self.g_B.copy(),
-            self.theta_dd.copy(),
-            self.friction.copy(),
-            self.friction_deviation.copy(),
-            self.tau_ways.copy(),
-            self.tau_ext_deviation.copy(),
-            self.degraded,
-            self.lost,
-            self.touched,
-            self.signals,
-            self.tcp.copy(),
-            self.elbow.copy(),
-            self.F_joints.copy(),
-            self.a_felt.copy(),
-            self.load_mass,
-            self.energy,
-            self.singularity,
-        )
+        twin = copy(self)
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if isinstance(value, np.ndarray):
+                setattr(twin, each.name, value.copy())
+        return twin

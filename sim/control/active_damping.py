@@ -1,8 +1,8 @@
 """Active damping: free-drive resists motion that comes near a limit on its speed, more and more (FD-12b)."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +10,8 @@ from pendant.limits.soft_limits import Damping
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 
 Array = NDArray[np.float64]
 
@@ -22,6 +24,25 @@ FALL = 0.15
 
 FADE = 0.05
 """Time constant with which the help for the hand follows the speed [s]: too slow to take part in any chatter."""
+
+
+class ArmMotion(NamedTuple):
+    """How the arm moves, n joints, axes of B."""
+
+    speed: Array  # of the motors (n,) [rad/s]
+    jacobian: Array  # of the flange (6, n), linear first
+    p_BF: Array  # flange (3,) [m]
+    tcp: Array  # position, then velocity (6,)
+    elbow: Array  # the same (6,)
+
+
+class DampedPoint(NamedTuple):
+    """A point whose speed is limited."""
+
+    p: Array  # (3,) or more [m]
+    joints: int  # so many move it
+    limit: float  # [m/s]
+    steepest: float  # damping over the rotors' inertia, at most [1/s]
 
 
 class ActiveDamping:
@@ -39,10 +60,18 @@ class ActiveDamping:
     """
 
     def __init__(self, rated: Array, rotor: Array, elbow: int) -> None:
-        self._joints, self._elbow = np.stack([rated, rotor]), elbow
+        n = rated.size
+        self._record = record(
+            rated=(n,),
+            rotor=(n,),
+            elbow="i8",
+            how=(6,),  # what is asked: limits of tcp, elbow, joints; onset, force, torque
+            limits=(3,),  # of tcp, elbow, joints, as they have fallen
+        )
+        own = self._record[0]
+        own["rated"], own["rotor"], own["elbow"], own["limits"] = rated, rotor, elbow, math.inf
         self._asked: tuple[Damping | None, SpeedLimits | None] = (None, None)
-        self._how = np.zeros(6)  # what is asked: limits of tcp, elbow, joints; onset, force, torque
-        self._limits = np.full(3, math.inf)  # of tcp, elbow, joints, as they have fallen
+        self._how, self._limits = own["how"], own["limits"]
         self.help = 1.0
 
     def start(self) -> None:
@@ -64,17 +93,17 @@ class ActiveDamping:
             self._how[:] = damping
             if reduced is not None:
                 self._how[:3] = np.minimum(self._how[:3], reduced)
-        points = (estimate.p_BF, estimate.tcp, estimate.elbow)
-        near = _resist(self._how, estimate.theta_d, jacobian, points, self._elbow, self._joints, self._limits, torque)
+        moving = ArmMotion(estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow)
+        near = _resist(self._record, moving, torque)
         self.help += TICK / FADE * (1.0 - near - self.help)
 
 
-@numba.njit(cache=True)
-def _resist(how, speed, jacobian, points, moving, joints, limits, torque) -> float:
+@kernel
+def _resist(damping, moving, torque) -> float:
     """How near the speed is to a limit: 0 at its onset, 1 at it."""
-    onset, force, share = how[3], how[4], how[5]
-    p_BF, tcp, elbow = points
-    rated, rotor = joints[0], joints[1]
+    own, speed = damping[0], moving.speed
+    how, limits, rated, rotor = own.how, own.limits, own.rated, own.rotor
+    onset, share = how[3], how[5]
     for k in range(3):
         falling = limits[k] + TICK / FALL * (how[k] - limits[k])
         limits[k] = how[k] if math.isinf(limits[k]) or how[k] >= limits[k] else falling
@@ -85,15 +114,17 @@ def _resist(how, speed, jacobian, points, moving, joints, limits, torque) -> flo
         if over > 0.0:
             torque[i] -= math.copysign(min(share * rated[i] / width, STEEPEST_JOINT * rotor[i]) * over, speed[i])
             near = max(near, over / width)
-    n = speed.size
-    at_tcp = _resist_at(tcp, n, onset, limits[0], force, STEEPEST_TCP, speed, jacobian, p_BF, rotor, torque)
-    at_elbow = _resist_at(elbow, moving, onset, limits[1], force, STEEPEST_ELBOW, speed, jacobian, p_BF, rotor, torque)
+    at_tcp = _resist_at(own, moving, DampedPoint(moving.tcp, speed.size, limits[0], STEEPEST_TCP), torque)
+    at_elbow = _resist_at(own, moving, DampedPoint(moving.elbow, own.elbow, limits[1], STEEPEST_ELBOW), torque)
     return min(max(near, at_tcp, at_elbow), 1.0)
 
 
-@numba.njit(cache=True)
-def _resist_at(p, moving, onset, limit, force, steepest, speed, jacobian, p_BF, rotor, torque) -> float:
-    """A point that the first `moving` joints move is damped along its motion. Returns how near it is to its limit."""
+@kernel
+def _resist_at(own, arm, point, torque) -> float:
+    """A point is damped along its motion. Returns how near it is to its limit."""
+    p, moving, limit, steepest = point
+    speed, jacobian, p_BF, rotor = arm.speed, arm.jacobian, arm.p_BF, own.rotor
+    onset, force = own.how[3], own.how[4]
     x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
     columns = np.empty((3, moving))
     vx, vy, vz = 0.0, 0.0, 0.0

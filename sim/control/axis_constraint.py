@@ -9,8 +9,8 @@ What else the law asks of the motors is projected, so that it moves the rotors a
 """
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,8 +18,10 @@ from pendant.limits.axis_locks import AxisLocks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.control.feedback import BANDWIDTH, DAMPING_RATIO
-from sim.control.pose_constraint import constraint
+from sim.control.pose_constraint import ToolPose, constraint
 from sim.rigid_body.cholesky import factor, solve
 from sim.sensing.calibration import Calibration
 
@@ -33,6 +35,15 @@ FURTHEST = 0.02
 
 MOST = 0.5
 """Torque of the constraint at most, of the rated one."""
+
+
+class Bending(NamedTuple):
+    """Where joints and motors are, and what bends the springs between them, n joints."""
+
+    theta: Array  # motor angle (n,) [rad]
+    theta_d: Array  # motor speed (n,) [rad/s]
+    q: Array  # output angle (n,) [rad]
+    static: Array  # torque (n,) [N·m]
 
 
 class AxisConstraint:
@@ -52,17 +63,28 @@ class AxisConstraint:
         spring = arm.transmissions
         stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
-        self._constants = np.stack([1.0 / stiffness, rotor, MOST * np.array(arm.limits.torque)])
+        n = arm.n
+        self._record = record(
+            compliance=(n,),
+            rotor=(n,),
+            most=(n,),  # torque
+            locked="6i8",
+            frame=(3, 3),  # axes of the tool at the beginning, in B
+            turn=(3, 3),  # its orientation then
+            place=(3,),  # and place [m]
+            bent=(n,),  # motors ahead of the joints, unexplained [rad]
+            slipped=(6,),  # the lock has been taken along so far [m]
+            m="i8",  # locked axes
+            rows=(6, n),  # the constraint's Jacobian
+            values=(6,),
+            speed=(6,),  # of the values
+            mobility=(6, 6),  # its factor
+            energy=(),  # in the spring [J]
+        )
+        own = self._own = self._record[0]
+        own["compliance"], own["rotor"], own["most"] = 1.0 / stiffness, rotor, MOST * np.array(arm.limits.torque)
         self._tcp, self._R_FT = tcp, R_FT
         self._locks: AxisLocks | None = None
-        self._locked = np.zeros(6, dtype=np.bool_)
-        self._frame, self._turn = np.eye(3), np.eye(3)  # axes and orientation of the tool at the beginning, in B
-        self._place, self._bent = np.zeros(3), np.zeros(arm.n)  # of the tool [m]; motors ahead of the joints, unexplained [rad]
-        self._slipped = np.zeros(6)  # the lock has been taken along so far [m]
-        self._m = 0  # locked axes
-        self._rows = np.zeros((6, arm.n))  # the constraint's Jacobian
-        self._state = np.zeros((8, 6))  # of the constraint: its values, their speeds, the factor of the mobility
-        self._energy = np.zeros(1)  # in the spring [J]
 
     def release(self) -> None:
         """Nothing is locked; what is locked next starts again."""
@@ -79,10 +101,8 @@ class AxisConstraint:
         """
         if locks != self._locks:
             self._begin(estimate, locks, static)
-        pose = (estimate.p_BF, estimate.R_BF, self._tcp)
-        since = (self._frame, self._turn, self._place, self._bent, self._slipped)
-        motion = (estimate.theta, estimate.theta_d, estimate.q)
-        self._m = _prepare(self._locked, pose, since, motion, jacobian, static, self._constants, self._rows, self._state)
+        pose = ToolPose(estimate.p_BF, estimate.R_BF, self._tcp, jacobian)
+        _prepare(self._record, pose, Bending(estimate.theta, estimate.theta_d, estimate.q, static))
 
     def project(self, asked: Array, gain: float, torque: Array) -> None:
         """Take from what the hand asks of the joints (n,) [N·m] what would move the rotors along locked axes, in place.
@@ -92,36 +112,37 @@ class AxisConstraint:
             gain: with which it has been added to `torque`.
             torque: (n,) [N·m] changed in place.
         """
-        _project(self._m, self._rows, self._state, self._constants, asked, gain, torque)
+        _project(self._record, asked, gain, torque)
 
     def hold(self, torque: Array) -> None:
         """Add the constraint to `torque` (n,) [N·m]."""
-        _hold(self._m, self._rows, self._state, self._constants, self._energy, torque)
+        _hold(self._record, torque)
 
     def _begin(self, estimate: Estimate, locks: AxisLocks, static: Array) -> None:
         self._locks = locks
-        self._locked[:] = locks.locked
-        R = estimate.R_BF
-        self._frame[:] = R @ self._R_FT if locks.tool else np.reshape(locks.R_BU, (3, 3))
-        self._turn[:] = R
-        self._place[:] = estimate.p_BF + R @ self._tcp
-        self._bent[:] = estimate.theta - estimate.q - self._constants[0] * static
-        self._slipped[:] = 0.0
-        self._energy[0] = 0.0
+        own, R = self._own, estimate.R_BF
+        own["locked"] = locks.locked
+        own["frame"] = R @ self._R_FT if locks.tool else np.reshape(locks.R_BU, (3, 3))
+        own["turn"] = R
+        own["place"] = estimate.p_BF + R @ self._tcp
+        own["bent"] = estimate.theta - estimate.q - own["compliance"] * static
+        own["slipped"], own["energy"] = 0.0, 0.0
 
 
-@numba.njit(cache=True)
-def _prepare(locked, pose, since, motion, jacobian, static, constants, G, state) -> int:
-    bent, slipped = since[3], since[4]
-    theta, theta_d, q = motion
+@kernel
+def _prepare(held, pose, bending) -> None:
+    own = held[0]
+    theta, theta_d, q, static = bending
+    G, bent, slipped, compliance, rotor = own.rows, own.bent, own.slipped, own.compliance, own.rotor
     n = q.size
-    values, speed, mobility = state[0], state[1], state[2:]
-    m = constraint(locked, pose, since, jacobian, G, values)
+    values, speed, mobility = own.values, own.speed, own.mobility
+    own.m = constraint(own, pose)
+    m = own.m
     for r in range(m):
         speed[r] = 0.0
         for i in range(n):
             # By the motors' angles, less what the load bends the joints: only what the motors do can be damped.
-            values[r] += G[r, i] * (theta[i] - q[i] - constants[0, i] * static[i] - bent[i])
+            values[r] += G[r, i] * (theta[i] - q[i] - compliance[i] * static[i] - bent[i])
             speed[r] += G[r, i] * theta_d[i]
         beyond = values[r] - slipped[r]
         if abs(beyond) > FURTHEST:
@@ -130,53 +151,56 @@ def _prepare(locked, pose, since, motion, jacobian, static, constants, G, state)
         for s in range(r + 1):
             mobility[r, s] = 1.0 / HEAVIEST if r == s else 0.0
             for i in range(n):
-                mobility[r, s] += G[r, i] * G[s, i] / constants[1, i]
+                mobility[r, s] += G[r, i] * G[s, i] / rotor[i]
     factor(mobility, m)
-    return m
 
 
-@numba.njit(cache=True)
-def _project(m, G, state, constants, asked, gain, torque) -> None:
+@kernel
+def _project(held, asked, gain, torque) -> None:
+    own = held[0]
+    m, G, rotor = own.m, own.rows, own.rotor
     force = np.zeros(6)
     for r in range(m):
         for i in range(asked.size):
-            force[r] += G[r, i] * asked[i] / constants[1, i]
-    solve(state[2:], force, m)
+            force[r] += G[r, i] * asked[i] / rotor[i]
+    solve(own.mobility, force, m)
     for i in range(asked.size):
         for r in range(m):
             asked[i] -= G[r, i] * force[r]
             torque[i] -= gain * G[r, i] * force[r]
 
 
-@numba.njit(cache=True)
-def _hold(m, G, state, constants, energy, torque) -> None:
+@kernel
+def _hold(held, torque) -> None:
+    own = held[0]
+    m, G, most = own.m, own.rows, own.most
     spring, damper = np.zeros(6), np.zeros(6)
     for r in range(m):
-        spring[r] = (2.0 * math.pi * BANDWIDTH) ** 2 * state[0, r]
-        damper[r] = 4.0 * math.pi * BANDWIDTH * DAMPING_RATIO * state[1, r]
-    solve(state[2:], spring, m)
-    solve(state[2:], damper, m)
-    share = _returned(spring, state[0], state[1], m, energy)
+        spring[r] = (2.0 * math.pi * BANDWIDTH) ** 2 * own.values[r]
+        damper[r] = 4.0 * math.pi * BANDWIDTH * DAMPING_RATIO * own.speed[r]
+    solve(own.mobility, spring, m)
+    solve(own.mobility, damper, m)
+    share = _returned(own, spring)
     scale = 1.0
     force = np.zeros(torque.size)
     for i in range(torque.size):
         for r in range(m):
             force[i] += G[r, i] * (share * spring[r] + damper[r])
-        if abs(force[i]) > constants[2, i]:
-            scale = min(scale, constants[2, i] / abs(force[i]))
+        if abs(force[i]) > most[i]:
+            scale = min(scale, most[i] / abs(force[i]))
     for i in range(torque.size):
         torque[i] -= scale * force[i]
 
 
-@numba.njit(cache=True)
-def _returned(spring, values, speed, m, energy) -> float:
+@kernel
+def _returned(own, spring) -> float:
     """Share of the spring's force, so that it never gives back more than was put into it."""
     power, stored = 0.0, 0.0
-    for r in range(m):
-        power += spring[r] * speed[r]
-        stored += 0.5 * spring[r] * values[r]
+    for r in range(own.m):
+        power += spring[r] * own.speed[r]
+        stored += 0.5 * spring[r] * own.values[r]
     share = 1.0
     if power < 0.0:
-        share = min(energy[0] / (-power * TICK), 1.0)
-    energy[0] = min(max(energy[0] + share * power * TICK, 0.0), stored)
+        share = min(own.energy / (-power * TICK), 1.0)
+    own.energy = min(max(own.energy + share * power * TICK, 0.0), stored)
     return share

@@ -9,10 +9,9 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
 from sim.control.feed_forward import FeedForward
-from sim.control.feedback import Feedback
+from sim.control.feedback import Feedback, TorqueFeedback
 from sim.control.free_drive_law import FreeDriveLaw
 from sim.control.motor_controller import MotorController
-from sim.control.torque_feedback import TorqueFeedback
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.transmission_torque import DEFLECTION
 from sim.motion.references import References

@@ -1,19 +1,37 @@
 """Feed-forward controller: the torques that the desired motion needs (AF-4, AF-5)."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
+
+
+class Turned(NamedTuple):
+    """What turns the motors in a tick, n joints."""
+
+    qd: Array  # (n,) desired speed [rad/s]
+    load: Array  # (n,) desired transmission torque [N·m]
+    stiffer: Array  # (n,) error of the springs' believed stiffness, relative to it
+
+
+class Needed(NamedTuple):
+    """What a motion needs, n joints [N·m]."""
+
+    qdd: Array  # (n,) its acceleration [rad/s²]
+    friction: Array  # (n,) of both sides
+    desired: Array  # (n,) transmission torque; the output's friction is added to it
 
 
 class FeedForward:
@@ -35,11 +53,20 @@ class FeedForward:
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
-        self._rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         spring = arm.transmissions
-        stiffness = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
-        self._bristles = np.stack([stiffness, np.array(arm.frictions.presliding)])
-        self._turned = np.zeros((3, arm.n))  # desired load of the last tick, motor speed, direction of friction -1..1
+        self._record = record(
+            rotor=(arm.n,),
+            stiffness=(arm.n,),
+            presliding=(arm.n,),
+            load=(arm.n,),  # desired, of the last tick
+            speed=(arm.n,),  # of the motors
+            direction=(arm.n,),  # of friction, -1..1
+        )
+        own = self._record[0]
+        own["rotor"] = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
+        own["stiffness"] = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
+        own["presliding"] = arm.frictions.presliding
+        self._speed = own["speed"]
         self._no_friction = np.zeros(arm.n)
         self._fed = False  # friction was fed forward in the last tick
         self.tau_J = np.zeros(arm.n)
@@ -64,48 +91,53 @@ class FeedForward:
             push: with which the joints push against the outside besides (n,) [N·m].
             fresh: the reference started again, nothing is known of the bristles.
         """
-        torque = np.empty_like(self._rotor)
+        torque = np.empty_like(self._no_friction)
         if not motion:
             self.tau_J = self._dynamics.gravity(reference.q).copy()
-            _add(reference.qdd, self._no_friction, 0.0, self._no_friction, self.tau_J, torque)
+            _add(self._record, Needed(reference.qdd, self._no_friction, self.tau_J), (0.0, 0.0), torque)
             return torque
         self.tau_J = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
         if push is not None:
             self.tau_J = self.tau_J + push
         total, share = self._no_friction, 0.0
         if friction is not None:
-            turned = self._turned
-            _turn(reference.qd, self.tau_J, self._bristles[0], stiffer, fresh or not self._fed, turned)
-            total, share = friction.at(turned[1], self.tau_J), friction.output_share
-            _bend(self._bristles[1], turned, total)
+            _turn(self._record, Turned(reference.qd, self.tau_J, stiffer), fresh or not self._fed)
+            total, share = friction.at(self._speed, self.tau_J), friction.output_share
+            _bend(self._record, total)
         self._fed = friction is not None
-        _add(reference.qdd, total, share, self._rotor, self.tau_J, torque)
+        _add(self._record, Needed(reference.qdd, total, self.tau_J), (1.0, share), torque)
         return torque
 
 
-@numba.njit(cache=True)
-def _add(qdd, friction, share, rotor, desired, torque) -> None:
+@kernel
+def _add(feed_forward, needed, shares, torque) -> None:
+    """Motor torque; `shares`: of the rotors' inertia that counts, and of the friction that the output has."""
+    rotor = feed_forward[0].rotor
+    inertia, share = shares
     for i in range(torque.size):
-        torque[i] = desired[i] + rotor[i] * qdd[i] + friction[i]
-        desired[i] += share * friction[i]
+        torque[i] = needed.desired[i] + inertia * rotor[i] * needed.qdd[i] + needed.friction[i]
+        needed.desired[i] += share * needed.friction[i]
 
 
-@numba.njit(cache=True)
-def _turn(qd, load, stiffness, stiffer, fresh, turned) -> None:
+@kernel
+def _turn(feed_forward, turned, fresh) -> None:
     """Desired speed of the motors."""
-    for i in range(qd.size):
+    own, load = feed_forward[0], turned.load
+    for i in range(load.size):
         if fresh:
-            turned[0, i], turned[2, i] = load[i], 0.0
-        turned[1, i] = qd[i] + (load[i] - turned[0, i]) / (TICK * stiffness[i] * (1.0 + stiffer[i]))
-        turned[0, i] = load[i]
+            own.load[i], own.direction[i] = load[i], 0.0
+        own.speed[i] = turned.qd[i] + (load[i] - own.load[i]) / (TICK * own.stiffness[i] * (1.0 + turned.stiffer[i]))
+        own.load[i] = load[i]
 
 
-@numba.njit(cache=True)
-def _bend(presliding, turned, friction) -> None:
+@kernel
+def _bend(feed_forward, friction) -> None:
     """Sliding friction becomes what the bristles hold; over one tick the speed is constant."""
+    own = feed_forward[0]
     for i in range(friction.size):
-        speed, size = turned[1, i], abs(friction[i])
+        speed, size = own.speed[i], abs(friction[i])
         if speed != 0.0:
             sign = math.copysign(1.0, speed)
-            turned[2, i] = sign + (turned[2, i] - sign) * math.exp(-abs(speed) * TICK * presliding[i] / max(size, 1e-6))
-        friction[i] = size * turned[2, i]
+            bent = math.exp(-abs(speed) * TICK * own.presliding[i] / max(size, 1e-6))
+            own.direction[i] = sign + (own.direction[i] - sign) * bent
+        friction[i] = size * own.direction[i]

@@ -2,8 +2,8 @@
 
 import math
 from collections import deque
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +11,8 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.motion.moves import Reference
 from sim.motion.references import DELAY
 from sim.rigid_body.dynamics import Dynamics
@@ -43,6 +45,39 @@ OPTIONAL = ("theta_acceleration", "q_speed", "q_acceleration", "motor_torque", "
 """Terms that are off as shipped."""
 
 
+SUPPORT = 0.6
+"""Share of a load that the desired torque does not know and that the motor takes over at once. It stiffens the hold by
+1 / (1 - SUPPORT); more than that and the motor-side mode of a light arm loses its damping."""
+
+TORQUE_BANDWIDTH = 90.0  # [Hz]
+
+
+class Wanted(NamedTuple):
+    """What shall be, and what is, n joints."""
+
+    q: Array  # (n,) output angle that shall be now [rad]
+    qd: Array  # (n,) and its speed [rad/s]
+    load: Array  # (n,) transmission torque that this needs [N·m]
+    qd_next: Array  # (n,) speed that is wanted next [rad/s]
+    sticking: Array  # (n,) friction that is fed forward as soon as a joint moves [N·m]
+    stiffer: Array  # (n,) error of the springs' believed stiffness, relative to it
+    theta: Array  # (n,) motor angle [rad]
+    theta_d: Array  # (n,) motor speed [rad/s]
+    q_now: Array  # (n,) output angle [rad]
+    excess: Array  # (n,) torque that was asked beyond what the motor gave [N·m]
+    begin: Array  # (n,) torque that a law begins with [N·m]
+
+
+class Terms(NamedTuple):
+    """Which corrections are made in a tick."""
+
+    theta: bool
+    theta_speed: bool
+    q: bool
+    waits: bool  # the integral keeps its value, but for what goes back
+    fresh: bool  # a law begins
+
+
 class Feedback:
     """Motor torque from the errors of theta, q, their speeds and accelerations, motor torque, and the tool centre point.
 
@@ -66,14 +101,25 @@ class Feedback:
         swing = np.sqrt(1.0 / (compliance * _heaviest(arm, dynamics)))
         integral_gain = TICK * stiffness / np.maximum(INTEGRAL_TIME, SLOWER / swing)
         damping = 2.0 * DAMPING_RATIO * rotor * omega
-        self._gains = np.stack([stiffness, damping, compliance, integral_gain])
+        n = arm.n
+        self._record = record(
+            stiffness=(n,),
+            damping=(n,),
+            compliance=(n,),
+            integral_gain=(n,),
+            dead_band=(),  # of the integral [rad]
+            integral=(n,),
+            at_rest=(n,),  # its part won at rest
+            load=(n,),  # of the last tick
+        )
+        own = self._own = self._record[0]
+        own["stiffness"], own["damping"], own["compliance"], own["integral_gain"] = stiffness, damping, compliance, integral_gain
         self._rotor, self._damping = rotor, damping
-        self._dead = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
+        own["dead_band"] = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
         self._dynamics, self._tcp = dynamics, tcp
         self._past: deque[tuple[Reference, Array]] = deque()
         self._use: JointControl | None = None
         self._on, self._optional = (True, True, True), False
-        self._memory = np.zeros((3, arm.n))  # integral, its part won at rest, last tick's load
 
     def add(
         self,
@@ -111,17 +157,26 @@ class Feedback:
         past = self._past
         if start is not None:
             past.clear()
-            self._memory[2] = desired
+            self._own["load"] = desired
         past.append((reference, desired))
         then, load = past.popleft() if len(past) > DELAY else past[0]
         if self._optional:
             self._add_optional(then, estimate, use, torque)
-        theta, theta_d, q = estimate.theta, estimate.theta_d, estimate.q
         begin = torque if start is None else start
-        _correct(
-            then.q, then.qd, load, reference.qd, sticking, stiffer, theta, theta_d, q, self._gains, self._on, self._dead,
-            excess, waits, start is not None, begin, self._memory, torque,
-        )  # fmt: skip
+        wanted = Wanted(
+            then.q,
+            then.qd,
+            load,
+            reference.qd,
+            sticking,
+            stiffer,
+            estimate.theta,
+            estimate.theta_d,
+            estimate.q,
+            excess,
+            begin,
+        )
+        _correct(self._record, wanted, Terms(*self._on, waits, start is not None), torque)
 
     def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
         wanted = torque.copy()
@@ -147,6 +202,23 @@ class Feedback:
         torque += at_tcp.T @ force
 
 
+class TorqueFeedback:
+    """Filtered error of the transmission torque of n joints, times `SUPPORT`."""
+
+    def __init__(self, n: int) -> None:
+        self._record = record(rate=(), error=(n,))
+        self._record["rate"] = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
+        self._error = self._record["error"][0]
+
+    def start(self, measured: Array, desired: Array) -> None:
+        """Begin with this error as if it had always been there."""
+        np.subtract(measured, desired, out=self._error)
+
+    def add(self, measured: Array, desired: Array, torque: Array) -> None:
+        """Add the correction for measured against desired transmission torque (n,) to `torque` (n,) [N·m]."""
+        _support(self._record, measured, desired, torque)
+
+
 def _heaviest(arm: Arm, dynamics: Dynamics) -> Array:
     """Inertia (n,) that a joint moves at home with the largest payload, whatever is configured now [kg·m²]."""
     home = np.array(arm.chain.home)
@@ -155,33 +227,40 @@ def _heaviest(arm: Arm, dynamics: Dynamics) -> Array:
     return dynamics.mass(home).diagonal() + missing * np.sum(ways**2, axis=0)
 
 
-@numba.njit(cache=True)
-def _correct(
-    q_ref, qd_ref, load, qd_now, sticking, stiffer, theta, theta_d, q, gains, on, dead_band, excess, waits, fresh, begin, memory,
-    torque,
-) -> None:  # fmt: skip
-    with_theta, with_speed, with_integral = on
+@kernel
+def _correct(feedback, wanted, terms, torque) -> None:
+    own = feedback[0]
+    integral, at_rest = own.integral, own.at_rest
+    load, excess, qd_next, sticking = wanted.load, wanted.excess, wanted.qd_next, wanted.sticking
     for i in range(torque.size):
         total = torque[i]
-        compliance = gains[2, i] / (1.0 + stiffer[i])
-        if with_theta:
-            total += gains[0, i] * (q_ref[i] + compliance * load[i] - theta[i])
-        if with_speed:
-            bending = compliance * (load[i] - memory[2, i]) / TICK
-            total += gains[1, i] * (qd_ref[i] + bending - theta_d[i])
-        memory[2, i] = load[i]
-        if with_integral:
-            if fresh:
-                memory[0, i], memory[1, i] = begin[i] - total, 0.0
-            error = q_ref[i] - q[i]
+        compliance = own.compliance[i] / (1.0 + wanted.stiffer[i])
+        if terms.theta:
+            total += own.stiffness[i] * (wanted.q[i] + compliance * load[i] - wanted.theta[i])
+        if terms.theta_speed:
+            bending = compliance * (load[i] - own.load[i]) / TICK
+            total += own.damping[i] * (wanted.qd[i] + bending - wanted.theta_d[i])
+        own.load[i] = load[i]
+        if terms.q:
+            if terms.fresh:
+                integral[i], at_rest[i] = wanted.begin[i] - total, 0.0
+            error = wanted.q[i] - wanted.q_now[i]
             step = -BACK * excess[i]
-            if not waits and excess[i] * error <= 0.0 and abs(error) > dead_band:
-                step += gains[3, i] * error
-            if qd_now[i] == 0.0:
-                memory[1, i] += step
+            if not terms.waits and excess[i] * error <= 0.0 and abs(error) > own.dead_band:
+                step += own.integral_gain[i] * error
+            if qd_next[i] == 0.0:
+                at_rest[i] += step
             else:
-                held = min(max(memory[1, i], -sticking[i]), sticking[i])
-                memory[0, i] += memory[1, i] - held + step
-                memory[1, i] = held * math.exp(-abs(qd_now[i]) * TICK / PRESLIDING)
-            total += memory[0, i] + memory[1, i]
+                held = min(max(at_rest[i], -sticking[i]), sticking[i])
+                integral[i] += at_rest[i] - held + step
+                at_rest[i] = held * math.exp(-abs(qd_next[i]) * TICK / PRESLIDING)
+            total += integral[i] + at_rest[i]
         torque[i] = total
+
+
+@kernel
+def _support(feedback, measured, desired, torque) -> None:
+    own = feedback[0]
+    for i in range(torque.size):
+        own.error[i] += own.rate * (measured[i] - desired[i] - own.error[i])
+        torque[i] += SUPPORT * own.error[i]

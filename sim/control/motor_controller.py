@@ -1,10 +1,11 @@
 """Motor controller: a wanted motor torque becomes a current within the limits of current, torque and speed (AF-6)."""
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.sensing.calibration import Calibration
 
 Array = NDArray[np.float64]
@@ -27,21 +28,23 @@ class MotorController:
         # The output's torque limit, with room for the friction that the motor has to overcome besides.
         friction = np.array([row[-1] for row in arm.frictions.torque])
         largest = np.minimum(np.array(motors.current) / per_torque, np.array(arm.limits.torque) + friction)
-        self._limits = np.stack([per_torque, largest, np.array(arm.limits.speed)])
-        self.command = np.zeros(arm.n)
-        self.excess = np.zeros(arm.n)
-        self._current = np.zeros(arm.n)
+        n = arm.n
+        self._record = record(per_torque=(n,), largest=(n,), fastest=(n,), command=(n,), excess=(n,), current=(n,))
+        own = self._record[0]
+        own["per_torque"], own["largest"], own["fastest"] = per_torque, largest, arm.limits.speed
+        self.command, self.excess, self._current = own["command"], own["excess"], own["current"]
 
     def current(self, torque: Array, speed: Array) -> Array:
         """Motor currents (n,) [A] for a wanted motor torque (n,) [N·m] at motor speeds (n,) [rad/s]; good until the next call."""
-        _limit(torque, speed, self._limits, self.command, self.excess, self._current)
+        _limit(self._record, torque, speed)
         return self._current
 
 
-@numba.njit(cache=True)
-def _limit(torque, speed, limits, command, excess, current) -> None:
+@kernel
+def _limit(motors, torque, speed) -> None:
+    own = motors[0]
     for i in range(torque.size):
-        per_torque, largest, fastest = limits[0, i], limits[1, i], limits[2, i]
+        largest, fastest = own.largest[i], own.fastest[i]
         low, high = -largest, largest
         room = (fastest - abs(speed[i])) / (OVERSPEED * fastest) + 1.0
         if room < 1.0:  # too fast: what drives on fades out, what brakes stays whole
@@ -51,6 +54,6 @@ def _limit(torque, speed, limits, command, excess, current) -> None:
             else:
                 low *= fade
         value = min(max(torque[i], low), high)
-        excess[i] = torque[i] - value
-        command[i] = value
-        current[i] = value * per_torque
+        own.excess[i] = torque[i] - value
+        own.command[i] = value
+        own.current[i] = value * own.per_torque[i]

@@ -5,14 +5,27 @@ tilt of the free axis; one alone is the twist about its axis. So a free turn may
 """
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
+from numpy.typing import NDArray
 
+from sim.compiled.kernel import kernel
 from sim.control.singularity import LENGTH
 
+Array = NDArray[np.float64]
 
-@numba.njit(cache=True)
+
+class ToolPose(NamedTuple):
+    """Where the tool is, in axes of B."""
+
+    p_BF: Array  # flange (3,) [m]
+    R: Array  # and its orientation (3, 3)
+    tcp: Array  # tool centre point in F (3,) [m]
+    jacobian: Array  # of the flange (6, n), linear first
+
+
+@kernel
 def _quaternion(R):
     """(w, x, y, z) of a rotation matrix, w not negative."""
     trace = R[0, 0] + R[1, 1] + R[2, 2]
@@ -33,9 +46,10 @@ def _quaternion(R):
     return w, v[0], v[1], v[2]
 
 
-@numba.njit(cache=True)
-def _tilts(locked, frame, turned, rows, values, m) -> int:
+@kernel
+def _tilts(own, turned, rows, m) -> int:
     """The rows of two locked turns: the free axis must not tilt."""
+    locked, frame, values = own.locked, own.frame, own.values
     f = 0
     for k in range(3):
         if not locked[3 + k]:
@@ -58,9 +72,10 @@ def _tilts(locked, frame, turned, rows, values, m) -> int:
     return m
 
 
-@numba.njit(cache=True)
-def _turns(locked, frame, turn, R, rows, values, m) -> int:
+@kernel
+def _turns(own, R, rows, m) -> int:
     """Add the rows of the locked turns, by the angular velocity in B, and their values [rad]; the number of all rows."""
+    locked, frame, turn, values = own.locked, own.frame, own.turn, own.values
     count = 0
     for k in range(3):
         count += locked[3 + k]
@@ -71,7 +86,7 @@ def _turns(locked, frame, turn, R, rows, values, m) -> int:
         for k in range(3):
             turned[j, k] = R[j, 0] * turn[k, 0] + R[j, 1] * turn[k, 1] + R[j, 2] * turn[k, 2]
     if count == 2:
-        return _tilts(locked, frame, turned, rows, values, m)
+        return _tilts(own, turned, rows, m)
     w, x, y, z = _quaternion(turned)
     for k in range(3):
         if not locked[3 + k]:
@@ -92,11 +107,14 @@ def _turns(locked, frame, turn, R, rows, values, m) -> int:
     return m
 
 
-@numba.njit(cache=True)
-def constraint(locked, pose, since, jacobian, G, values) -> int:
-    """Fill the constraint's Jacobian (m, n) and its values (m,) [m], turns as ways; m is the number of locked axes."""
-    p_BF, R, tcp = pose
-    frame, turn, place = since[0], since[1], since[2]
+@kernel
+def constraint(own, pose) -> int:
+    """Fill the constraint's `rows` (m, n) and its `values` (m,) [m], turns as ways; m is the number of locked axes.
+
+    `own` says what is locked, and frame, orientation and place of the tool when it was (sim.control.axis_constraint).
+    """
+    p_BF, R, tcp, jacobian = pose
+    locked, frame, place, G, values = own.locked, own.frame, own.place, own.rows, own.values
     rows = np.zeros((6, 6))
     offset = np.empty(3)
     for k in range(3):
@@ -110,7 +128,7 @@ def constraint(locked, pose, since, jacobian, G, values) -> int:
                 values[m] += frame[j, k] * (p_BF[j] + offset[j] - place[j])
             m += 1
     ways = m
-    m = _turns(locked, frame, turn, R, rows, values, m)
+    m = _turns(own, R, rows, m)
     for r in range(ways, m):
         values[r] *= LENGTH
         for k in range(3, 6):

@@ -2,10 +2,11 @@
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.rigid_body.cholesky import factor, solve
 
 Array = NDArray[np.float64]
@@ -42,8 +43,9 @@ class Singularity:
     def __init__(self, rotor: Array) -> None:
         """`rotor`: inertia of the joints' rotors (n,) [kg·m²]."""
         self.value = math.inf
-        self.gradient = np.zeros_like(rotor)
-        self._rotor = rotor
+        self._record = record(gradient=rotor.shape, rotor=rotor.shape)
+        self._record["rotor"] = rotor
+        self.gradient = self._record["gradient"][0]
         self._u = np.full(6, 1.0 / math.sqrt(6.0))
 
     def update(self, jacobian: Array) -> None:
@@ -63,11 +65,13 @@ class Singularity:
         """
         if self.value < near:
             share = min((near - self.value) / (near - too_near), self.value / (EASED * too_near), 1.0)
-            _resist(self.gradient, share, speed, self._rotor, static, torque)
+            _resist(self._record, share, speed, (static, torque))
 
 
-@numba.njit(cache=True)
-def _resist(gradient, share, speed, rotor, static, torque) -> None:
+@kernel
+def _resist(singularity, share, speed, torques) -> None:
+    gradient, rotor = singularity[0].gradient, singularity[0].rotor
+    static, torque = torques
     mobility, rate, driven = 0.0, 0.0, 0.0
     for i in range(torque.size):
         mobility += gradient[i] * gradient[i] / rotor[i]
@@ -80,7 +84,7 @@ def _resist(gradient, share, speed, rotor, static, torque) -> None:
         torque[i] -= share * size * gradient[i] / mobility
 
 
-@numba.njit(cache=True)
+@kernel
 def _smallest(jacobian, u, gradient) -> float:
     n = gradient.size
     scaled = np.empty((6, n))
@@ -109,7 +113,7 @@ def _smallest(jacobian, u, gradient) -> float:
     return _grows(jacobian, scaled, u, gradient)
 
 
-@numba.njit(cache=True)
+@kernel
 def _grows(jacobian, scaled, u, gradient) -> float:
     """The singular value of the direction u, and its gradient."""
     n = gradient.size

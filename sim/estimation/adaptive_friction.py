@@ -1,13 +1,15 @@
 """Adaptive friction module: friction of each joint, learned while the arm works, with its uncertainty (AF-2)."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 
 Array = NDArray[np.float64]
 
@@ -24,6 +26,15 @@ BIAS_PRIOR, BIAS_WALK = 0.015, 0.006  # of its bias, relative to the torque limi
 NOISE = 0.006  # of one measurement, relative to the torque limit
 CORRELATED = 60.0  # ticks over which errors of the measurement stay alike, so that so many count as one
 MISFIT = 0.05  # relative error that the terms' shapes leave even when all is learned
+
+
+class Turning(NamedTuple):
+    """What the joints do in a tick, as they are learned from."""
+
+    speed: Array  # of the motors (n,) [rad/s]
+    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown
+    tau_dyn: Array  # torque of the rigid model (n,) [N·m]
+    tau_J: Array  # transmission torque (n,) [N·m], for the load term
 
 
 class AdaptiveFriction:
@@ -46,7 +57,22 @@ class AdaptiveFriction:
         n, filed = arm.n, arm.frictions
         speed = np.linspace(0.02, max(filed.speed), 200)
         basis = np.stack([np.ones_like(speed), speed / (speed + KNEE), speed], axis=1)
-        self.terms = np.zeros((n, TERMS))
+        self.record = record(
+            terms=(n, TERMS),
+            covariance=(n, TERMS, TERMS),
+            walk=(n, TERMS),  # variance that a tick adds
+            ceiling=(n, TERMS),  # variance at first
+            noise=(n,),  # variance of a measurement
+            total=(n,),
+            deviation=(n,),
+            warmth=(n,),
+            temperature=(),  # of reference [°C]
+            per_kelvin=(),
+            output_share=(),
+        )
+        own = self.record[0]
+        self.terms, self.covariance = own["terms"], own["covariance"]
+        self.total, self.deviation, self.warmth = own["total"], own["deviation"], own["warmth"]
         for i in range(n):
             curve = np.interp(np.sqrt(speed), np.sqrt(filed.speed), filed.torque[i])
             self.terms[i, :3] = np.linalg.lstsq(basis, scale * curve, rcond=None)[0]
@@ -56,40 +82,21 @@ class AdaptiveFriction:
         size[:, :3] = np.maximum(size[:, :3], 0.05 * self.terms[:, :1])
         deviation = np.column_stack([PRIOR * size, np.full(n, GAIN_PRIOR), BIAS_PRIOR * limit])
         walk = np.column_stack([WALK * size, np.full(n, GAIN_WALK), BIAS_WALK * limit])
-        self.covariance = np.stack([np.diag(row**2) for row in deviation])
-        noise = np.tile((NOISE * limit) ** 2 * CORRELATED, (TERMS, 1)).T
-        self._spreads = np.stack([walk**2 * TICK, deviation**2, noise])
+        self.covariance[:] = [np.diag(row**2) for row in deviation]
+        own["walk"], own["ceiling"], own["noise"] = walk**2 * TICK, deviation**2, (NOISE * limit) ** 2 * CORRELATED
         self.output_share = filed.output_share
-        self._heat = (filed.temperature, filed.per_kelvin)
-        self._outcome = np.zeros((3, n))
-        self.total, self.deviation, self.warmth = self._outcome
+        own["temperature"], own["per_kelvin"], own["output_share"] = filed.temperature, filed.per_kelvin, filed.output_share
         self.warmth[:] = 1.0
 
-    def learn(self, speed: Array, surplus: Array, tau_dyn: Array, tau_J: Array, *, temperature: Array, free: bool) -> None:
+    def learn(self, turning: Turning, temperature: Array, free: bool) -> None:
         """One tick.
 
         Args:
-            speed: of the motors (n,) [rad/s].
-            surplus: tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown.
-            tau_dyn: torque of the rigid model (n,) [N·m].
-            tau_J: transmission torque (n,) [N·m], for the load term.
+            turning: what the joints do.
             temperature: measured (n,) [°C].
             free: no contact, so that the surplus is friction.
         """
-        # One kernel and few arrays: each array argument costs as much as the arithmetic of a joint.
-        _step(
-            speed,
-            surplus,
-            tau_dyn,
-            tau_J,
-            temperature,
-            free,
-            self._heat,
-            self._spreads,
-            self.terms,
-            self.covariance,
-            self._outcome,
-        )
+        _step(self.record, turning, temperature, free)
 
     @property
     def breakaway(self) -> Array:
@@ -102,21 +109,21 @@ class AdaptiveFriction:
         A speed of 0 counts as the slowest forwards.
         """
         total = np.empty_like(speed)
-        _slide(speed, tau_J, self.warmth, self.terms, total)
+        _slide(self.record, speed, tau_J, total)
         return total
 
 
-@numba.njit(cache=True)
-def _step(speed, surplus, tau_dyn, tau_J, temperature, free, heat, spreads, terms, covariance, outcome) -> None:
-    total, deviation, warmth = outcome[0], outcome[1], outcome[2]
-    reference, per_kelvin = heat
-    for i in range(speed.size):
-        warmth[i] = max(1.0 + per_kelvin * (temperature[i] - reference), 0.2)
-    _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, spreads[0], spreads[1], spreads[2])
-    _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation)
+@kernel
+def _step(friction, turning, temperature, free) -> None:
+    own = friction[0]
+    warmth = own.warmth
+    for i in range(warmth.size):
+        warmth[i] = max(1.0 + own.per_kelvin * (temperature[i] - own.temperature), 0.2)
+    _learn(own, turning, free)
+    _evaluate(own, turning)
 
 
-@numba.njit(cache=True)
+@kernel
 def _friction_terms(speed, tau_J, warmth, row) -> None:
     sign = np.tanh(speed / SIGN_SPEED) * warmth
     size = abs(speed)
@@ -126,11 +133,13 @@ def _friction_terms(speed, tau_J, warmth, row) -> None:
     row[3] = sign * abs(tau_J) / warmth  # load friction is of the teeth, not of the grease
 
 
-@numba.njit(cache=True)
-def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk, ceiling, noise) -> None:
+@kernel
+def _learn(own, turning, free) -> None:
+    speed, surplus, tau_dyn, tau_J = turning
+    warmth, walk, ceiling, noise = own.warmth, own.walk, own.ceiling, own.noise
     row, gain = np.empty(TERMS), np.empty(TERMS)
     for i in range(speed.size):
-        P, w = covariance[i], terms[i]
+        P, w = own.covariance[i], own.terms[i]
         for k in range(TERMS):
             # What nobody measures may drift, but never beyond what was believed at first.
             P[k, k] = min(P[k, k] + walk[i, k], max(ceiling[i, k], P[k, k]))
@@ -139,7 +148,7 @@ def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk
         _friction_terms(speed[i], tau_J[i], warmth[i], row)
         row[4] = tau_dyn[i]
         row[5] = 1.0
-        spread, predicted = noise[i, 0], 0.0
+        spread, predicted = noise[i], 0.0
         for k in range(TERMS):
             gain[k] = 0.0
             for m in range(TERMS):
@@ -155,8 +164,10 @@ def _learn(speed, surplus, tau_dyn, tau_J, warmth, free, terms, covariance, walk
             w[k] = max(w[k], 0.0)  # friction never drives
 
 
-@numba.njit(cache=True)
-def _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation) -> None:
+@kernel
+def _evaluate(own, turning) -> None:
+    speed, tau_J = turning.speed, turning.tau_J
+    warmth, terms, covariance, total, deviation = own.warmth, own.terms, own.covariance, own.total, own.deviation
     row = np.empty(TERMS)
     for i in range(speed.size):
         _friction_terms(speed[i], tau_J[i], warmth[i], row)
@@ -169,8 +180,10 @@ def _evaluate(speed, tau_J, warmth, terms, covariance, total, deviation) -> None
         deviation[i] = np.sqrt(max(variance, 0.0)) + MISFIT * abs(value)
 
 
-@numba.njit(cache=True)
-def _slide(speed, tau_J, warmth, terms, total) -> None:
+@kernel
+def _slide(friction, speed, tau_J, total) -> None:
+    own = friction[0]
+    warmth, terms = own.warmth, own.terms
     for i in range(speed.size):
         size, w = abs(speed[i]), terms[i]
         value = warmth[i] * (w[0] + w[1] * size / (size + KNEE) + w[2] * size) + w[3] * abs(tau_J[i])

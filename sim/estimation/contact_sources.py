@@ -1,8 +1,8 @@
 """Force and acceleration for the contact detectors: from the sensors at the flange, and from the joints (CD-2)."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +12,8 @@ from pendant.tick.modes import TICK
 from pendant.tick.source_signal import ContactSignals, Signal
 from sim.arm.chain import Body
 from sim.arm.frames import skew
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
@@ -24,8 +26,27 @@ force at the most, its noise at a load's usual distance within that of the accel
 MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
+MASS, EFFECTIVE_MASS, LEVER = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever"))
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
+
+
+class Feeling(NamedTuple):
+    """What the sources are made of in a tick, besides the rigid model's motion."""
+
+    values: Array  # all measurements (3n + 18,)
+    tau_ext: Array  # (n,) [N·m]
+    qd: Array  # (n,) [rad/s]
+    qdd: Array  # (n,) [rad/s²]
+
+
+class WatchedSources(NamedTuple):
+    """Which sources are on."""
+
+    tool: bool
+    arm_side: bool
+    links: bool
+    went_on: bool  # the links were watched in the last tick, too
 
 
 class ContactSources:
@@ -38,25 +59,37 @@ class ContactSources:
     """
 
     def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
-        self._dynamics, self._range, self._reach = dynamics, reach, reach
-        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
-        self._turns = np.zeros((3, 3))  # a tick ago: angular speed; its change; what the turning added to the acceleration
-        self._turns[0] = np.nan  # not known yet
-        self._out = np.zeros((4, len(Signal._fields)))  # a signal a row
-        self._links = np.array([elbow, elbow + 1])  # joints whose origins are elbow and end of the forearm
+        self._dynamics, self._range = dynamics, reach
         n = dynamics.recursion.origins.shape[0]
-        self._before, self._started = np.zeros((2, 3, n)), False  # Jacobians of the two points, a tick ago
-        self._out[:, 10] = 1.4  # until the arm has been weighed
+        self._record = record(
+            turn=(3,),  # angular speed, a tick ago
+            change=(3,),  # of that
+            added=(3,),  # what the turning added to the acceleration
+            smoothing=(),
+            com=(3,),  # of the load
+            gravity=(3,),
+            reach=(),
+            before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
+            joints="2i8",  # whose origins are elbow and end of the forearm
+            signals=(4, len(Signal._fields)),
+        )
+        own = self._own = self._record[0]
+        own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        own["turn"] = np.nan  # not known yet
+        own["joints"] = elbow, elbow + 1
+        own["gravity"], own["reach"] = dynamics.gravity_B, reach
+        self._out, self._started = own["signals"], False
+        self._out[:, EFFECTIVE_MASS] = 1.4  # until the arm has been weighed
         self.set_load(dynamics.load)
 
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
-        self._load, self._com = load, np.array(load.com)
-        self._out[:2, 9], self._out[:2, 12] = load.mass, np.linalg.norm(load.com)
+        self._load, self._own["com"] = load, load.com
+        self._out[:2, MASS], self._out[:2, LEVER] = load.mass, np.linalg.norm(load.com)
 
     def set_zero(self, zero: Array) -> None:
         """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
-        self._reach = self._range - float(np.abs(zero[:3]).max())
+        self._own["reach"] = self._range - float(np.abs(zero[:3]).max())
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.
@@ -69,18 +102,15 @@ class ContactSources:
         """
         if estimate.tick % MASS_TICKS == 1:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
-            self._out[:, 10] = max(LEAST_MASS, lightest)
+            self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
         links = use.links and sample.joints_valid
-        rigid, out = self._dynamics.recursion, self._out
         flange = pair and use.flange
-        _read(
-            pair, flange, links, sample.values, self._smoothing, self._com, estimate.R_BF, estimate.g_B, self._reach, self._turns,
-            rigid.origins, rigid.jacobian, self._links, self._before, self._started, estimate.tau_ext, estimate.qd, estimate.qdd,
-            out,
-        )  # fmt: skip
+        watched = WatchedSources(pair, flange, links, self._started)
+        felt = Feeling(sample.values, estimate.tau_ext, estimate.qd, estimate.qdd)
+        _read(self._record, self._dynamics.recursion.record, felt, watched)
         self._started = links
-        estimate.signals = ContactSignals(out.copy(), (pair, flange, links, links))
+        estimate.signals = ContactSignals(self._out.copy(), (pair, flange, links, links))
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
@@ -95,32 +125,34 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
     return 1.0 / float(np.linalg.eigvalsh(mobility)[-1])
 
 
-@numba.njit(cache=True)
-def _read(tool, arm_side, links, values, smoothing, com, R, gravity, reach, turns, origins, flange, points, before, started,
-          tau_ext, qd, qdd, out) -> None:  # fmt: skip
-    """All sources that are on, into the rows of `out`. One kernel: each array that is handed over costs as much as its work."""
-    rest = values[3 * qd.size :]
+@kernel
+def _read(sources, model, felt, watched) -> None:
+    """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
+    own, rigid = sources[0], model[0]
+    rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]
-    if tool:
-        moved = _to_load(rest[9:12], rest[15:18], turns[0], turns[1], smoothing, com)
-        _transfer(wrench, rest[12:15], moved, turns[2], R, gravity, reach, out[0])
-        if arm_side:
-            _transfer(wrench, rest[6:9], moved, turns[2], R, gravity, reach, out[1])
-        turns[2] = moved
+    if watched.tool:
+        moved = _to_load(own, rest[9:12], rest[15:18])
+        _transfer(own, rigid.R, (wrench, rest[12:15], moved), own.signals[0])
+        if watched.arm_side:
+            _transfer(own, rigid.R, (wrench, rest[6:9], moved), own.signals[1])
+        own.added[:] = moved
     else:
-        turns[0] = np.nan
-    if links:
-        _derive(origins, flange, points, before, started, tau_ext, qd, qdd, gravity, out[2:])
+        own.turn[:] = np.nan
+    if watched.links:
+        for which in range(2):
+            _derive(own, rigid, felt, (which, watched.went_on))
 
 
-@numba.njit(cache=True)
-def _to_load(arm_side, tool_side, before, change, smoothing, com):
-    """Acceleration (3,) of the load's centre against the flange [m/s²]; `before` and `change` are kept from tick to tick.
+@kernel
+def _to_load(own, arm_side, tool_side):
+    """Acceleration (3,) of the load's centre against the flange [m/s²].
 
     Both gyros feel the same turning, for the flange sensor gives way along its axes and does not turn: their mean has so little
     noise that its difference needs little smoothing. With more, the load's turning came so much later than its force that an
     arm which vibrates at 60 Hz laid the two against each other like a contact.
     """
+    before, change, smoothing, com = own.turn, own.change, own.smoothing, own.com
     turn, moved = np.empty(3), np.empty(3)
     for k in range(3):
         turn[k] = 0.5 * (arm_side[k] + tool_side[k])
@@ -138,54 +170,58 @@ def _to_load(arm_side, tool_side, before, change, smoothing, com):
     return moved
 
 
-@numba.njit(cache=True)
-def _transfer(wrench, acceleration, moved, before, R, gravity, reach, out) -> None:
-    """Force, specific force at the load's centre, gravity, and the change since `before` of what is `moved`, each (3,) in F."""
+@kernel
+def _transfer(own, R, felt, out) -> None:
+    """Force, specific force at the load's centre, gravity, and the change of what the turning adds, each (3,) in F."""
+    wrench, acceleration, moved = felt
+    before, gravity = own.added, own.gravity
     for k in range(3):
         out[k] = wrench[k]
         out[3 + k] = acceleration[k] + moved[k]
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
         out[13 + k] = moved[k] - before[k]
-    out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= reach else 0.0
+    out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach else 0.0
 
 
-@numba.njit(cache=True)
-def _derive(origins, flange, links, all_before, started, tau_ext, qd, qdd, gravity, all_out) -> None:
-    """Force of each link on the outside, specific force at its point, and gravity, each (3,) in B, into the rows of `all_out`.
+@kernel
+def _derive(own, rigid, felt, which) -> None:
+    """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of `signals`.
 
     The force is the smallest one that explains the external torques of the joints that can move the point: with
     J^T F = tau, F = (J J^T + d²)^-1 J tau.
     """
+    link, went_on = which
+    joint, before, out = own.joints[link], own.before[link], own.signals[2 + link]
+    origins, flange, gravity = rigid.origins, rigid.jacobian, own.gravity
+    qd, qdd, tau_ext = felt.qd, felt.qdd, felt.tau_ext
     n = qd.size
     jacobian = np.empty((3, n))
     square = np.empty((3, 3))
     right = np.empty(3)
-    for which in range(links.size):
-        joint, before, out = links[which], all_before[which], all_out[which]
-        for i in range(n):
-            for k in range(3):
-                a, b = (k + 1) % 3, (k + 2) % 3
-                jacobian[k, i] = 0.0
-                if i < joint:
-                    jacobian[k, i] = flange[3 + a, i] * (origins[joint, b] - origins[i, b])
-                    jacobian[k, i] -= flange[3 + b, i] * (origins[joint, a] - origins[i, a])
-                if not started:
-                    before[k, i] = jacobian[k, i]
-        for r in range(3):
-            acceleration, push = 0.0, 0.0
-            for i in range(n):
-                acceleration += jacobian[r, i] * qdd[i] + (jacobian[r, i] - before[r, i]) / TICK * qd[i]
-                push += jacobian[r, i] * tau_ext[i]
-                before[r, i] = jacobian[r, i]
-            for c in range(3):
-                total = SINGULAR * SINGULAR if r == c else 0.0
-                for i in range(n):
-                    total += jacobian[r, i] * jacobian[c, i]
-                square[r, c] = total
-            out[3 + r] = acceleration - gravity[r]
-            out[6 + r] = gravity[r]
-            right[r] = -push
-        factor(square, 3)
-        solve(square, right, 3)
+    for i in range(n):
         for k in range(3):
-            out[k] = right[k]
+            a, b = (k + 1) % 3, (k + 2) % 3
+            jacobian[k, i] = 0.0
+            if i < joint:
+                jacobian[k, i] = flange[3 + a, i] * (origins[joint, b] - origins[i, b])
+                jacobian[k, i] -= flange[3 + b, i] * (origins[joint, a] - origins[i, a])
+            if not went_on:
+                before[k, i] = jacobian[k, i]
+    for r in range(3):
+        acceleration, push = 0.0, 0.0
+        for i in range(n):
+            acceleration += jacobian[r, i] * qdd[i] + (jacobian[r, i] - before[r, i]) / TICK * qd[i]
+            push += jacobian[r, i] * tau_ext[i]
+            before[r, i] = jacobian[r, i]
+        for c in range(3):
+            total = SINGULAR * SINGULAR if r == c else 0.0
+            for i in range(n):
+                total += jacobian[r, i] * jacobian[c, i]
+            square[r, c] = total
+        out[3 + r] = acceleration - gravity[r]
+        out[6 + r] = gravity[r]
+        right[r] = -push
+    factor(square, 3)
+    solve(square, right, 3)
+    for k in range(3):
+        out[k] = right[k]

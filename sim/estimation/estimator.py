@@ -2,7 +2,6 @@
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,9 +9,20 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
-from sim.estimation.adaptive_friction import GATE, AdaptiveFriction
+from sim.estimation.adaptive_friction import AdaptiveFriction, Turning
 from sim.estimation.flange_forces import FlangeForces
-from sim.estimation.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
+from sim.estimation.joint_tracking import (
+    SPEED_BANDWIDTH,
+    TORQUE_BANDWIDTH,
+    Angles,
+    follow,
+    joint_record,
+    plan,
+    sides,
+    surplus,
+    tracking_gains,
+)
+from sim.estimation.transmission_torque import DEFLECTION, WAYS, Rubbing, TransmissionTorque
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -24,18 +34,6 @@ SHIPPED = JointControl()
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
 BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
-SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
-TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
-
-
-def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
-    """Gains alpha, beta [1/s], gamma [1/s²] of a third-order tracking filter with one triple pole at `bandwidth` [Hz].
-
-    Source: the fading-memory filter of order two (alpha-beta-gamma filter), pole r = exp(-2 pi f T):
-    alpha = 1 - r³, beta = 1.5 (1 - r²)(1 - r) / T, gamma = (1 - r)³ / T².
-    """
-    r = math.exp(-2.0 * math.pi * bandwidth * TICK)
-    return 1.0 - r**3, 1.5 * (1.0 - r * r) * (1.0 - r) / TICK, (1.0 - r) ** 3 / (TICK * TICK)
 
 
 class Estimator:
@@ -55,18 +53,19 @@ class Estimator:
         slip_stiffness = np.array(spring.hysteresis_stiffness) * calibration.stiffness
         torque_constant = np.array(motors.torque_constant) * np.array(motors.gear) * calibration.motor_constant
         stiffening = np.array(spring.stiffening) * calibration.stiffness
-        slip = (slip_stiffness, np.array(spring.hysteresis_yield))
-        self._constants = np.stack([torque_constant, stiffness, stiffening, np.array(spring.damping), *slip])
-        self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
+        self._record = joint_record(n)
+        own = self._own = self._record[0]
+        own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
+        own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
+        own["rotor"] = self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
         self.friction = AdaptiveFriction(arm)
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None
         self._ways = np.ones((len(WAYS), n), dtype=bool)
-        self._surplus, self._stiction, self._deflection = np.zeros((3, n))
-        self._rest: Array | None = None  # deflection (n,) at which the hysteresis spring is relaxed; at first taken for relaxed
-        self._gains = np.array([tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)])
-        self._theta, self._q = np.zeros((2, 3, n))  # position, speed, acceleration
-        self.tau_m = np.zeros(n)
+        self._surplus, self._stiction, self._deflection = own["surplus"], own["stiction"], own["deflection"]
+        self._relaxed = False  # at first the hysteresis spring is taken for relaxed
+        own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
+        self._theta, self._q, self.tau_m = own["theta"], own["q"], own["tau_m"]
         self._compliance = 1.0 / (stiffness + slip_stiffness)
         self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
         self._lost: tuple[tuple[str, int], ...] = ()
@@ -100,7 +99,7 @@ class Estimator:
         dynamics = self._dynamics
         self.tick += 1
         theta, q = self._theta, self._q
-        angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
+        angles = Angles(sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
         if angles is not None:
             if self._lost and sample.joints_valid:
                 self._back(sample)
@@ -109,17 +108,18 @@ class Estimator:
                 theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = angles[0], angles[1]
                 self._wanted = None
-            if self._rest is None:
-                self._rest = angles[0] - angles[1]
+            if not self._relaxed:
+                self._relaxed = True
+                self._own["rest"] = angles[0] - angles[1]
             if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
-                _plan(*self._wanted, *answered, theta, q)
+                plan(self._record, self._wanted, answered)
             self._wanted = answered
-            _follow(*angles, self._gains, self._constants, theta, q, self._rest, self.tau_m, self._deflection)
+            follow(self._record, angles)
             self.q = angles[1].copy()  # a law may hold on to it
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        self._estimate_torques(sample, use, rigid.torque, learn)
+        self._estimate_torques(sample, use, learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid
         if known is None:
@@ -177,27 +177,26 @@ class Estimator:
             F_joints=self.forces.F_joints,
         )
 
-    def _estimate_torques(self, sample: Sample, use: JointControl, tau_dyn: Array, learn: bool) -> None:
+    def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> None:
         """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
-        friction, transmission, motor = self.friction, self.transmission, self._theta
-        surplus, stiction, ways = self._surplus, self._stiction, transmission.ways
+        friction, transmission, motor, rigid = self.friction, self.transmission, self._theta, self._dynamics.recursion
+        spent, stiction, ways = self._surplus, self._stiction, transmission.ways
         if use is not self._use:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
             self._ways[:] = [use.from_dynamics | ~both, use.from_deflection & both, use.from_motor & motor_known]
-        _surplus(self.tau_m, self._rotor, motor, tau_dyn, surplus)
+        surplus(self._record, rigid.torque)
         if self._lost:
-            surplus[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
+            spent[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
         free = learn and self._started and use.adaptive and not transmission.contact
-        friction.learn(motor[1], surplus, tau_dyn, transmission.fused, temperature=sample.temperature, free=free)
-        rubs = (friction.total, friction.terms, friction.warmth)
+        friction.learn(Turning(motor[1], spent, rigid.torque, transmission.fused), sample.temperature, free)
         ways[DEFLECTION] = self._deflection
-        moving = _sides(motor, tau_dyn, surplus, friction.output_share, *rubs, ways, stiction)
-        transmission.update(friction.deviation, stiction, motor[2], moving=moving and learn, use=self._ways)
+        moving = sides(self._record, rigid.torque, friction.record, transmission.record)
+        transmission.update(Rubbing(friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
 
-    def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:
+    def _made_up(self, sample: Sample) -> Angles | None:
         """Angles and currents where some are out: each angle from the other, through the spring; None if a joint has neither."""
         able = np.isfinite(np.stack([sample.theta, sample.q, sample.current]))
         if not (able[0] | able[1]).all():
@@ -216,8 +215,8 @@ class Estimator:
         deflection = self._bend + self._compliance * self._bending
         theta = np.where(able[0], sample.theta, sample.q + deflection)
         q = np.where(able[1], sample.q, sample.theta - deflection)
-        spent = (fused + (1.0 - self.friction.output_share) * self.friction.total) / self._constants[0]
-        return theta, q, np.where(able[2], sample.current, spent)
+        spent = (fused + (1.0 - self.friction.output_share) * self.friction.total) / self._own["torque_constant"]
+        return Angles(theta, q, np.where(able[2], sample.current, spent))
 
     def _back(self, sample: Sample) -> None:
         """All sensors are there again: angles that were made up jump to what is measured, without any speed."""
@@ -227,67 +226,3 @@ class Estimator:
 
 def _names(able: NDArray[np.bool_]) -> tuple[tuple[str, int], ...]:
     return tuple((SENSORS[k], int(i)) for k, i in zip(*np.nonzero(~able), strict=True))
-
-
-@numba.njit(cache=True)
-def _surplus(tau_m, rotor, motor, tau_dyn, surplus) -> None:
-    """What the motor spends beyond the rotor's inertia and the rigid model."""
-    for i in range(surplus.size):
-        surplus[i] = tau_m[i] - rotor[i] * motor[2, i] - tau_dyn[i]
-
-
-@numba.njit(cache=True)
-def _sides(motor, tau_dyn, surplus, share, total, terms, warmth, ways, stiction) -> bool:
-    """Transmission torque seen from the links and from the motor, what stiction may hide, and whether any joint moves."""
-    moving = False
-    for i in range(stiction.size):
-        ways[0, i] = tau_dyn[i] + share * total[i]
-        ways[2, i] = surplus[i] + tau_dyn[i] - (1.0 - share) * total[i]
-        stands = abs(motor[1, i]) < GATE
-        stiction[i] = terms[i, 0] * warmth[i] if stands else 0.0
-        moving = moving or not stands
-    return moving
-
-
-@numba.njit(cache=True)
-def _plan(q_ref, qd_ref, qdd_ref, q_next, qd_next, qdd_next, theta, q) -> None:
-    """Add to both states what the plan does in this tick beyond constant acceleration."""
-    for i in range(q_ref.size):
-        jump = qdd_next[i] - qdd_ref[i]
-        gain = qd_next[i] - qd_ref[i] - TICK * qdd_ref[i]
-        way = q_next[i] - q_ref[i] - TICK * qd_ref[i] - 0.5 * TICK * TICK * qdd_ref[i]
-        # The filters' prediction is to end there: it adds TICK·gain and the like from what is put in here.
-        theta[2, i] += jump
-        theta[1, i] += gain - TICK * jump
-        theta[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
-        q[2, i] += jump
-        q[1, i] += gain - TICK * jump
-        q[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
-
-
-@numba.njit(cache=True)
-def _track(measured, gains, state, i) -> None:
-    alpha, beta, gamma = gains[0], gains[1], gains[2]
-    coasting = state[1, i] + TICK * state[2, i]
-    predicted = state[0, i] + TICK * state[1, i] + 0.5 * TICK * TICK * state[2, i]
-    error = measured - predicted
-    state[0, i] = predicted + alpha * error
-    state[1, i] = coasting + beta * error
-    state[2, i] += gamma * error
-
-
-@numba.njit(cache=True)
-def _follow(theta_measured, q_measured, current, gains, constants, theta, q, rest, tau_m, tau_J) -> None:
-    """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3).
-
-    The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
-    """
-    for i in range(tau_m.size):
-        torque_constant, stiffness, stiffening, damping, slip_stiffness, slip_yield = constants[:, i]
-        _track(theta_measured[i], gains[0], theta, i)
-        _track(q_measured[i], gains[1], q, i)
-        tau_m[i] = torque_constant * current[i]
-        x = theta_measured[i] - q_measured[i]
-        rest[i] = min(max(rest[i], x - slip_yield), x + slip_yield)
-        slip = slip_stiffness * (x - rest[i])
-        tau_J[i] = x * (stiffness + stiffening * x * x) + damping * (theta[1, i] - q[1, i]) + slip

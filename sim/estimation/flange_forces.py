@@ -1,14 +1,16 @@
 """The user's wrench on the flange from its force/torque sensor, the force that the joints feel there, and the acceleration."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body
 from sim.arm.frames import skew
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.rigid_body.dynamics import Dynamics
 from sim.rigid_body.newton_euler import cross
 from sim.sensing.sensors import Sample
@@ -20,6 +22,16 @@ TURN_BANDWIDTH = 60.0
 needs there and is not known of in time would seem a hand's, be helped, and make them swing more."""
 
 DAMPING = 0.1  # lever arm below which the joints feel no force [m]
+
+
+class Felt(NamedTuple):
+    """What the sensors at the flange and the joints feel in a tick."""
+
+    wrench: Array  # (6,) what the flange exerts on what it carries, in F [N, N·m]
+    tool_side: Array  # specific force (3,) behind the sensor, in F [m/s²]
+    gyro: Array  # (3,) there [rad/s]
+    arm_side: Array  # specific force (3,) before the sensor, in F [m/s²]
+    tau_ext: Array  # external torques of the joints (n,) [N·m]
 
 
 class FlangeForces:
@@ -36,16 +48,29 @@ class FlangeForces:
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
-        self.F_user, self.F_joints, self.a_felt = np.zeros(6), np.zeros(3), np.zeros(3)
-        self._turns = np.zeros((2, 3))  # last gyro value, smoothed angular acceleration
-        self._smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        self._record = record(
+            F_user=(6,),
+            F_joints=(3,),
+            a_felt=(3,),
+            gyro=(3,),  # its last value
+            turn=(3,),  # smoothed angular acceleration
+            smoothing=(),
+            gravity=(3,),
+            mass=(),
+            com=(3,),
+            inertia=(3, 3),  # about the flange
+        )
+        own = self._own = self._record[0]
+        self.F_user, self.F_joints, self.a_felt = own["F_user"], own["F_joints"], own["a_felt"]
+        own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        own["gravity"] = dynamics.gravity_B
         self.set_load(dynamics.load)
 
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
         turned = skew(load.com)
-        about_flange = load.inertia - load.mass * turned @ turned
-        self._mass, self._load = load.mass, np.vstack([load.com, about_flange])  # centre of mass, inertia about the flange (4, 3)
+        own = self._own
+        own["mass"], own["com"], own["inertia"] = load.mass, load.com, load.inertia - load.mass * turned @ turned
 
     def update(self, sample: Sample, q: Array, motion: Array, tau_ext: Array) -> None:
         """One tick.
@@ -56,36 +81,33 @@ class FlangeForces:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tau_ext: external torques of the joints (n,) [N·m].
         """
-        rigid, turns, differentiated = self._dynamics.recursion, self._turns, sample.acceleration_valid
+        rigid, own, differentiated = self._dynamics.recursion, self._own, sample.acceleration_valid
         force = sample.acceleration_tool
         if sample.wrench_valid and not differentiated:
             # The model stands in; its values stay for the differentiation to go on from.
-            force, turns[1] = self._dynamics.specific_force(q, motion[1], motion[2])
-            turns[0] = rigid.R.T @ rigid.v_F[3:]
-        _update(
-            rigid.jacobian, tau_ext, rigid.R, sample.wrench, force, sample.gyro_tool, turns, self._mass, self._load,
-            self._smoothing, sample.wrench_valid, differentiated, sample.acceleration_flange, self._dynamics.gravity_B,
-            self.F_user, self.F_joints, self.a_felt,
-        )  # fmt: skip
+            force, own["turn"] = self._dynamics.specific_force(q, motion[1], motion[2])
+            own["gyro"] = rigid.R.T @ rigid.v_F[3:]
+        felt = Felt(sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
+        _update(self._record, rigid.record, felt, (sample.wrench_valid, differentiated))
 
 
-@numba.njit(cache=True)
-def _update(
-    jacobian, tau_ext, R, wrench, force, gyro, turns, mass, load, smoothing, wrench_valid, differentiated, specific, gravity,
-    F_user, F_joints, a_felt,
-) -> None:  # fmt: skip
-    _felt_by_joints(jacobian, tau_ext, F_joints)
+@kernel
+def _update(forces, model, felt, valid) -> None:
+    own, rigid = forces[0], model[0]
+    R, specific, gravity, a_felt = rigid.R, felt.arm_side, own.gravity, own.a_felt
+    wrench_valid, differentiated = valid
+    _felt_by_joints(rigid.jacobian, felt.tau_ext, own.F_joints)
     for k in range(3):
         a_felt[k] = R[k, 0] * specific[0] + R[k, 1] * specific[1] + R[k, 2] * specific[2] + gravity[k]
     if differentiated:
-        _differentiate(gyro, turns[0], turns[1], smoothing)
+        _differentiate(felt.gyro, own.gyro, own.turn, own.smoothing)
     if wrench_valid:
-        _user_wrench(wrench, force, turns[0], turns[1], mass, load[0], load[1:], R, F_user)
+        _user_wrench(own, felt.wrench, felt.tool_side, R)
     else:
-        F_user[:] = 0.0
+        own.F_user[:] = 0.0
 
 
-@numba.njit(cache=True)
+@kernel
 def _felt_by_joints(jacobian, tau_ext, out) -> None:
     """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
     a = np.zeros((3, 3))
@@ -111,20 +133,21 @@ def _felt_by_joints(jacobian, tau_ext, out) -> None:
     out[2] = (c2 * b[0] + d2 * b[1] + e2 * b[2]) / determinant
 
 
-@numba.njit(cache=True)
+@kernel
 def _differentiate(gyro, last, turn, smoothing) -> None:
     for k in range(3):
         turn[k] += smoothing * ((gyro[k] - last[k]) / TICK - turn[k])
         last[k] = gyro[k]
 
 
-@numba.njit(cache=True)
-def _user_wrench(measured, force, gyro, turn, mass, com, inertia, R, out) -> None:
+@kernel
+def _user_wrench(own, measured, force, R) -> None:
     """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
 
     The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
     c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
     """
+    mass, com, inertia, gyro, turn, out = own.mass, own.com, own.inertia, own.gyro, own.turn, own.F_user
     tangential = cross(turn, com)
     normal = cross(gyro, cross(gyro, com))
     lever = cross(com, force)

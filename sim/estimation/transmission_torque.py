@@ -1,13 +1,15 @@
 """Transmission torque module: what passes through each gear, estimated three ways and fused (AF-3)."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.sensing.calibration import ENCODER_RIPPLE, LINK_MASS, MOTOR_CONSTANT, STIFFNESS
 
 Array = NDArray[np.float64]
@@ -31,6 +33,14 @@ CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque l
 SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
 REMEMBERED = 1500  # ticks of motion over which it is remembered how much they differed; before so many it does not count
 SETTLE_TICKS = 100  # after a contact, before its end is believed
+
+
+class Rubbing(NamedTuple):
+    """What friction leaves uncertain in a tick, and how the motors accelerate."""
+
+    deviation: Array  # of the friction estimate (n,) [N·m]
+    stiction: Array  # what a standing joint may hold besides (n,) [N·m], 0 for one that moves
+    acceleration: Array  # of the motors (n,) [rad/s²]
 
 
 class TransmissionTorque:
@@ -64,95 +74,99 @@ class TransmissionTorque:
         limit = np.array(arm.limits.torque)
         stiffness = np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)
         ripple = ENCODER_RIPPLE * stiffness
-        self._constants = np.stack([MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia])
-        self._swing = np.zeros(1)  # the largest acceleration lately [rad/s²]
-        self.correction = np.zeros((2, n))
-        self.stiffer, self.offset = self.correction
-        self._covariance = np.zeros((n, 2, 2))
-        # Model from deflection, slowly [N·m]; mean squares of that, and of the rest; ticks over which they were compared.
-        self._differ = np.zeros((4, n))
+        self.record = record(
+            floor=(n,),  # of the model's deviation [N·m]
+            ripple=(n,),  # of the deflection's offset [N·m]
+            least=(n,),  # difference that may be a contact [N·m]
+            inertia=(n,),
+            swing=(),  # the largest acceleration lately [rad/s²]
+            stiffer=(n,),
+            offset=(n,),
+            covariance=(n, 2, 2),
+            walk=(n, 2),
+            differ=(n,),  # model from deflection, slowly [N·m]
+            slow_square=(n,),  # mean square of that
+            fast_square=(n,),  # and of the rest
+            compared=(n,),  # ticks over which they were compared
+            ways=(3, n),
+            deviations=(3, n),
+            fused=(n,),
+            deviation=(n,),
+            external=(n,),
+            external_deviation=(n,),
+            model=(n,),  # standard deviation of the rigid model where nothing is touched
+        )
+        own = self.record[0]
+        own["floor"], own["ripple"], own["least"], own["inertia"] = MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia
+        own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
+        self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
+        self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
+        self.external_deviation = own["external_deviation"]
         self.forget()
-        self._walk = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
-        # One block for all that a tick brings: each array that is handed to a kernel costs as much as a joint's arithmetic.
-        self._outcome = np.zeros((11, n))
-        self.ways, self.deviations = self._outcome[:3], self._outcome[3:6]
-        # The last but one is the standard deviation of the rigid model where nothing is touched.
-        self.fused, self.deviation, self.external, self.external_deviation, self._model = self._outcome[6:]
         self.contact = False
         self._quiet = SETTLE_TICKS
 
     def forget(self) -> None:
         """Begin to learn anew: the rigid model has another load, and what was learned from it may have been its error."""
-        self.correction[:] = 0.0
-        self._covariance[:] = 0.0
-        self._covariance[:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
-        self._covariance[:, 1, 1] = self._constants[1] ** 2
-        self._differ[:] = 0.0
+        own = self.record[0]
+        for column in ("stiffer", "offset", "covariance", "differ", "slow_square", "fast_square", "compared"):
+            own[column] = 0.0
+        own["covariance"][:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
+        own["covariance"][:, 1, 1] = own["ripple"] ** 2
 
-    def update(
-        self, friction_deviation: Array, stiction: Array, acceleration: Array, *, moving: bool, use: NDArray[np.bool_]
-    ) -> None:
+    def update(self, rubbing: Rubbing, *, moving: bool, use: NDArray[np.bool_]) -> None:
         """One tick, on the raw values that the caller has put into `ways`.
 
         These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
         tau_m - J theta_dd - friction of the input side.
 
         Args:
-            friction_deviation: of that friction (n,) [N·m].
-            stiction: what a standing joint may hold besides (n,) [N·m], 0 for one that moves.
-            acceleration: of the motors (n,) [rad/s²].
+            rubbing: what that friction leaves uncertain.
             moving: some joint moves; at rest nothing is learned, for a wrong payload would pass for a soft spring.
             use: which of `WAYS` may be used, of which joint (3, n).
         """
-        self._quiet = _update(
-            self._outcome, friction_deviation, stiction, acceleration, self._constants, self._swing, self.correction,
-            self._covariance, self._walk, self._differ, use, moving, self._quiet,
-        )  # fmt: skip
+        touched = _update(self.record, rubbing, use, (moving, self._quiet))
+        self._quiet = 0 if touched else self._quiet + 1
         self.contact = self._quiet < SETTLE_TICKS
 
 
-@numba.njit(cache=True)
-def _update(
-    outcome, friction_deviation, stiction, acceleration, constants, swing, correction, covariance, walk, differ, use, moving,
-    quiet,
-) -> int:  # fmt: skip
-    """Compare, then fuse. Returns for how many ticks nothing has been touched."""
-    rubbing, learned = (friction_deviation, stiction), (correction, covariance, walk, differ)
-    ways, deviations, model = outcome[:3], outcome[3:6], outcome[10]
-    fused, deviation, external, external_deviation = outcome[6], outcome[7], outcome[8], outcome[9]
+@kernel
+def _update(transmission, rubbing, use, state) -> bool:
+    """Compare, then fuse. Returns whether something is touched."""
+    own = transmission[0]
+    moving, quiet = state
     learn = moving and quiet >= SETTLE_TICKS
-    touched = _compare(
-        ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
-    )  # fmt: skip
+    touched = _compare(own, rubbing, use)
+    if learn and not touched:
+        _correct_spring(own, use)
     quiet = 0 if touched else quiet + 1
-    _fuse(ways, deviations, (model, constants[0], differ), external, quiet < SETTLE_TICKS, use, fused, deviation)
-    return quiet
+    _fuse(own, use, quiet < SETTLE_TICKS)
+    return touched
 
 
-@numba.njit(cache=True)
-def _compare(
-    ways, deviations, rubbing, acceleration, constants, swing, learned, use, learn, model, external, external_deviation
-) -> bool:  # fmt: skip
-    """Correct the deflection, find what the rigid model does not explain, learn the correction from it unless touched."""
-    correction, covariance, walk, differ = learned
-    friction_deviation, stiction = rubbing
+@kernel
+def _compare(own, rubbing, use) -> bool:
+    """Correct the deflection, and find what the rigid model does not explain: whether something is touched."""
+    friction_deviation, stiction, acceleration = rubbing
+    ways, deviations, external = own.ways, own.deviations, own.external
     n = external.size
-    swing[0] *= LATELY
+    swing = own.swing * LATELY
     for i in range(n):
-        swing[0] = max(swing[0], abs(acceleration[i]))
-    shaking = ACCELERATION_FLOOR + ACCELERATION_SHARE * swing[0]
+        swing = max(swing, abs(acceleration[i]))
+    own.swing = swing
+    shaking = ACCELERATION_FLOOR + ACCELERATION_SHARE * swing
     touched = False
     for i in range(n):
-        floor, ripple, least, inertia = constants[0, i], constants[1, i], constants[2, i], constants[3, i]
-        P, x, dynamics = covariance[i], ways[1, i], ways[0, i]
-        ways[1, i] += x * correction[0, i] + correction[1, i]
+        floor, ripple = own.floor[i], own.ripple[i]
+        P, x, dynamics = own.covariance[i], ways[1, i], ways[0, i]
+        ways[1, i] += x * own.stiffer[i] + own.offset[i]
         rigid = (LINK_MASS * dynamics) ** 2 + floor**2
-        model[i] = np.sqrt(rigid + (shaking * inertia) ** 2)
+        own.model[i] = np.sqrt(rigid + (shaking * own.inertia[i]) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
         gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
-        external_deviation[i] = np.sqrt(gear + noise + rigid)
-        if use[0, i] and differ[3, i] == REMEMBERED:
-            gear = max(differ[1, i], differ[0, i] ** 2 - rigid)
+        own.external_deviation[i] = np.sqrt(gear + noise + rigid)
+        if use[0, i] and own.compared[i] == REMEMBERED:
+            gear = max(own.slow_square[i], own.differ[i] ** 2 - rigid)
         deviations[1, i] = np.sqrt(gear + noise)
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
@@ -162,46 +176,51 @@ def _compare(
         other = 1 if use[1, i] else 2
         external[i] = dynamics - ways[other, i]
         allowed = known + (0.5 * ripple) ** 2 if other == 1 else deviations[2, i] ** 2
-        if abs(external[i]) > max(CONTACT * np.sqrt(allowed + model[i] ** 2), least):
+        if abs(external[i]) > max(CONTACT * np.sqrt(allowed + own.model[i] ** 2), own.least[i]):
             touched = True
-    if touched or not learn:
-        return touched
-    for i in range(n):
+    return touched
+
+
+@kernel
+def _correct_spring(own, use) -> None:
+    """Learn stiffness error and offset of the deflection from the rigid model, where nothing is touched."""
+    for i in range(own.external.size):
         if not (use[0, i] and use[1, i]):
             continue
-        P, ripple = covariance[i], constants[1, i]
-        x = (ways[1, i] - correction[1, i]) / (1.0 + correction[0, i])
-        error = external[i]
-        differ[3, i] = min(differ[3, i] + 1.0, REMEMBERED)
-        differ[0, i] += SLOWLY * (error - differ[0, i])
-        differ[1, i] += (differ[0, i] ** 2 - differ[1, i]) / differ[3, i]
-        differ[2, i] += ((error - differ[0, i]) ** 2 - differ[2, i]) / differ[3, i]
+        P, ripple, walk = own.covariance[i], own.ripple[i], own.walk[i]
+        x = (own.ways[1, i] - own.offset[i]) / (1.0 + own.stiffer[i])
+        error = own.external[i]
+        compared = min(own.compared[i] + 1.0, REMEMBERED)
+        own.compared[i] = compared
+        own.differ[i] += SLOWLY * (error - own.differ[i])
+        differ = own.differ[i]
+        own.slow_square[i] += (differ**2 - own.slow_square[i]) / compared
+        own.fast_square[i] += ((error - differ) ** 2 - own.fast_square[i]) / compared
         # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
-        P[0, 0] = min(P[0, 0] + walk[i, 0], STIFFNESS**2 / 3.0)
-        P[1, 1] = min(P[1, 1] + walk[i, 1], ripple**2)
+        P[0, 0] = min(P[0, 0] + walk[0], STIFFNESS**2 / 3.0)
+        P[1, 1] = min(P[1, 1] + walk[1], ripple**2)
         g0, g1 = P[0, 0] * x + P[0, 1], P[0, 1] * x + P[1, 1]
         spread = g0 * x + g1 + (0.5 * ripple) ** 2 * CORRELATED
         P[0, 0] -= g0 * g0 / spread
         P[1, 1] -= g1 * g1 / spread
         P[0, 1] -= g0 * g1 / spread
         P[1, 0] = P[0, 1]
-        stiffer = correction[0, i] + g0 * error / spread
-        correction[0, i] = min(max(stiffer, SOFTEST), STIFFEST)
+        stiffer = own.stiffer[i] + g0 * error / spread
+        own.stiffer[i] = min(max(stiffer, SOFTEST), STIFFEST)
         # The offset was learned together with a stiffness that cannot be: it is what goes with the bound.
-        offset = correction[1, i] + g1 * error / spread + (correction[0, i] - stiffer) * P[0, 1] / P[0, 0]
-        correction[1, i] = min(max(offset, -ripple), ripple)
-    return False
+        offset = own.offset[i] + g1 * error / spread + (own.stiffer[i] - stiffer) * P[0, 1] / P[0, 0]
+        own.offset[i] = min(max(offset, -ripple), ripple)
 
 
-@numba.njit(cache=True)
-def _fuse(ways, deviations, errors, external, contact, use, fused, deviation) -> None:
-    model, floor, differ = errors
+@kernel
+def _fuse(own, use, contact) -> None:
+    ways, deviations, fused, deviation = own.ways, own.deviations, own.fused, own.deviation
     for i in range(fused.size):
-        outside = external[i] if contact else 0.0
-        variance = model[i] ** 2
-        if use[1, i] and differ[3, i] == REMEMBERED:
+        outside = own.external[i] if contact else 0.0
+        variance = own.model[i] ** 2
+        if use[1, i] and own.compared[i] == REMEMBERED:
             # Without an output angle, though, the model's acceleration is made of this torque itself.
-            variance = min(variance, (LINK_MASS * ways[0, i]) ** 2 + floor[i] ** 2 + differ[2, i])
+            variance = min(variance, (LINK_MASS * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
         deviations[0, i] = np.sqrt(variance + outside**2)
         weight, total = 0.0, 0.0
         for k in range(3):

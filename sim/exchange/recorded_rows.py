@@ -1,13 +1,49 @@
 """A tick as two rows of numbers, for recordings: what the controller knew, and the truth; written in place, without garbage."""
 
-import numba
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.estimate import Estimate
-from sim.plant.true_arm import SIGN_SPEED, Plant
+from sim.compiled.kernel import kernel
+from sim.plant.joint_state import SIGN_SPEED
+from sim.plant.true_arm import Plant
 
 Array = NDArray[np.float64]
+
+
+class RecordedJoints(NamedTuple):
+    """Of the estimate, (n,) each."""
+
+    q: Array
+    qd: Array
+    qdd: Array
+    theta: Array
+    theta_d: Array
+    tau_m: Array
+    tau_J: Array
+    tau_ext: Array
+    friction: Array
+
+
+class RecordedFlange(NamedTuple):
+    """Of the estimate, at the flange."""
+
+    w_sensor: Array
+    F_user: Array
+    v_F: Array
+    a_F: Array
+    p_BF: Array
+
+
+class RecordedPlace(NamedTuple):
+    """Where MuJoCo's bodies are in W, which of them the flange is, and what is attached to it."""
+
+    positions: Array
+    orientations: Array
+    flange: int
+    mass: float  # [kg]
 
 
 def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, known: Array, truth: Array, k: int) -> None:
@@ -19,12 +55,11 @@ def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, know
     Truth: q, qd, theta, tau_J, friction of both sides, temperature (n each); pose of the flange in W (7); sum of the hands'
     forces in W (3); mass of what is attached.
     """
-    rubs = plant.friction
-    joints = (e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
-    _known(*joints, e.w_sensor, e.F_user, e.a_F, e.p_BF, e.v_F, e.v_tcp, e.v_elbow, gain, configured, known, k)
-    state = (plant.q, plant.qd, plant.theta, plant.theta_d, plant.tau_J, plant.friction_in)
-    rest = (rubs.output_coulomb, rubs.output_viscous, plant.temperature, *plant.frames)
-    _truth(*state, *rest, plant.flange_body, plant.payload.load.mass, truth, k)
+    joints = RecordedJoints(e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
+    flange = RecordedFlange(e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
+    _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured), known[k])
+    place = RecordedPlace(*plant.frames, plant.flange_body, plant.payload.load.mass)
+    _truth(plant.record, plant.friction.record, place, truth[k])
     for _, _, (x, y, z), _ in plant.hands.touched:
         row = truth[k]
         row[-4] += x
@@ -32,37 +67,36 @@ def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, know
         row[-2] += z
 
 
-@numba.njit(cache=True)
-def _known(
-    q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction, w_sensor, F_user, a_F, p_BF, v_F, tcp, elbow, gain, mass, rows, k
-) -> None:
-    n, out = q.size, rows[k]
+@kernel
+def _known(joints, flange, numbers, out) -> None:
+    q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction = joints
+    n = q.size
     for i in range(n):
         out[i], out[n + i], out[2 * n + i] = q[i], qd[i], qdd[i]
         out[3 * n + i], out[4 * n + i] = theta[i], theta_d[i]
         out[5 * n + i], out[6 * n + i], out[7 * n + i], out[8 * n + i] = tau_m[i], tau_J[i], tau_ext[i], friction[i]
     at = 9 * n
     for i in range(6):
-        out[at + i], out[at + 6 + i], out[at + 18 + i] = w_sensor[i], F_user[i], v_F[i]
+        out[at + i], out[at + 6 + i], out[at + 18 + i] = flange.w_sensor[i], flange.F_user[i], flange.v_F[i]
     for i in range(3):
-        out[at + 12 + i], out[at + 15 + i] = a_F[i], p_BF[i]
-    out[at + 24], out[at + 25], out[at + 26], out[at + 27] = tcp, elbow, gain, mass
+        out[at + 12 + i], out[at + 15 + i] = flange.a_F[i], flange.p_BF[i]
+    for i in range(4):
+        out[at + 24 + i] = numbers[i]
 
 
-@numba.njit(cache=True)
-def _truth(
-    q, qd, theta, theta_d, tau_J, friction_in, coulomb, viscous, temperature, places, turns, flange, mass, rows, k
-) -> None:
-    n, out = q.size, rows[k]
+@kernel
+def _truth(plant, friction, place, out) -> None:
+    own, rubs = plant[0], friction[0]
+    n = own.q.size
     for i in range(n):
-        out[i], out[n + i], out[2 * n + i], out[3 * n + i] = q[i], qd[i], theta[i], tau_J[i]
-        sign = np.tanh(theta_d[i] / SIGN_SPEED)
-        out[4 * n + i] = (friction_in[i] + coulomb[i]) * sign + viscous[i] * qd[i]
-        out[5 * n + i] = temperature[i]
+        out[i], out[n + i], out[2 * n + i], out[3 * n + i] = own.q[i], own.qd[i], own.theta[i], own.tau_J[i]
+        sign = np.tanh(own.theta_d[i] / SIGN_SPEED)
+        out[4 * n + i] = (own.friction_in[i] + rubs.output_coulomb[i]) * sign + rubs.output_viscous[i] * own.qd[i]
+        out[5 * n + i] = own.temperature[i]
     at = 6 * n
     for i in range(3):
-        out[at + i] = places[flange, i]
+        out[at + i] = place.positions[place.flange, i]
         out[at + 7 + i] = 0.0
     for i in range(4):
-        out[at + 3 + i] = turns[flange, i]
-    out[at + 10] = mass
+        out[at + 3 + i] = place.orientations[place.flange, i]
+    out[at + 10] = place.mass

@@ -1,1 +1,1 @@
-"""References in joint and tool space. Uses arm/, rigid_body/, sensing/."""
+"""References in joint and tool space. Uses arm/, compiled/, rigid_body/, sensing/."""

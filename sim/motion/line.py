@@ -1,12 +1,13 @@
 """A straight line of the tool centre point, and the joints' way along it."""
 
 import math
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.frames import quaternion_from_matrix
+from sim.compiled.kernel import kernel
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
 from sim.rigid_body.newton_euler import cross, turned
@@ -15,6 +16,24 @@ Array = NDArray[np.float64]
 
 SINGULAR = 0.02  # smallest singular value of the tool's Jacobian that a line may pass: shoulder, elbow or wrist aligned
 LINE_GAIN = 20.0  # pulls the line's reference back onto the line [1/s]
+
+
+class FlangePlace(NamedTuple):
+    """Where the arm is, in axes of B, n joints."""
+
+    p: Array  # flange (3,) [m]
+    R: Array  # and its orientation (3, 3)
+    jacobian: Array  # of the flange (6, n), linear first
+
+
+class Course(NamedTuple):
+    """A straight line of the tool centre point, in axes of B."""
+
+    tcp: Array  # tool centre point in F (3,) [m]
+    start: Array  # (3,) [m]
+    R_start: Array  # (3, 3)
+    way: Array  # (3,) [m]
+    turn: Array  # axis times angle, in T (3,) [rad]
 
 
 class Line:
@@ -52,9 +71,8 @@ class Line:
 
     def solve(self, q: Array, s: float, rate: float) -> Array:
         """Joint speeds (n,) at q, for the share `s` of the line and its rate [1/s]."""
-        return np.asarray(
-            _solve(*self._dynamics.update(q), self._tcp, self.start, self.R, self.way, self.turn, s, rate), dtype=np.float64
-        )
+        course = Course(self._tcp, self.start, self.R, self.way, self.turn)
+        return np.asarray(_solve(FlangePlace(*self._dynamics.update(q)), course, s, rate), dtype=np.float64)
 
 
 def rotation_vector(R: Array) -> Array:
@@ -67,8 +85,10 @@ def rotation_vector(R: Array) -> Array:
 # Loops over scalars, and a solver of our own: the compiled products and solvers of numpy cost a fresh installation ten seconds.
 
 
-@numba.njit(cache=True)
-def _solve(p, R, jacobian, tcp, start, R_start, way, turn, s, rate):
+@kernel
+def _solve(place, course, s, rate):
+    p, R, jacobian = place
+    tcp, start, R_start, way, turn = course
     n = jacobian.shape[1]
     lever, going, left = turned(R, tcp), turned(R_start, turn), _turn_between(R, R_start, turn, s)
     twist = np.empty(6)
@@ -96,7 +116,7 @@ def _solve(p, R, jacobian, tcp, start, R_start, way, turn, s, rate):
     return speeds
 
 
-@numba.njit(cache=True)
+@kernel
 def _turn_between(R, R_start, turn, s):
     """Axis times angle (3,) [rad], in axes of B, of the rotation by less than half a turn from R to R_start·exp(s·turn)."""
     angle = math.sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])

@@ -1,1 +1,1 @@
-"""The truth: the arm in its world, in MuJoCo. Uses arm/."""
+"""The truth: the arm in its world, in MuJoCo. Uses arm/, compiled/."""

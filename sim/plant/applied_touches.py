@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import mujoco
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
+from sim.compiled.kernel import kernel
 from sim.plant.touch import ZERO, Pull, Touch, Triple
 
 Array = NDArray[np.float64]
@@ -20,6 +21,17 @@ RESPONSE = 0.03
 time would be a step of force, which no arm of flesh can do and a falling payload does."""
 
 _FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
+
+
+class Bodies(NamedTuple):
+    """Arrays of MuJoCo's, a body a row."""
+
+    xpos: Array
+    xmat: Array
+    centres: Array  # of mass
+    motion: Array  # angular, then linear, at the centre of mass of its tree
+    trees: Array  # these centres
+    applied: Array  # wrenches
 
 
 class Hands:
@@ -36,9 +48,7 @@ class Hands:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, parts: Mapping[str, int]) -> None:
         self._parts = parts
         self._roots: list[int] = model.body_rootid.tolist()
-        self._motion = (data.cvel, data.subtree_com)
-        self._poses = (data.xpos, data.xmat, data.xipos)
-        self._applied = data.xfrc_applied
+        self._bodies = Bodies(data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
         self._pushed: set[int] = set()
         self._goes: dict[tuple[str, Triple], Triple] = {}  # where each pull has come to by now, in W [m]
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
@@ -49,10 +59,10 @@ class Hands:
         Raises:
             KeyError: a touch names a part that does not exist.
         """
-        applied, pushed = self._applied, self._pushed
+        bodies, pushed = self._bodies, self._pushed
         if pushed:
             for body in pushed:
-                applied[body] = 0.0
+                bodies.applied[body] = 0.0
             pushed.clear()
         went, self._goes = self._goes, {}
         if not touches:
@@ -62,12 +72,12 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                spring = map(float, (*touch.point, *self._reach(touch, body, went), touch.cap))
-                point, force = _pull(*self._poses, *self._motion, self._roots[body], body, applied, *spring)
+                held = (_floats(touch.point), self._reach(touch, body, went), float(touch.cap))
+                point, force = _pull(bodies, self._roots[body], body, held)
                 torque = ZERO
             else:
                 force, torque = _floats(touch.force), _floats(touch.torque)
-                point = _push(*self._poses, body, applied, *map(float, (*touch.point, *force, *torque)))
+                point = _push(bodies, body, _floats(touch.point), (*force, *torque))
             pushed.add(body)
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
@@ -75,14 +85,14 @@ class Hands:
     def _reach(self, pull: Pull, body: int, went: Mapping[tuple[str, Triple], Triple]) -> Triple:
         """Where a pull has come to in this tick, in W [m]; it begins where it takes hold."""
         hold = pull.part, pull.point
-        x, y, z = went.get(hold) or _at(self._poses[0], self._poses[1], body, *_floats(pull.point))
+        x, y, z = went.get(hold) or _at(self._bodies, body, _floats(pull.point))
         a, b, c = pull.target
-        self._goes[hold] = goes = (x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z))
+        self._goes[hold] = goes = _floats((x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z)))
         return goes
 
     def velocity(self, body: int, point: Array) -> Array:
         """True linear velocity (3,) in W of a point (3,) in W of a body [m/s]."""
-        return np.array(_velocity(*self._motion, self._roots[body], body, _floats(point)))
+        return np.array(_velocity(self._bodies, self._roots[body], body, _floats(point)))
 
 
 def _floats(three: Sequence[float] | Array) -> Triple:
@@ -93,18 +103,20 @@ def _floats(three: Sequence[float] | Array) -> Triple:
 # Numba: arrays are written in place.
 
 
-@numba.njit(cache=True)
-def _velocity(cvel, tree_com, root, body, point):
+@kernel
+def _velocity(bodies, root, body, point):
     """MuJoCo keeps a body's motion as angular and linear velocity at the centre of mass of its tree."""
-    wx, wy, wz, vx, vy, vz = cvel[body]
-    x, y, z = point[0] - tree_com[root, 0], point[1] - tree_com[root, 1], point[2] - tree_com[root, 2]
+    wx, wy, wz, vx, vy, vz = bodies.motion[body]
+    c = bodies.trees[root]
+    x, y, z = point[0] - c[0], point[1] - c[1], point[2] - c[2]
     return vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x
 
 
-@numba.njit(cache=True)
-def _at(positions, orientations, body, x, y, z):
-    """Where a point (x, y, z) of a body is."""
-    p, R = positions[body], orientations[body]
+@kernel
+def _at(bodies, body, point):
+    """Where a point (3,) of a body is."""
+    p, R = bodies.xpos[body], bodies.xmat[body]
+    x, y, z = point
     return (
         p[0] + R[0] * x + R[1] * y + R[2] * z,
         p[1] + R[3] * x + R[4] * y + R[5] * z,
@@ -112,11 +124,12 @@ def _at(positions, orientations, body, x, y, z):
     )
 
 
-@numba.njit(cache=True)
-def _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, tx, ty, tz):
-    """Add a wrench at a point (x, y, z) of a body; returns the point in W."""
-    c, w = centres[body], applied[body]
-    px, py, pz = _at(positions, orientations, body, x, y, z)
+@kernel
+def _push(bodies, body, point, wrench):
+    """Add a wrench (6,) at a point (3,) of a body; returns the point in W."""
+    c, w = bodies.centres[body], bodies.applied[body]
+    px, py, pz = _at(bodies, body, point)
+    fx, fy, fz, tx, ty, tz = wrench
     x, y, z = px - c[0], py - c[1], pz - c[2]
     w[0] += fx
     w[1] += fy
@@ -127,16 +140,20 @@ def _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, 
     return px, py, pz
 
 
-@numba.njit(cache=True)
-def _pull(positions, orientations, centres, cvel, tree_com, root, body, applied, x, y, z, to_x, to_y, to_z, cap):
-    """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder."""
-    point = _push(positions, orientations, centres, body, applied, x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    vx, vy, vz = _velocity(cvel, tree_com, root, body, point)
-    fx = STIFFNESS * (to_x - point[0]) - DAMPING * vx
-    fy = STIFFNESS * (to_y - point[1]) - DAMPING * vy
-    fz = STIFFNESS * (to_z - point[2]) - DAMPING * vz
+@kernel
+def _pull(bodies, root, body, held):
+    """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder.
+
+    `held`: point of the body (3,), where it shall be (3,), largest force.
+    """
+    hold, target, cap = held
+    point = _push(bodies, body, hold, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    vx, vy, vz = _velocity(bodies, root, body, point)
+    fx = STIFFNESS * (target[0] - point[0]) - DAMPING * vx
+    fy = STIFFNESS * (target[1] - point[1]) - DAMPING * vy
+    fz = STIFFNESS * (target[2] - point[2]) - DAMPING * vz
     size = np.sqrt(fx * fx + fy * fy + fz * fz)
     share = cap / size if size > cap else 1.0
     fx, fy, fz = fx * share, fy * share, fz * share
-    _push(positions, orientations, centres, body, applied, x, y, z, fx, fy, fz, 0.0, 0.0, 0.0)
+    _push(bodies, body, hold, (fx, fy, fz, 0.0, 0.0, 0.0))
     return point, (fx, fy, fz)

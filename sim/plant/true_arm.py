@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import mujoco
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +11,8 @@ from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 from sim.plant.applied_touches import Hands
 from sim.plant.attached_payload import Payload
-from sim.plant.joint_friction import Friction, input_side
+from sim.plant.joint_friction import Friction
+from sim.plant.joint_state import PhysicsInput, PhysicsState, drive, finish, gather, plant_record, poses, sliding
 from sim.plant.model import SENSORS, Step, build
 from sim.plant.objects import set_contact_stiffness
 from sim.plant.touch import Touch
@@ -23,7 +23,6 @@ Array = NDArray[np.float64]
 WARMTH_TICKS = 50  # temperatures change over minutes: one update in 0.1 s
 BRAKE_STIFFNESS = 50.0  # of a closed brake, times that of the joint's bristles: a disc against rolling seals
 LUGRE_STIFFNESS, LUGRE_DAMPING = 5, 6  # where an actuator's dynamics parameters have the bristles'
-SIGN_SPEED = 0.01  # [rad/s]
 
 
 class Plant:
@@ -51,30 +50,28 @@ class Plant:
         self._dof_q = np.array([model.joint(f"q/{name}").dofadr[0] for name in joints])
         self._dof_theta = np.array([model.joint(f"theta/{name}").dofadr[0] for name in joints])
         values = arm.transmissions
-        springs = np.array([values.stiffness, values.stiffening, values.damping, values.hysteresis_stiffness])
+        self.record = plant_record(arm.n, self.step.substeps, 3 * len(SENSORS))
+        own = self.record[0]
+        own["stiffness"], own["stiffening"], own["damping"] = values.stiffness, values.stiffening, values.damping
+        own["slip_stiffness"] = values.hysteresis_stiffness
+        own["at_q"], own["at_theta"], own["dof_q"], own["dof_theta"] = self._at_q, self._at_theta, self._dof_q, self._dof_theta
+        own["spring"], own["slip"], own["slip_state"] = self._springs, self._slips, self._slip_state
         self._brakes, self._braked = np.array(arm.limits.torque), False
-        self._held = np.zeros(arm.n)  # by the brakes, as they are
+        self._held, self._heat = own["held"], own["heat"]
         self._rubs = np.array([model.actuator(f"friction/theta/{name}").id for name in joints])
         self._links = np.array([model.body(name).id for name in ("foot", *joints, "flange")])
         self._parts = {model.body(int(i)).name: int(i) for i in self._links}
         self._parts["tool"] = self._parts["flange"]
         self.world = World(model, data, scenario.world, self.step.tick)
         self.payload = Payload(model, data, scenario.payload_true, scenario.world)
-        self._history = self._history_indices()
-        self.flange = np.zeros(3 * len(SENSORS))
-        self.temperature = np.full(arm.n, arm.frictions.temperature)
+        own["rubs"], own["kept"] = self._rubs, self._history_indices()
+        self.flange, self.temperature, self.friction_in = own["flange"], own["temperature"], own["friction_in"]
+        self.temperature[:] = arm.frictions.temperature
         self.ambient = arm.thermals.ambient
-        self._heat = np.zeros(arm.n)
-        own = np.zeros((5, arm.n))
-        self.q, self.theta, self.qd, self.theta_d, self.tau_J = own
-        self.friction_in = np.zeros(arm.n)
-        at = (self._at_q, self._at_theta, self._dof_q, self._dof_theta, self._springs, self._slips, self._slip_state)
-        self._addresses = np.stack(at)
-        self._bias = model.actuator_biasprm
+        self.q, self.theta, self.qd, self.theta_d, self.tau_J = (own[k] for k in ("q", "theta", "qd", "theta_d", "tau_J"))
         # MuJoCo's own arrays: asking for one costs as much as a kernel.
-        state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic)
-        self._gathered = (*state, self._addresses, springs, own)
-        self._applied, self._measured = data.qfrc_applied, data.history
+        self._state = PhysicsState(data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic, data.history)
+        self._driven = PhysicsInput(model.actuator_biasprm, data.qfrc_applied)
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)
@@ -146,10 +143,9 @@ class Plant:
             self.world.advance()
         if braked is not self._braked:
             self._brake(braked)
-        state = (self.theta_d, self.tau_J, self.temperature, *self.friction.curves, self.friction_in)
-        _drive(*state, self._held, self._bias, self._rubs, self._applied, self._dof_theta, motor_torque)
+        drive(self.record, self.friction.record, self._driven, motor_torque)
         mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
-        _finish(*self._gathered, self._measured, self._history, self.flange, self._heat, self.friction_in)
+        finish(self.record, self._state)
         self.tick += 1
         if self.tick % WARMTH_TICKS == 0:
             self._warm()
@@ -171,7 +167,7 @@ class Plant:
         values[self._rubs, LUGRE_DAMPING] *= math.sqrt(factor)
         self.data.act[at] = held / values[self._rubs, LUGRE_STIFFNESS]
         self._braked = braked
-        self._held = self._brakes if braked else np.zeros_like(self._brakes)
+        self._held[:] = self._brakes if braked else 0.0
 
     def _warm(self) -> None:
         """First-order warming of each joint by its own friction loss."""
@@ -179,7 +175,7 @@ class Plant:
         span = WARMTH_TICKS * self.step.tick
         loss = self._heat / WARMTH_TICKS
         outflow = (self.temperature - self.ambient) / np.array(thermals.resistance)
-        self.temperature = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
+        self.temperature[:] = self.temperature + span * (loss - outflow) / np.array(thermals.capacity)
         self._heat[:] = 0.0
 
     def rest(self, seconds: int) -> None:
@@ -189,7 +185,7 @@ class Plant:
         """
         thermals = self.arm.thermals
         cooled = np.exp(-seconds / (np.array(thermals.resistance) * np.array(thermals.capacity)))
-        self.temperature = self.ambient + (self.temperature - self.ambient) * cooled
+        self.temperature[:] = self.ambient + (self.temperature - self.ambient) * cooled
         self.data.time += seconds
         self.tick += round(seconds / self.step.tick)
 
@@ -202,76 +198,16 @@ class Plant:
 
         The sign of a speed is blurred over some mrad/s: a joint at rest slides neither way.
         """
-        friction = self.friction
-        return _sliding(self.theta_d, self.qd, self.friction_in, friction.output_coulomb, friction.output_viscous)
+        return sliding(self.record, self.friction.record)
 
     def poses(self) -> Array:
         """Poses (n + 2, 7) in W of foot, links and flange: position [m], quaternion wxyz."""
-        return _poses(*self.frames, self._links)
+        return poses(*self.frames, self._links)
 
     def object_poses(self) -> Array:
         """Poses (m, 7) in W of the world objects."""
-        return _poses(*self.frames, self.world.bodies)
+        return poses(*self.frames, self.world.bodies)
 
     def _read(self) -> None:
         """Gather the state at the tick's end, and the true transmission torque."""
-        _gather(*self._gathered)
-
-
-# Numba: a few hundred scalar operations a tick cost less than one call of numpy each. Arrays are written in place.
-
-
-@numba.njit(cache=True)
-def _gather(qpos, qvel, length, rate, plastic, at, springs, own) -> None:
-    q, theta, qd, theta_d, tau_J = own
-    for i in range(q.size):
-        stiffness, cubic, damping, slip_stiffness = springs[:, i]
-        q[i], theta[i] = qpos[at[0, i]], qpos[at[1, i]]
-        qd[i], theta_d[i] = qvel[at[2, i]], qvel[at[3, i]]
-        x = length[at[4, i]]
-        slip = slip_stiffness * (length[at[5, i]] - plastic[at[6, i]])
-        tau_J[i] = x * (stiffness + cubic * x * x) + damping * rate[at[4, i]] + slip
-
-
-@numba.njit(cache=True)
-def _poses(positions, orientations, bodies):
-    out = np.empty((bodies.size, 7))
-    for k in range(bodies.size):
-        for i in range(3):
-            out[k, i] = positions[bodies[k], i]
-        for i in range(4):
-            out[k, 3 + i] = orientations[bodies[k], i]
-    return out
-
-
-@numba.njit(cache=True)
-def _sliding(motor_speed, speed, inner, coulomb, viscous):
-    out = np.empty(speed.size)
-    for i in range(speed.size):
-        out[i] = (inner[i] + coulomb[i]) * np.tanh(motor_speed[i] / SIGN_SPEED) + viscous[i] * speed[i]
-    return out
-
-
-@numba.njit(cache=True)
-def _drive(
-    speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction, held, bias, rows, applied, at, torque
-) -> None:
-    """Friction of this tick, with what closed brakes hold, and the motors' torques."""
-    input_side(speed, tau_J, temperature, coefficients, breakaway, load, factor, shape, friction)
-    for i in range(rows.size):
-        friction[i] += held[i]
-        bias[rows[i], 3] = bias[rows[i], 4] = friction[i]
-        applied[at[i]] = torque[i]
-
-
-@numba.njit(cache=True)
-def _finish(qpos, qvel, length, rate, plastic, at, springs, own, history, kept, flange, heat, friction) -> None:
-    """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
-    _gather(qpos, qvel, length, rate, plastic, at, springs, own)
-    for j in range(flange.size):
-        total = 0.0
-        for k in range(kept.shape[0]):
-            total += history[kept[k, j]]
-        flange[j] = total / kept.shape[0]
-    for i in range(heat.size):
-        heat[i] += abs(friction[i] * own[3, i])
+        gather(self.record, self._state)

@@ -1,1 +1,1 @@
-"""Rigid-body dynamics as the controller believes it. Uses arm/."""
+"""Rigid-body dynamics as the controller believes it. Uses arm/, compiled/."""

@@ -2,10 +2,10 @@
 
 import math
 
-import numba
+from sim.compiled.kernel import kernel
 
 
-@numba.njit(cache=True)
+@kernel
 def factor(a, m) -> None:
     """Overwrite the lower triangle of the positive definite matrix a[:m, :m] with its Cholesky factor."""
     for i in range(m):
@@ -16,7 +16,7 @@ def factor(a, m) -> None:
             a[i, j] = math.sqrt(rest) if i == j else rest / a[j, j]
 
 
-@numba.njit(cache=True)
+@kernel
 def solve(a, b, m) -> None:
     """Overwrite b[:m] with the solution of the system that `factor` has factored into `a`."""
     for i in range(m):

@@ -1,14 +1,13 @@
 """What every tick needs of the controller's rigid model, in one compiled pass over the joints of Pinocchio's model."""
 
-import numba
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 
-# Columns of the constants: a joint's placement in the joint before it, then its link in its own frame.
-P_AT, R_AT, MASS, COM, INERTIA, WIDTH = 0, 3, 12, 13, 16, 25
+Array = NDArray[np.float64]
 
 
 class NewtonEuler:
@@ -37,27 +36,42 @@ class NewtonEuler:
     def __init__(self, model: pin.Model, flange: pin.SE3, elbow: int) -> None:
         n = model.nv
         self._model = model
-        self._constants = np.zeros((n + 1, WIDTH))
-        placements = [model.jointPlacements[i + 1] for i in range(n)] + [flange]
-        for row, placement in zip(self._constants, placements, strict=True):
-            row[P_AT:R_AT] = placement.translation
-            row[R_AT:MASS] = placement.rotation.ravel()
-        self._gravity = np.array(model.gravity.linear)
-        self._elbow_at = elbow
-        self.torque = np.zeros(n)
-        self.p, self.R, self.v_F = np.zeros(3), np.eye(3), np.zeros(6)
-        self.jacobian = np.zeros((6, n))
-        self.origins = np.zeros((n, 3))
-        self.energy = np.zeros(1)
-        self.tcp, self.elbow = np.zeros((2, 6))
+        self.record = record(
+            # Of a joint, and of the flange: its placement in the joint before it, then its link in its own frame.
+            p_at=(n + 1, 3),
+            R_at=(n + 1, 9),
+            mass=(n,),
+            com=(n, 3),
+            inertia=(n, 3, 3),
+            gravity=(3,),
+            elbow_joint="i8",
+            torque=(n,),
+            p=(3,),
+            R=(3, 3),
+            jacobian=(6, n),
+            v_F=(6,),
+            origins=(n, 3),
+            energy=(1,),
+            tcp=(6,),
+            elbow=(6,),
+        )
+        own = self.record[0]
+        for i, placement in enumerate([*(model.jointPlacements[i + 1] for i in range(n)), flange]):
+            own["p_at"][i] = placement.translation
+            own["R_at"][i] = placement.rotation.ravel()
+        own["gravity"] = model.gravity.linear
+        own["elbow_joint"] = elbow
+        own["R"] = np.eye(3)
+        self.torque, self.p, self.R, self.v_F = own["torque"], own["p"], own["R"], own["v_F"]
+        self.jacobian, self.origins, self.energy = own["jacobian"], own["origins"], own["energy"]
+        self.tcp, self.elbow = own["tcp"], own["elbow"]
 
     def set_load(self) -> None:
         """Take the inertias that Pinocchio's model has now."""
+        own = self.record[0]
         for i in range(self._model.nv):
-            body, row = self._model.inertias[i + 1], self._constants[i]
-            row[MASS] = body.mass
-            row[COM:INERTIA] = body.lever
-            row[INERTIA:] = body.inertia.ravel()
+            body = self._model.inertias[i + 1]
+            own["mass"][i], own["com"][i], own["inertia"][i] = body.mass, body.lever, body.inertia
 
     def run(self, q: Array, motion: Array, tcp: Array) -> tuple[float, float]:
         """Fill the attributes; returns the speeds of the tool centre point and of the elbow [m/s].
@@ -67,17 +81,16 @@ class NewtonEuler:
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             tcp: tool centre point in F (3,) [m].
         """
-        outcome = (self.torque, self.p, self.R, self.jacobian, self.v_F, self.origins, self.tcp, self.elbow, self.energy)
-        return _run(q, motion, self._constants, self._gravity, self._elbow_at, tcp, *outcome)
+        return _run(self.record, q, motion, tcp)
 
 
-@numba.njit(cache=True)
+@kernel
 def cross(a, b):
     """Cross product of two triples or vectors, as a triple."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@numba.njit(cache=True)
+@kernel
 def turned(R, a):
     """R a."""
     return (
@@ -87,7 +100,7 @@ def turned(R, a):
     )
 
 
-@numba.njit(cache=True)
+@kernel
 def turned_back(R, a):
     """R^T a."""
     return (
@@ -97,35 +110,41 @@ def turned_back(R, a):
     )
 
 
-@numba.njit(cache=True)
+@kernel
 def _norm(a):
     return np.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-@numba.njit(cache=True)
-def _place(row, behind_p, behind_R, p, R) -> None:
-    """Pose (p, R) of the frame that `row` places in the frame (behind_p, behind_R)."""
+@kernel
+def _place(model, i, behind, pose) -> None:
+    """Pose (p, R) of joint i, of the flange after the last, placed in the pose `behind` of the joint before it."""
+    p_at, R_at = model.p_at[i], model.R_at[i]
+    behind_p, behind_R = behind
+    p, R = pose
     for k in range(3):
         p[k] = behind_p[k]
         for m in range(3):
-            p[k] += behind_R[k, m] * row[P_AT + m]
-            R[k, m] = behind_R[k, 0] * row[R_AT + m] + behind_R[k, 1] * row[R_AT + 3 + m] + behind_R[k, 2] * row[R_AT + 6 + m]
+            p[k] += behind_R[k, m] * p_at[m]
+            R[k, m] = behind_R[k, 0] * R_at[m] + behind_R[k, 1] * R_at[3 + m] + behind_R[k, 2] * R_at[6 + m]
 
 
-@numba.njit(cache=True)
-def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, v_F, origins, tip, bend, energy):
+@kernel
+def _run(rigid, q, motion, tcp):
+    own = rigid[0]
+    p_F, R_F, v_F, jacobian, tip = own.p, own.R, own.v_F, own.jacobian, own.tcp
     n = q.size
     p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
     behind_p, behind_R = np.zeros(3), np.eye(3)
     for i in range(n):
-        _place(constants[i], behind_p, behind_R, p[i], R[i])
+        _place(own, i, (behind_p, behind_R), (p[i], R[i]))
         c, s = np.cos(q[i]), np.sin(q[i])
         for k in range(3):
             x, y = R[i, k, 0], R[i, k, 1]
             R[i, k, 0], R[i, k, 1] = c * x + s * y, c * y - s * x
         behind_p, behind_R = p[i], R[i]
-    _place(constants[n], behind_p, behind_R, p_F, R_F)
+    _place(own, n, (behind_p, behind_R), (p_F, R_F))
     p[n] = p_F
+    origins = own.origins
     for i in range(n):
         origins[i] = p[i]
         z = (R[i, 0, 2], R[i, 1, 2], R[i, 2, 2])
@@ -133,7 +152,7 @@ def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, 
         linear = cross(z, arm)
         for k in range(3):
             jacobian[k, i], jacobian[3 + k, i] = linear[k], z[k]
-    v_elbow = _inverse(p, R, motion, constants, gravity, elbow, torque, bend, energy)
+    v_elbow = _inverse(own, p, R, motion)
     for k in range(6):
         v_F[k] = 0.0
         for i in range(n):
@@ -145,12 +164,13 @@ def _run(q, motion, constants, gravity, elbow, tcp, torque, p_F, R_F, jacobian, 
     return _norm((v_F[0] + swing[0], v_F[1] + swing[1], v_F[2] + swing[2])), v_elbow
 
 
-@numba.njit(cache=True)
-def _inverse(p, R, motion, constants, gravity, elbow, torque, bend, energy):
-    """Torques (n,) of a motion, its kinetic energy (1,), the speed of the elbow, and where the elbow is and how it moves (6,).
+@kernel
+def _inverse(own, p, R, motion):
+    """Torques of a motion, its kinetic energy, where the elbow is and how it moves; returns the elbow's speed.
 
     The base accelerates upwards: that is gravity.
     """
+    torque, bend, energy, gravity, elbow = own.torque, own.elbow, own.energy, own.gravity, own.elbow_joint
     n = torque.size
     force, moment = np.empty((n, 3)), np.empty((n, 3))
     w, alpha, v = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -179,20 +199,20 @@ def _inverse(p, R, motion, constants, gravity, elbow, torque, bend, energy):
         w = (w[0] + spin[0], w[1] + spin[1], w[2] + spin[2])
         last = here
 
-        row = constants[i]
-        com = turned(R[i], (row[COM], row[COM + 1], row[COM + 2]))
+        at = own.com[i]
+        com = turned(R[i], (at[0], at[1], at[2]))
         tangential, normal = cross(alpha, com), cross(w, cross(w, com))
-        inertia = row[INERTIA:WIDTH].reshape(3, 3)
+        inertia, mass = own.inertia[i], own.mass[i]
         rate, local = turned_back(R[i], alpha), turned_back(R[i], w)
         spun = turned(inertia, local)
         whirl = cross(local, spun)
         going = cross(w, com)
         energy[0] += 0.5 * (spun[0] * local[0] + spun[1] * local[1] + spun[2] * local[2])
-        energy[0] += 0.5 * row[MASS] * _norm((v[0] + going[0], v[1] + going[1], v[2] + going[2])) ** 2
+        energy[0] += 0.5 * mass * _norm((v[0] + going[0], v[1] + going[1], v[2] + going[2])) ** 2
         change = turned(inertia, rate)
         moment_com = turned(R[i], (change[0] + whirl[0], change[1] + whirl[1], change[2] + whirl[2]))
         for k in range(3):
-            force[i, k] = row[MASS] * (a[k] + tangential[k] + normal[k])
+            force[i, k] = mass * (a[k] + tangential[k] + normal[k])
             moment[i, k] = moment_com[k]
         lever = cross(com, (force[i, 0], force[i, 1], force[i, 2]))
         for k in range(3):

@@ -1,12 +1,14 @@
 """What a real controller could measure: averaged, distorted, noisy, quantised, saturated and late."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.arm_file import Arm, Channels
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
 from sim.plant.changes import SensorFault
 from sim.plant.true_arm import Plant
 from sim.sensing.calibration import Calibration
@@ -40,6 +42,15 @@ class Sample:
     acceleration_valid: bool
 
 
+class Measured(NamedTuple):
+    """What is measured in a tick, as it is, n joints."""
+
+    theta: Array  # (n,) [rad]
+    q: Array  # (n,) [rad]
+    current: Array  # (n,) [A]
+    flange: Array  # (18,) as sim.plant.model.SENSORS
+
+
 class Sensors:
     """All sensors of an arm.
 
@@ -62,9 +73,21 @@ class Sensors:
         encoders, force_torque = sensors.encoders, sensors.force_torque
         motor = 2.0 * np.pi / encoders.motor_counts / np.array(arm.motors.gear)
         output = 2.0 * np.pi / encoders.output_counts
-        # One block, for each array that is handed to a kernel costs as much as ten channels' arithmetic.
-        self._channels = np.zeros((5, size))
-        self._bias, self._rates, self._gain, self._quantum, self._range = self._channels
+        self._record = record(
+            wrench_gain=(6, 6),
+            ripple=(n, 2),  # of the output encoders
+            phase=(n, 2),
+            bias=(size,),
+            rate=(size,),  # of the bias
+            gain=(size,),  # of the noise
+            quantum=(size,),
+            span=(size,),
+            noise=(NOISE_BLOCK, size),
+        )
+        own = self._record[0]
+        own["wrench_gain"], own["ripple"], own["phase"] = calibration.wrench_gain, calibration.ripple, calibration.ripple_phase
+        self._bias, self._rates, self._gain, self._quantum = own["bias"], own["rate"], own["gain"], own["quantum"]
+        self._range, self._noise = own["span"], own["noise"]
         self._gain[:], self._quantum[:], self._range[:] = 1.0, 1.0, np.inf
         self._sigma = np.zeros(size)
         self._quantum[:n], self._sigma[:n] = motor, encoders.noise_counts * motor
@@ -82,13 +105,11 @@ class Sensors:
         for name, present in (("force_torque", force_torque), ("accelerometer", sensors.accelerometer), ("gyro", sensors.gyro)):
             if present is None:
                 self._out[self._groups[name]] = True
-        self._noise = np.empty((NOISE_BLOCK, size))
         self._temperature_sensor = sensors.temperature
         self._temperature = np.zeros(n)
         self._rows = [_sample(np.empty(size), n) for _ in range(LATENCY + 2)]  # on their way, and the last that arrived
         self._next = 0
         self._line: list[Sample] = []
-        self._distortion = (calibration.wrench_gain, calibration.ripple, calibration.ripple_phase)
         self._any_out = bool(self._out.any())
         self._suspect = 0  # samples yet to arrive that may hold what is not a number
 
@@ -138,9 +159,9 @@ class Sensors:
         """
         left = -tick % NOISE_BLOCK  # ticks until the next second begins
         for begin in range(tick + left, tick + left + seconds * NOISE_BLOCK, NOISE_BLOCK):
-            _pass(self._channels, left, tick_length)
+            _pass(self._record, left, tick_length)
             self._begin_second(begin)
-            _pass(self._channels, NOISE_BLOCK - left, tick_length)
+            _pass(self._record, NOISE_BLOCK - left, tick_length)
 
     def read(self, plant: Plant, current: Array) -> Sample:
         """Measure the tick that `plant` has just finished; returns what arrives now, `LATENCY` ticks later.
@@ -160,11 +181,8 @@ class Sensors:
         self._next = (self._next + 1) % len(self._rows)
         sample = self._rows[self._next]
         value = sample.values
-        gain, ripple, phase = self._distortion
         passed = plant.step.tick if line else 0.0  # before the first sample no time has passed
-        _measure(
-            plant.theta, plant.q, current, plant.flange, gain, ripple, phase, self._channels, self._noise, row, passed, value,
-        )  # fmt: skip
+        _measure(self._record, Measured(plant.theta, plant.q, current, plant.flange), (row, passed), value)
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
@@ -213,10 +231,13 @@ def _sample(values: Array, n: int) -> Sample:
     )
 
 
-@numba.njit(cache=True)
-def _measure(theta, q, current, flange, wrench_gain, ripple, phase, channels, noises, row, tick, out) -> None:
-    bias, rate, noise_gain, quantum, span = channels[0], channels[1], channels[2], channels[3], channels[4]
-    n, noise = theta.size, noises[row]
+@kernel
+def _measure(sensors, measured, now, out) -> None:
+    own = sensors[0]
+    theta, q, current, flange = measured
+    row, tick = now
+    ripple, phase, noise = own.ripple, own.phase, own.noise[row]
+    n = theta.size
     for i in range(n):
         out[i] = theta[i]
         out[n + i] = q[i] + ripple[i, 0] * np.sin(q[i] + phase[i, 0]) + ripple[i, 1] * np.sin(2.0 * q[i] + phase[i, 1])
@@ -224,20 +245,20 @@ def _measure(theta, q, current, flange, wrench_gain, ripple, phase, channels, no
     for j in range(6):
         total = 0.0
         for k in range(6):
-            total += wrench_gain[j, k] * flange[k]
+            total += own.wrench_gain[j, k] * flange[k]
         out[3 * n + j] = total
     for j in range(6, flange.size):
         out[3 * n + j] = flange[j]
     for k in range(out.size):
-        bias[k] += rate[k] * tick
-        value = np.rint((out[k] + bias[k] + noise[k] * noise_gain[k]) / quantum[k]) * quantum[k]
-        out[k] = min(max(value, -span[k]), span[k])
+        own.bias[k] += own.rate[k] * tick
+        value = np.rint((out[k] + own.bias[k] + noise[k] * own.gain[k]) / own.quantum[k]) * own.quantum[k]
+        out[k] = min(max(value, -own.span[k]), own.span[k])
 
 
-@numba.njit(cache=True)
-def _pass(channels, count, tick) -> None:
+@kernel
+def _pass(sensors, count, tick) -> None:
     """`count` ticks of the zeros alone, added up one by one as `_measure` does."""
-    bias, rate = channels[0], channels[1]
+    bias, rate = sensors[0].bias, sensors[0].rate
     for _ in range(count):
         for k in range(bias.size):
             bias[k] += rate[k] * tick

@@ -139,8 +139,8 @@ def test_what_the_joints_learned_from_the_old_load_is_forgotten() -> None:
     device.run(0.8)
     device.start_joint_move([0.0, -1.2, 1.5, -1.87, -0.77, 0.8], 0.6)
     device.run(1.5)
-    learned = device.simulation.estimator.transmission.correction
-    assert np.abs(learned[0]).max() > 0.02
+    learned = device.simulation.estimator.transmission.stiffer
+    assert np.abs(learned).max() > 0.02
     device.tick(wish(load=Load(mass=2.0, com=[0.02, 0.0, 0.06])))
     device.run(0.4)
     assert np.abs(learned).max() == 0.0

@@ -52,11 +52,11 @@ class Held:
 
     @property
     def values(self) -> np.ndarray:
-        return self.module._state[0, : self.module._m].copy()
+        return self.module._record["values"][0][: self.module._record["m"][0]].copy()
 
     @property
     def rows(self) -> np.ndarray:
-        return self.module._rows[: self.module._m].copy()
+        return self.module._record["rows"][0][: self.module._record["m"][0]].copy()
 
     @property
     def torque(self) -> np.ndarray:

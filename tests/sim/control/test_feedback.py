@@ -10,8 +10,7 @@ from msgspec.structs import replace
 from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from sim.control.feedback import Feedback
-from sim.control.torque_feedback import SUPPORT
+from sim.control.feedback import SUPPORT, Feedback
 from sim.motion.moves import Reference
 from sim.motion.references import DELAY
 from tests.sim.arms import UR5E

@@ -11,7 +11,8 @@ from pendant.tick.modes import Law, Mode, Phase
 from pendant.walls.containment import WallState
 from sim.arm.frames import joint_frames, rotation
 from sim.arm.scenario import Load, Scenario
-from sim.control.free_drive_law import APART, BRAKE, BRAKE_SPEED, COMPENSATED, DEAD_ZONE, FELT, HERE, INTENT, FreeDriveLaw
+from sim.control.free_drive_law import COMPENSATED, FreeDriveLaw
+from sim.control.hand_help import APART, BRAKE, BRAKE_SPEED, DEAD_ZONE, FELT, HERE, INTENT
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.exchange.desk import Wishes
 from sim.plant.touch import Pull

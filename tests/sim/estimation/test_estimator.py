@@ -10,8 +10,9 @@ from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
 from sim.arm.frames import joint_frames, rotation_from_rpy
 from sim.arm.scenario import Load, Scenario
-from sim.estimation.estimator import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, Estimator, tracking_gains
+from sim.estimation.estimator import Estimator
 from sim.estimation.flange_forces import FlangeForces
+from sim.estimation.joint_tracking import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, tracking_gains
 from sim.estimation.transmission_torque import DEFLECTION
 from sim.exchange.desk import Wishes
 from sim.plant.changes import AttachPayload, SensorFault
@@ -404,7 +405,7 @@ def test_a_hand_is_never_learned(part: str, forwards: list[float]) -> None:
     bench = Bench(Scenario(seed=1003, posture=posture, payload_true=load, payload_configured=load))
     bench.enter()
     estimator = bench.simulation.estimator
-    known = (estimator.friction.terms.copy(), estimator.transmission.correction.copy())
+    known = (estimator.friction.terms.copy(), estimator.transmission.stiffer.copy())
     untouched = means(bench, 0.3)["tau_ext"]
     body = bench.plant.model.body(part).id
     start = bench.plant.data.xpos[body].copy()
@@ -415,7 +416,7 @@ def test_a_hand_is_never_learned(part: str, forwards: list[float]) -> None:
     assert (bench.plant.data.xpos[body] - start) @ forwards > 0.055, "it goes along"
     assert bench.mode is Mode.FREE_DRIVE, "who guides the arm by its elbow is somebody (FD-19)"
     assert (estimator.friction.terms == known[0]).all()
-    assert (estimator.transmission.correction == known[1]).all()
+    assert (estimator.transmission.stiffer == known[1]).all()
     bench.run(0.5)
     assert np.abs(means(bench, 0.3)["tau_ext"] - untouched).max() < 4.0
 
@@ -434,8 +435,8 @@ def test_an_arm_that_is_held_learns_nothing_from_a_push() -> None:
     bench = Bench(Scenario(seed=2303, mounting=TILTED, posture=LEANING, payload_true=load, payload_configured=load))
     bench.run(0.5)
     estimator = bench.simulation.estimator
-    known = (estimator.friction.terms.copy(), estimator.transmission.correction.copy())
+    known = (estimator.friction.terms.copy(), estimator.transmission.stiffer.copy())
     for _ in range(3):
         assert pushed_and_left(bench).max() < 2.0
     assert (estimator.friction.terms == known[0]).all()
-    assert (estimator.transmission.correction == known[1]).all()
+    assert (estimator.transmission.stiffer == known[1]).all()

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pendant.tick.modes import TICK
-from sim.estimation.transmission_torque import SETTLE_TICKS, TransmissionTorque
+from sim.estimation.transmission_torque import SETTLE_TICKS, Rubbing, TransmissionTorque
 from tests.sim.arms import UR5E
 
 N = UR5E.n
@@ -37,7 +37,7 @@ class Gears:
     ) -> TransmissionTorque:
         for row, value in zip(self.module.ways, (dynamics, deflection, motor), strict=True):
             row[:] = value
-        self.module.update(np.full(N, friction_deviation), CALM, np.full(N, acceleration), moving=moving, use=use)
+        self.module.update(Rubbing(np.full(N, friction_deviation), CALM, np.full(N, acceleration)), moving=moving, use=use)
         return self.module
 
 
@@ -178,10 +178,10 @@ def test_a_day_of_motion_without_load_does_not_make_a_joint_deaf_to_contact() ->
     gears, load = Gears(), 20.0
     fresh = gears.tick(load, load, load).external_deviation.copy()
     gears.module.forget()
-    gears.module._walk[:] *= 86400.0 / (2000 * TICK)  # 2,000 ticks wander as far as a day does
+    gears.module.record["walk"] *= 86400.0 / (2000 * TICK)  # 2,000 ticks wander as far as a day does
     for _ in range(2000):
         gears.tick(0.0, 0.0, 0.0, moving=True)
-    assert (np.linalg.eigvalsh(gears.module._covariance) > 0.0).all()
+    assert (np.linalg.eigvalsh(gears.module.record["covariance"][0]) > 0.0).all()
     late = gears.tick(load, load, load)
     assert (late.external_deviation < 1.1 * fresh).all()
     assert gears.tick(load, 2.0 * load, load).contact, "it had been believed to be 0.6 ± 0.6 as stiff"
@@ -229,11 +229,11 @@ def test_a_sudden_external_torque_is_a_contact_until_it_has_been_gone_for_a_whil
     pushed = load + np.array([0.0, 0.0, 15.0, 0.0, 0.0, 0.0])
     gears.tick(load, pushed, load, moving=True)
     assert gears.module.contact
-    corrected = gears.module.correction.copy()
+    corrected = gears.module.stiffer.copy(), gears.module.offset.copy()
     for tick in range(120):
         gears.tick(load, load, load, moving=True)
         assert gears.module.contact == (tick < SETTLE_TICKS - 1)
-    assert np.abs(gears.module.correction - corrected).max() < 0.05
+    assert np.abs(np.subtract((gears.module.stiffer, gears.module.offset), corrected)).max() < 0.05
 
 
 def test_in_contact_the_rigid_model_is_trusted_less() -> None:

@@ -11,7 +11,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Load, Scenario
 from sim.plant.applied_touches import RESPONSE
-from sim.plant.joint_friction import Friction, input_side
+from sim.plant.joint_friction import Friction, Sliding, input_side
 from sim.plant.model import Step
 from sim.plant.touch import Pull, Push
 from sim.plant.true_arm import Plant
@@ -178,11 +178,11 @@ def test_friction_rises_with_load_and_wear_and_falls_with_temperature() -> None:
     friction = Friction(UR5E)
     speed, out = np.full(6, 0.5), np.zeros((4, 6))
     cold, warm = np.full(6, 44.0), np.full(6, 54.0)
-    input_side(speed, np.zeros(6), cold, *friction.curves, out[0])
-    input_side(speed, np.full(6, -40.0), cold, *friction.curves, out[1])
-    input_side(speed, np.zeros(6), warm, *friction.curves, out[2])
+    input_side(friction.record, Sliding(speed, np.zeros(6), cold), out[0])
+    input_side(friction.record, Sliding(speed, np.full(6, -40.0), cold), out[1])
+    input_side(friction.record, Sliding(speed, np.zeros(6), warm), out[2])
     friction.factor[:] = 1.4
-    input_side(speed, np.zeros(6), cold, *friction.curves, out[3])
+    input_side(friction.record, Sliding(speed, np.zeros(6), cold), out[3])
     assert np.allclose(out[1] - out[0], 40.0 * np.array(UR5E.frictions.load))
     assert np.allclose(out[2] / out[0], 1.0 + 10.0 * UR5E.frictions.per_kelvin)
     assert np.allclose(out[3] / out[0], 1.4)

@@ -1,0 +1,163 @@
+"""What the hand asks of each joint, felt by the flange sensor and by the joints, and the help that it gets (FD-3, AF-7)."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.estimation.joint_tracking import TORQUE_BANDWIDTH
+from sim.estimation.transmission_torque import DYNAMICS
+
+Array = NDArray[np.float64]
+
+INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
+DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
+HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
+BRAKE, BRAKE_SPEED = 1.5, 0.15  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
+FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
+HERE = 0.25  # share of that uncertainty in the posture of entry, where nobody touched the arm
+APART = 0.25 * math.pi  # all of it so far away [rad]: gears err once and twice a turn
+USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
+FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
+
+
+class Asking(NamedTuple):
+    """What the flange sensor tells of the hand."""
+
+    F_user: Array  # (6,) axes of B [N, N·m]
+    baseline: tuple[float, ...]  # of the sensor (6,) axes of F: it turns with the flange
+    R: Array  # orientation of the flange (3, 3)
+    jacobian: Array  # of the flange (6, n), linear first
+    cap: float  # largest force that is helped [N]
+    gain: float
+
+
+class FeltByJoints(NamedTuple):
+    """What the joints tell of the hand, n joints."""
+
+    ways: Array  # transmission torque each way (3, n) [N·m]
+    tau_ext: Array  # (n,) [N·m]
+    uncertain: Array  # standard deviation of that (n,) [N·m]
+    q: Array  # (n,) [rad]
+    sliding: Array  # friction (n,) [N·m]
+    speed: Array  # of the motors (n,) [rad/s]
+    most: float  # share of the friction that is taken off at most
+
+
+class HandHelp:
+    """Finds what a hand asks of n joints, and takes friction off it. Its memory begins with free-drive.
+
+    Attributes:
+        capped: torque (n,) that the flange sensor explains, its force capped [N·m].
+    """
+
+    def __init__(self, n: int) -> None:
+        self._record = record(
+            hand=(n,),  # what the flange sensor explains of each joint's torque
+            capped=(n,),  # and that with its force capped
+            asked=(n,),  # that, filtered
+            felt=(n,),  # by the joints beyond it, filtered
+            usual=(n,),  # of what is felt
+            late=(3, n),  # transmission torque, `_late`
+            began=(n,),  # angles in which free-drive began
+            smooth=(),
+            lag=(),
+            forget=(),
+            keep=(),
+        )
+        own = self._own = self._record[0]
+        self._asked, self.capped = own["hand"], own["capped"]
+        poles = (2.0 * math.pi * HELP_BANDWIDTH, 2.0 * math.pi * TORQUE_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP)
+        own["smooth"], own["lag"], own["forget"], own["keep"] = (1.0 - math.exp(-pole * TICK) for pole in poles)
+
+    def start(self, estimate: Estimate) -> None:
+        """Free-drive begins: what the joints feel now is no hand."""
+        own = self._own
+        own["asked"], own["felt"], own["usual"], own["began"] = 0.0, 0.0, estimate.tau_ext, estimate.q
+        own["late"] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
+
+    def ask(self, asking: Asking, torque: Array) -> None:
+        """Add to `torque` (n,) [N·m] what the hand at the flange asks for."""
+        _ask(self._record, asking, torque)
+
+    def ask_nothing(self) -> None:
+        """The flange sensor is not to be used in this tick."""
+        self._asked[:] = self.capped[:] = 0.0
+
+    def take_off(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
+        """Take at most this share of the friction off the hand; a joint of which nothing is asked is braked."""
+        torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
+        felt = FeltByJoints(*torques, estimate.q, estimate.friction, estimate.theta_d, share)
+        _take_off(self._record, friction.record, felt, torque)
+
+
+@kernel
+def _ask(law, asking, torque) -> None:
+    """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
+    own = law[0]
+    F_user, baseline, R, jacobian, cap, gain = asking
+    wrench = np.empty(6)
+    for k in range(3):
+        wrench[k], wrench[3 + k] = F_user[k], F_user[3 + k]
+        for m in range(3):
+            wrench[k] -= R[k, m] * baseline[m]
+            wrench[3 + k] -= R[k, m] * baseline[3 + m]
+    size = math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
+    share = cap / size if size > cap else 1.0
+    for i in range(torque.size):
+        asked = 0.0
+        for j in range(6):
+            asked += jacobian[j, i] * wrench[j]
+        own.hand[i], own.capped[i] = asked, share * asked
+        torque[i] += gain * own.capped[i]
+
+
+@kernel
+def _take_off(law, friction, joints, torque) -> None:
+    own, terms, warmth = law[0], friction[0].terms, friction[0].warmth
+    ways, tau_ext, uncertain, q, sliding, speed, most = joints
+    away = 0.0
+    for i in range(q.size):
+        away = max(away, abs(q[i] - own.began[i]))
+    doubt = min(HERE + (1.0 - HERE) * away / APART, 1.0)
+    for i in range(torque.size):
+        breakaway = terms[i, 0] * warmth[i]
+        model = ways[DYNAMICS, i]
+        unexplained = model - _late(own, model - tau_ext[i], i) - own.hand[i] - own.usual[i]
+        own.asked[i] += own.smooth * (own.capped[i] - own.asked[i])
+        own.felt[i] += own.smooth * (unexplained - own.felt[i])
+        ask, felt = own.asked[i], own.felt[i]
+        least = FELT * breakaway + doubt * uncertain[i]
+        over = abs(felt) - least
+        usual = own.usual[i] + (own.keep if over > 0.0 else own.forget) * unexplained
+        # As the gears' errors are learned, what seemed usual must go as well.
+        own.usual[i] = min(max(usual, -USUAL * uncertain[i]), USUAL * uncertain[i])
+        if over > abs(ask):
+            ask = math.copysign(over, felt)
+        size = max(abs(ask) - DEAD_ZONE * breakaway, 0.0)
+        share = min(size / (INTENT * breakaway), 1.0) if breakaway > 0.0 else 1.0
+        torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
+        # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless something pushes it on.
+        along = felt if speed[i] > 0.0 else -felt
+        pushed = min(max(along / least, 0.0), 1.0) if least > 0.0 else 0.0
+        if most == 0.0:
+            share = 0.0
+        torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
+
+
+@kernel
+def _late(own, measured, i) -> float:
+    """What a joint's gear bears, as late as the rigid model, which sees accelerations through the filter of the output angle.
+
+    Without that, links that swing on their springs pass for a hand, and the help for it keeps them swinging.
+    """
+    for k in range(3):
+        own.late[k, i] += own.lag * (measured - own.late[k, i])
+        measured = own.late[k, i]
+    return measured

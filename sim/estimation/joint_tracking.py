@@ -1,0 +1,126 @@
+"""Angles of the joints, tracked: speeds and accelerations, and what the torques of motor and spring are (AF-3)."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.compiled.kernel import kernel
+from sim.compiled.record import Record, record
+from sim.estimation.adaptive_friction import GATE
+
+Array = NDArray[np.float64]
+
+SPEED_BANDWIDTH = 100.0  # of the motor angle's tracking filter [Hz]: above the arm's motion, below the encoders' noise
+TORQUE_BANDWIDTH = 20.0  # of the output angle's, whose accelerations enter torque estimates [Hz]
+
+
+def tracking_gains(bandwidth: float) -> tuple[float, float, float]:
+    """Gains alpha, beta [1/s], gamma [1/s²] of a third-order tracking filter with one triple pole at `bandwidth` [Hz].
+
+    Source: the fading-memory filter of order two (alpha-beta-gamma filter), pole r = exp(-2 pi f T):
+    alpha = 1 - r³, beta = 1.5 (1 - r²)(1 - r) / T, gamma = (1 - r)³ / T².
+    """
+    r = math.exp(-2.0 * math.pi * bandwidth * TICK)
+    return 1.0 - r**3, 1.5 * (1.0 - r * r) * (1.0 - r) / TICK, (1.0 - r) ** 3 / (TICK * TICK)
+
+
+class Angles(NamedTuple):
+    """Encoder values and motor currents of a tick, n joints."""
+
+    theta: Array  # referred to the output [rad]
+    q: Array  # [rad]
+    current: Array  # [A]
+
+
+def joint_record(n: int) -> Record:
+    """What is known of n joints: their constants, their state, and the torques of a tick; still all zero."""
+    return record(
+        torque_constant=(n,),  # of the current, referred to the output [N·m/A]
+        stiffness=(n,),
+        stiffening=(n,),
+        damping=(n,),
+        slip_stiffness=(n,),
+        slip_yield=(n,),
+        rotor=(n,),
+        gains=(2, 3),  # of the filters of motor and output angle
+        theta=(3, n),  # position, speed, acceleration
+        q=(3, n),
+        rest=(n,),  # deflection at which the hysteresis spring is relaxed
+        tau_m=(n,),
+        deflection=(n,),  # torque that the deflection bears
+        surplus=(n,),
+        stiction=(n,),
+    )
+
+
+@kernel
+def surplus(joints, tau_dyn) -> None:
+    """What the motor spends beyond the rotor's inertia and the rigid model."""
+    own = joints[0]
+    for i in range(own.surplus.size):
+        own.surplus[i] = own.tau_m[i] - own.rotor[i] * own.theta[2, i] - tau_dyn[i]
+
+
+@kernel
+def sides(joints, tau_dyn, friction, transmission) -> bool:
+    """Transmission torque seen from the links and from the motor, what stiction may hide, and whether any joint moves."""
+    own, rubs, ways = joints[0], friction[0], transmission[0].ways
+    share, total = rubs.output_share, rubs.total
+    moving = False
+    for i in range(own.stiction.size):
+        ways[0, i] = tau_dyn[i] + share * total[i]
+        ways[2, i] = own.surplus[i] + tau_dyn[i] - (1.0 - share) * total[i]
+        stands = abs(own.theta[1, i]) < GATE
+        own.stiction[i] = rubs.terms[i, 0] * rubs.warmth[i] if stands else 0.0
+        moving = moving or not stands
+    return moving
+
+
+@kernel
+def plan(joints, before, now) -> None:
+    """Add to both states what the plan does in this tick beyond constant acceleration."""
+    theta, q = joints[0].theta, joints[0].q
+    for i in range(before.q.size):
+        jump = now.qdd[i] - before.qdd[i]
+        gain = now.qd[i] - before.qd[i] - TICK * before.qdd[i]
+        way = now.q[i] - before.q[i] - TICK * before.qd[i] - 0.5 * TICK * TICK * before.qdd[i]
+        # The filters' prediction is to end there: it adds TICK·gain and the like from what is put in here.
+        theta[2, i] += jump
+        theta[1, i] += gain - TICK * jump
+        theta[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
+        q[2, i] += jump
+        q[1, i] += gain - TICK * jump
+        q[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
+
+
+@kernel
+def _track(measured, gains, state, i) -> None:
+    alpha, beta, gamma = gains[0], gains[1], gains[2]
+    coasting = state[1, i] + TICK * state[2, i]
+    predicted = state[0, i] + TICK * state[1, i] + 0.5 * TICK * TICK * state[2, i]
+    error = measured - predicted
+    state[0, i] = predicted + alpha * error
+    state[1, i] = coasting + beta * error
+    state[2, i] += gamma * error
+
+
+@kernel
+def follow(joints, angles) -> None:
+    """Track both angles; motor torque from the current, transmission torque from the deflection (AF-3).
+
+    The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
+    """
+    own = joints[0]
+    theta, q, rest = own.theta, own.q, own.rest
+    for i in range(rest.size):
+        _track(angles.theta[i], own.gains[0], theta, i)
+        _track(angles.q[i], own.gains[1], q, i)
+        own.tau_m[i] = own.torque_constant[i] * angles.current[i]
+        x = angles.theta[i] - angles.q[i]
+        rest[i] = min(max(rest[i], x - own.slip_yield[i]), x + own.slip_yield[i])
+        slip = own.slip_stiffness[i] * (x - rest[i])
+        main = x * (own.stiffness[i] + own.stiffening[i] * x * x)
+        own.deflection[i] = main + own.damping[i] * (theta[1, i] - q[1, i]) + slip
