@@ -93,7 +93,7 @@ class ActiveDamping:
             self._how[:] = damping
             if reduced is not None:
                 self._how[:3] = np.minimum(self._how[:3], reduced)
-        moving = ArmMotion(estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow)
+        moving = (estimate.theta_d, jacobian, estimate.p_BF, estimate.tcp, estimate.elbow)
         near = _resist(self._record, moving, torque)
         self.help += TICK / FADE * (1.0 - near - self.help)
 
@@ -101,6 +101,7 @@ class ActiveDamping:
 @kernel
 def _resist(damping, moving, torque) -> float:
     """How near the speed is to a limit: 0 at its onset, 1 at it."""
+    moving = ArmMotion(*moving)
     own, speed = damping[0], moving.speed
     how, limits, rated, rotor = own.how, own.limits, own.rated, own.rotor
     onset, share = how[3], how[5]

@@ -21,7 +21,7 @@ from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.control.feedback import BANDWIDTH, DAMPING_RATIO
-from sim.control.pose_constraint import ToolPose, constraint
+from sim.control.pose_constraint import constraint
 from sim.rigid_body.cholesky import factor, solve
 from sim.sensing.calibration import Calibration
 
@@ -101,8 +101,8 @@ class AxisConstraint:
         """
         if locks != self._locks:
             self._begin(estimate, locks, static)
-        pose = ToolPose(estimate.p_BF, estimate.R_BF, self._tcp, jacobian)
-        _prepare(self._record, pose, Bending(estimate.theta, estimate.theta_d, estimate.q, static))
+        pose = (estimate.p_BF, estimate.R_BF, self._tcp, jacobian)
+        _prepare(self._record, pose, (estimate.theta, estimate.theta_d, estimate.q, static))
 
     def project(self, asked: Array, gain: float, torque: Array) -> None:
         """Take from what the hand asks of the joints (n,) [N·m] what would move the rotors along locked axes, in place.
@@ -131,6 +131,7 @@ class AxisConstraint:
 
 @kernel
 def _prepare(held, pose, bending) -> None:
+    bending = Bending(*bending)
     own = held[0]
     theta, theta_d, q, static = bending
     G, bent, slipped, compliance, rotor = own.rows, own.bent, own.slipped, own.compliance, own.rotor

@@ -94,24 +94,25 @@ class FeedForward:
         torque = np.empty_like(self._no_friction)
         if not motion:
             self.tau_J = self._dynamics.gravity(reference.q).copy()
-            _add(self._record, Needed(reference.qdd, self._no_friction, self.tau_J), (0.0, 0.0), torque)
+            _add(self._record, (reference.qdd, self._no_friction, self.tau_J), (0.0, 0.0), torque)
             return torque
         self.tau_J = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
         if push is not None:
             self.tau_J = self.tau_J + push
         total, share = self._no_friction, 0.0
         if friction is not None:
-            _turn(self._record, Turned(reference.qd, self.tau_J, stiffer), fresh or not self._fed)
+            _turn(self._record, (reference.qd, self.tau_J, stiffer), fresh or not self._fed)
             total, share = friction.at(self._speed, self.tau_J), friction.output_share
             _bend(self._record, total)
         self._fed = friction is not None
-        _add(self._record, Needed(reference.qdd, total, self.tau_J), (1.0, share), torque)
+        _add(self._record, (reference.qdd, total, self.tau_J), (1.0, share), torque)
         return torque
 
 
 @kernel
 def _add(feed_forward, needed, shares, torque) -> None:
     """Motor torque; `shares`: of the rotors' inertia that counts, and of the friction that the output has."""
+    needed = Needed(*needed)
     rotor = feed_forward[0].rotor
     inertia, share = shares
     for i in range(torque.size):
@@ -122,6 +123,7 @@ def _add(feed_forward, needed, shares, torque) -> None:
 @kernel
 def _turn(feed_forward, turned, fresh) -> None:
     """Desired speed of the motors."""
+    turned = Turned(*turned)
     own, load = feed_forward[0], turned.load
     for i in range(load.size):
         if fresh:

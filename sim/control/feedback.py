@@ -163,7 +163,7 @@ class Feedback:
         if self._optional:
             self._add_optional(then, estimate, use, torque)
         begin = torque if start is None else start
-        wanted = Wanted(
+        wanted = (
             then.q,
             then.qd,
             load,
@@ -176,7 +176,7 @@ class Feedback:
             excess,
             begin,
         )
-        _correct(self._record, wanted, Terms(*self._on, waits, start is not None), torque)
+        _correct(self._record, wanted, (*self._on, waits, start is not None), torque)
 
     def _add_optional(self, then: Reference, estimate: Estimate, use: JointControl, torque: Array) -> None:
         wanted = torque.copy()
@@ -229,6 +229,8 @@ def _heaviest(arm: Arm, dynamics: Dynamics) -> Array:
 
 @kernel
 def _correct(feedback, wanted, terms, torque) -> None:
+    wanted = Wanted(*wanted)
+    terms = Terms(*terms)
     own = feedback[0]
     integral, at_rest = own.integral, own.at_rest
     load, excess, qd_next, sticking = wanted.load, wanted.excess, wanted.qd_next, wanted.sticking

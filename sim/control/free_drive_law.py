@@ -16,7 +16,7 @@ from sim.compiled.kernel import kernel
 from sim.control.active_damping import ActiveDamping
 from sim.control.axis_constraint import AxisConstraint
 from sim.control.balancing import Balancing
-from sim.control.hand_help import Asking, HandHelp
+from sim.control.hand_help import HandHelp
 from sim.control.shaker import Shaker
 from sim.control.singularity import Singularity
 from sim.estimation.adaptive_friction import AdaptiveFriction
@@ -114,7 +114,7 @@ class FreeDriveLaw:
         torque = self._static(estimate, decision)
         for wall in decision.walls:
             if wall.force != ORIGIN:
-                _push(jacobian, Pushed(estimate.p_BF, wall.p, wall.force, self._moving(wall.part)), torque)
+                _push(jacobian, (estimate.p_BF, wall.p, wall.force, self._moving(wall.part)), torque)
         if decision.zones:
             torque += decision.zones
         if decision.balance is not None:
@@ -136,7 +136,7 @@ class FreeDriveLaw:
             help = self._damping.help
         if estimate.wrench_valid and decision.amplified:
             gain = help * decision.gain
-            self._hand.ask(Asking(estimate.F_user, decision.baseline, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
+            self._hand.ask((estimate.F_user, decision.baseline, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
             if locks is not None:
                 constraint.project(self._hand.capped, gain, torque)
         else:
@@ -172,6 +172,7 @@ class FreeDriveLaw:
 @kernel
 def _push(jacobian, pushed, torque) -> None:
     """Add J^T of a force at a point."""
+    pushed = Pushed(*pushed)
     p_BF, p, force, moving = pushed
     x, y, z = p[0] - p_BF[0], p[1] - p_BF[1], p[2] - p_BF[2]
     fx, fy, fz = force

@@ -82,8 +82,8 @@ class HandHelp:
         own["asked"], own["felt"], own["usual"], own["began"] = 0.0, 0.0, estimate.tau_ext, estimate.q
         own["late"] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
 
-    def ask(self, asking: Asking, torque: Array) -> None:
-        """Add to `torque` (n,) [N·m] what the hand at the flange asks for."""
+    def ask(self, asking: tuple[Array, tuple[float, ...], Array, Array, float, float], torque: Array) -> None:
+        """Add to `torque` (n,) [N·m] what the hand at the flange asks for; `asking` as `Asking`."""
         _ask(self._record, asking, torque)
 
     def ask_nothing(self) -> None:
@@ -93,13 +93,14 @@ class HandHelp:
     def take_off(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
         """Take at most this share of the friction off the hand; a joint of which nothing is asked is braked."""
         torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
-        felt = FeltByJoints(*torques, estimate.q, estimate.friction, estimate.theta_d, share)
+        felt = (*torques, estimate.q, estimate.friction, estimate.theta_d, share)
         _take_off(self._record, friction.record, felt, torque)
 
 
 @kernel
 def _ask(law, asking, torque) -> None:
     """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
+    asking = Asking(*asking)
     own = law[0]
     F_user, baseline, R, jacobian, cap, gain = asking
     wrench = np.empty(6)
@@ -120,6 +121,7 @@ def _ask(law, asking, torque) -> None:
 
 @kernel
 def _take_off(law, friction, joints, torque) -> None:
+    joints = FeltByJoints(*joints)
     own, terms, warmth = law[0], friction[0].terms, friction[0].warmth
     ways, tau_ext, uncertain, q, sliding, speed, most = joints
     away = 0.0

@@ -113,6 +113,7 @@ def constraint(own, pose) -> int:
 
     `own` says what is locked, and frame, orientation and place of the tool when it was (sim.control.axis_constraint).
     """
+    pose = ToolPose(*pose)
     p_BF, R, tcp, jacobian = pose
     locked, frame, place, G, values = own.locked, own.frame, own.place, own.rows, own.values
     rows = np.zeros((6, 6))

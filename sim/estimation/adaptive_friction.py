@@ -88,11 +88,11 @@ class AdaptiveFriction:
         own["temperature"], own["per_kelvin"], own["output_share"] = filed.temperature, filed.per_kelvin, filed.output_share
         self.warmth[:] = 1.0
 
-    def learn(self, turning: Turning, temperature: Array, free: bool) -> None:
+    def learn(self, turning: tuple[Array, Array, Array, Array], temperature: Array, free: bool) -> None:
         """One tick.
 
         Args:
-            turning: what the joints do.
+            turning: what the joints do, as `Turning`.
             temperature: measured (n,) [°C].
             free: no contact, so that the surplus is friction.
         """
@@ -115,6 +115,7 @@ class AdaptiveFriction:
 
 @kernel
 def _step(friction, turning, temperature, free) -> None:
+    turning = Turning(*turning)
     own = friction[0]
     warmth = own.warmth
     for i in range(warmth.size):

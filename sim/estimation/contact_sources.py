@@ -106,8 +106,8 @@ class ContactSources:
         pair = sample.wrench_valid and sample.acceleration_valid
         links = use.links and sample.joints_valid
         flange = pair and use.flange
-        watched = WatchedSources(pair, flange, links, self._started)
-        felt = Feeling(sample.values, estimate.tau_ext, estimate.qd, estimate.qdd)
+        watched = (pair, flange, links, self._started)
+        felt = (sample.values, estimate.tau_ext, estimate.qd, estimate.qdd)
         _read(self._record, self._dynamics.recursion.record, felt, watched)
         self._started = links
         estimate.signals = ContactSignals(self._out.copy(), (pair, flange, links, links))
@@ -128,6 +128,8 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 @kernel
 def _read(sources, model, felt, watched) -> None:
     """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
+    felt = Feeling(*felt)
+    watched = WatchedSources(*watched)
     own, rigid = sources[0], model[0]
     rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]

@@ -9,12 +9,11 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
-from sim.estimation.adaptive_friction import AdaptiveFriction, Turning
+from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.flange_forces import FlangeForces
 from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
     TORQUE_BANDWIDTH,
-    Angles,
     follow,
     joint_record,
     plan,
@@ -22,7 +21,7 @@ from sim.estimation.joint_tracking import (
     surplus,
     tracking_gains,
 )
-from sim.estimation.transmission_torque import DEFLECTION, WAYS, Rubbing, TransmissionTorque
+from sim.estimation.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -99,7 +98,7 @@ class Estimator:
         dynamics = self._dynamics
         self.tick += 1
         theta, q = self._theta, self._q
-        angles = Angles(sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
+        angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
         if angles is not None:
             if self._lost and sample.joints_valid:
                 self._back(sample)
@@ -112,7 +111,7 @@ class Estimator:
                 self._relaxed = True
                 self._own["rest"] = angles[0] - angles[1]
             if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
-                plan(self._record, self._wanted, answered)
+                plan(self._record, tuple(self._wanted), tuple(answered))
             self._wanted = answered
             follow(self._record, angles)
             self.q = angles[1].copy()  # a law may hold on to it
@@ -189,14 +188,14 @@ class Estimator:
         if self._lost:
             spent[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
         free = learn and self._started and use.adaptive and not transmission.contact
-        friction.learn(Turning(motor[1], spent, rigid.torque, transmission.fused), sample.temperature, free)
+        friction.learn((motor[1], spent, rigid.torque, transmission.fused), sample.temperature, free)
         ways[DEFLECTION] = self._deflection
         moving = sides(self._record, rigid.torque, friction.record, transmission.record)
-        transmission.update(Rubbing(friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)
+        transmission.update((friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
 
-    def _made_up(self, sample: Sample) -> Angles | None:
+    def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:
         """Angles and currents where some are out: each angle from the other, through the spring; None if a joint has neither."""
         able = np.isfinite(np.stack([sample.theta, sample.q, sample.current]))
         if not (able[0] | able[1]).all():
@@ -216,7 +215,7 @@ class Estimator:
         theta = np.where(able[0], sample.theta, sample.q + deflection)
         q = np.where(able[1], sample.q, sample.theta - deflection)
         spent = (fused + (1.0 - self.friction.output_share) * self.friction.total) / self._own["torque_constant"]
-        return Angles(theta, q, np.where(able[2], sample.current, spent))
+        return theta, q, np.where(able[2], sample.current, spent)
 
     def _back(self, sample: Sample) -> None:
         """All sensors are there again: angles that were made up jump to what is measured, without any speed."""

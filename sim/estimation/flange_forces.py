@@ -87,12 +87,13 @@ class FlangeForces:
             # The model stands in; its values stay for the differentiation to go on from.
             force, own["turn"] = self._dynamics.specific_force(q, motion[1], motion[2])
             own["gyro"] = rigid.R.T @ rigid.v_F[3:]
-        felt = Felt(sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
+        felt = (sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
         _update(self._record, rigid.record, felt, (sample.wrench_valid, differentiated))
 
 
 @kernel
 def _update(forces, model, felt, valid) -> None:
+    felt = Felt(*felt)
     own, rigid = forces[0], model[0]
     R, specific, gravity, a_felt = rigid.R, felt.arm_side, own.gravity, own.a_felt
     wrench_valid, differentiated = valid

@@ -10,6 +10,7 @@ from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
 from sim.estimation.adaptive_friction import GATE
+from sim.motion.moves import Reference
 
 Array = NDArray[np.float64]
 
@@ -82,6 +83,8 @@ def sides(joints, tau_dyn, friction, transmission) -> bool:
 @kernel
 def plan(joints, before, now) -> None:
     """Add to both states what the plan does in this tick beyond constant acceleration."""
+    before = Reference(*before)
+    now = Reference(*now)
     theta, q = joints[0].theta, joints[0].q
     for i in range(before.q.size):
         jump = now.qdd[i] - before.qdd[i]
@@ -113,6 +116,7 @@ def follow(joints, angles) -> None:
 
     The transmission is a stiffening spring and, beside it, a spring that slips at its yield: the hysteresis.
     """
+    angles = Angles(*angles)
     own = joints[0]
     theta, q, rest = own.theta, own.q, own.rest
     for i in range(rest.size):

@@ -114,14 +114,14 @@ class TransmissionTorque:
         own["covariance"][:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
         own["covariance"][:, 1, 1] = own["ripple"] ** 2
 
-    def update(self, rubbing: Rubbing, *, moving: bool, use: NDArray[np.bool_]) -> None:
+    def update(self, rubbing: tuple[Array, Array, Array], *, moving: bool, use: NDArray[np.bool_]) -> None:
         """One tick, on the raw values that the caller has put into `ways`.
 
         These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
         tau_m - J theta_dd - friction of the input side.
 
         Args:
-            rubbing: what that friction leaves uncertain.
+            rubbing: what that friction leaves uncertain, as `Rubbing`.
             moving: some joint moves; at rest nothing is learned, for a wrong payload would pass for a soft spring.
             use: which of `WAYS` may be used, of which joint (3, n).
         """
@@ -133,6 +133,7 @@ class TransmissionTorque:
 @kernel
 def _update(transmission, rubbing, use, state) -> bool:
     """Compare, then fuse. Returns whether something is touched."""
+    rubbing = Rubbing(*rubbing)
     own = transmission[0]
     moving, quiet = state
     learn = moving and quiet >= SETTLE_TICKS

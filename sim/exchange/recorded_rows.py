@@ -55,10 +55,10 @@ def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, know
     Truth: q, qd, theta, tau_J, friction of both sides, temperature (n each); pose of the flange in W (7); sum of the hands'
     forces in W (3); mass of what is attached.
     """
-    joints = RecordedJoints(e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
-    flange = RecordedFlange(e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
+    joints = (e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
+    flange = (e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
     _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured), known[k])
-    place = RecordedPlace(*plant.frames, plant.flange_body, plant.payload.load.mass)
+    place = (*plant.frames, plant.flange_body, plant.payload.load.mass)
     _truth(plant.record, plant.friction.record, place, truth[k])
     for _, _, (x, y, z), _ in plant.hands.touched:
         row = truth[k]
@@ -69,6 +69,8 @@ def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, know
 
 @kernel
 def _known(joints, flange, numbers, out) -> None:
+    joints = RecordedJoints(*joints)
+    flange = RecordedFlange(*flange)
     q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction = joints
     n = q.size
     for i in range(n):
@@ -86,6 +88,7 @@ def _known(joints, flange, numbers, out) -> None:
 
 @kernel
 def _truth(plant, friction, place, out) -> None:
+    place = RecordedPlace(*place)
     own, rubs = plant[0], friction[0]
     n = own.q.size
     for i in range(n):

@@ -71,8 +71,8 @@ class Line:
 
     def solve(self, q: Array, s: float, rate: float) -> Array:
         """Joint speeds (n,) at q, for the share `s` of the line and its rate [1/s]."""
-        course = Course(self._tcp, self.start, self.R, self.way, self.turn)
-        return np.asarray(_solve(FlangePlace(*self._dynamics.update(q)), course, s, rate), dtype=np.float64)
+        course = (self._tcp, self.start, self.R, self.way, self.turn)
+        return np.asarray(_solve(self._dynamics.update(q), course, s, rate), dtype=np.float64)
 
 
 def rotation_vector(R: Array) -> Array:
@@ -87,6 +87,8 @@ def rotation_vector(R: Array) -> Array:
 
 @kernel
 def _solve(place, course, s, rate):
+    place = FlangePlace(*place)
+    course = Course(*course)
     p, R, jacobian = place
     tcp, start, R_start, way, turn = course
     n = jacobian.shape[1]

@@ -48,7 +48,8 @@ class Hands:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, parts: Mapping[str, int]) -> None:
         self._parts = parts
         self._roots: list[int] = model.body_rootid.tolist()
-        self._bodies = Bodies(data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
+        self._bodies = (data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
+        self._applied = data.xfrc_applied
         self._pushed: set[int] = set()
         self._goes: dict[tuple[str, Triple], Triple] = {}  # where each pull has come to by now, in W [m]
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
@@ -62,7 +63,7 @@ class Hands:
         bodies, pushed = self._bodies, self._pushed
         if pushed:
             for body in pushed:
-                bodies.applied[body] = 0.0
+                self._applied[body] = 0.0
             pushed.clear()
         went, self._goes = self._goes, {}
         if not touches:
@@ -106,6 +107,7 @@ def _floats(three: Sequence[float] | Array) -> Triple:
 @kernel
 def _velocity(bodies, root, body, point):
     """MuJoCo keeps a body's motion as angular and linear velocity at the centre of mass of its tree."""
+    bodies = Bodies(*bodies)
     wx, wy, wz, vx, vy, vz = bodies.motion[body]
     c = bodies.trees[root]
     x, y, z = point[0] - c[0], point[1] - c[1], point[2] - c[2]
@@ -115,6 +117,7 @@ def _velocity(bodies, root, body, point):
 @kernel
 def _at(bodies, body, point):
     """Where a point (3,) of a body is."""
+    bodies = Bodies(*bodies)
     p, R = bodies.xpos[body], bodies.xmat[body]
     x, y, z = point
     return (
@@ -127,6 +130,7 @@ def _at(bodies, body, point):
 @kernel
 def _push(bodies, body, point, wrench):
     """Add a wrench (6,) at a point (3,) of a body; returns the point in W."""
+    bodies = Bodies(*bodies)
     c, w = bodies.centres[body], bodies.applied[body]
     px, py, pz = _at(bodies, body, point)
     fx, fy, fz, tx, ty, tz = wrench
@@ -146,6 +150,7 @@ def _pull(bodies, root, body, held):
 
     `held`: point of the body (3,), where it shall be (3,), largest force.
     """
+    bodies = Bodies(*bodies)
     hold, target, cap = held
     point = _push(bodies, body, hold, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     vx, vy, vz = _velocity(bodies, root, body, point)

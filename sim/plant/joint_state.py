@@ -69,6 +69,7 @@ def plant_record(n: int, substeps: int, channels: int) -> Record:
 @kernel
 def gather(plant, state) -> None:
     """Take angles, speeds and the true transmission torque from the physics."""
+    state = PhysicsState(*state)
     own = plant[0]
     for i in range(own.q.size):
         own.q[i], own.theta[i] = state.qpos[own.at_q[i]], state.qpos[own.at_theta[i]]
@@ -103,26 +104,26 @@ def sliding(plant, friction):
 
 
 @kernel
-def drive(plant, friction, drive, torque) -> None:
+def drive(plant, friction, inputs, torque) -> None:
     """Friction of this tick, with what closed brakes hold, and the motors' torques."""
-    own = plant[0]
+    own, written = plant[0], PhysicsInput(*inputs)
     input_side(friction, (own.theta_d, own.tau_J, own.temperature), own.friction_in)
     for i in range(own.rubs.size):
         own.friction_in[i] += own.held[i]
-        row = drive.friction[own.rubs[i]]
+        row = written.friction[own.rubs[i]]
         row[3] = row[4] = own.friction_in[i]
-        drive.applied[own.dof_theta[i]] = torque[i]
+        written.applied[own.dof_theta[i]] = torque[i]
 
 
 @kernel
 def finish(plant, state) -> None:
     """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
     gather(plant, state)
-    own = plant[0]
+    own, history = plant[0], PhysicsState(*state).history
     for j in range(own.flange.size):
         total = 0.0
         for k in range(own.kept.shape[0]):
-            total += state.history[own.kept[k, j]]
+            total += history[own.kept[k, j]]
         own.flange[j] = total / own.kept.shape[0]
     for i in range(own.heat.size):
         own.heat[i] += abs(own.friction_in[i] * own.theta_d[i])

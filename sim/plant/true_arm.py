@@ -12,7 +12,7 @@ from sim.arm.scenario import Scenario
 from sim.plant.applied_touches import Hands
 from sim.plant.attached_payload import Payload
 from sim.plant.joint_friction import Friction
-from sim.plant.joint_state import PhysicsInput, PhysicsState, drive, finish, gather, plant_record, poses, sliding
+from sim.plant.joint_state import drive, finish, gather, plant_record, poses, sliding
 from sim.plant.model import SENSORS, Step, build
 from sim.plant.objects import set_contact_stiffness
 from sim.plant.touch import Touch
@@ -70,8 +70,8 @@ class Plant:
         self.ambient = arm.thermals.ambient
         self.q, self.theta, self.qd, self.theta_d, self.tau_J = (own[k] for k in ("q", "theta", "qd", "theta_d", "tau_J"))
         # MuJoCo's own arrays: asking for one costs as much as a kernel.
-        self._state = PhysicsState(data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic, data.history)
-        self._driven = PhysicsInput(model.actuator_biasprm, data.qfrc_applied)
+        self._state = (data.qpos, data.qvel, data.ten_length, data.ten_velocity, data.plastic, data.history)
+        self._driven = (model.actuator_biasprm, data.qfrc_applied)
         self.frames = (data.xpos, data.xquat)  # (b, 3), (b, 4) of MuJoCo's bodies in W, as they are now
         self.flange_body = self._parts["flange"]  # MuJoCo's number of the tool-side face of the flange sensor
         self.hands = Hands(model, data, self._parts)

@@ -182,7 +182,7 @@ class Sensors:
         sample = self._rows[self._next]
         value = sample.values
         passed = plant.step.tick if line else 0.0  # before the first sample no time has passed
-        _measure(self._record, Measured(plant.theta, plant.q, current, plant.flange), (row, passed), value)
+        _measure(self._record, (plant.theta, plant.q, current, plant.flange), (row, passed), value)
         if self._any_out:
             value[self._out] = np.nan
             self._suspect = LATENCY + 1
@@ -233,6 +233,7 @@ def _sample(values: Array, n: int) -> Sample:
 
 @kernel
 def _measure(sensors, measured, now, out) -> None:
+    measured = Measured(*measured)
     own = sensors[0]
     theta, q, current, flange = measured
     row, tick = now

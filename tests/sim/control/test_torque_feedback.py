@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from sim.control.feedback import BANDWIDTH, SUPPORT, TorqueFeedback
+from sim.control.feedback import SUPPORT, TorqueFeedback
+from sim.control.feedback import TORQUE_BANDWIDTH as BANDWIDTH
 from tests.sim.laws import N
 
 MEASURED, DESIRED = np.linspace(-20.0, 30.0, N), np.linspace(5.0, -5.0, N)
