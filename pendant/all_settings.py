@@ -129,7 +129,11 @@ def find(name: str) -> SettingRow:
     if name in RENAMED:
         now = _ROWS[RENAMED[name]]
         raise SettingError(name, None, f"is called {now.name} now; allowed there: {_allowed(now)}")
-    raise SettingError(name, None, "no such setting; there are " + ", ".join(_ROWS))
+    section = name.split(".", maxsplit=1)[0]
+    names = [row for row in _ROWS if row.startswith(section + ".")]
+    if names:
+        raise SettingError(name, None, "no such setting; there are " + ", ".join(names))
+    raise SettingError(name, None, "no such section; there are " + ", ".join(dict.fromkeys(row.split(".")[0] for row in _ROWS)))
 
 
 def value_of(settings: Settings, name: str) -> Value:
