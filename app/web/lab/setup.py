@@ -26,8 +26,8 @@ class LabSetup:
         with gui.add_folder("Set-up", expand_by_default=False):
             self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
             self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
-            self.tool = gui.add_dropdown("ToolModel", (AS_IS, *tools()))
-            self.world = gui.add_dropdown("WorldSection", (AS_IS, NOTHING, *bundled("worlds")))
+            self.tool = gui.add_dropdown("Tool", (AS_IS, *tools()))
+            self.world = gui.add_dropdown("World", (AS_IS, NOTHING, *bundled("worlds")))
             self.seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1)
             self.mismatch = gui.add_checkbox("Controller mismatch", True)
             self.begin = gui.add_button("Begin with this", color="gray")
