@@ -12,13 +12,13 @@ from typing import Any
 
 import msgspec
 
-from app.files.checked import BadInput, convert, load
+from app.files.checked import BadInput, convert
 from app.log.reader import Log
 from app.log.reader import read as read_log
 from app.runs.batch import Job, run_all, work
 from app.runs.runner import RunOutcome, simulate
 from app.session.prepare import prepare
-from app.session.session_file import Session, find
+from app.session.session_file import Session, find, opened
 from pendant.inputs import Button, Command, Inputs
 from sim.exchange.desk import Wishes
 from sim.plant.touch import Pull, Push, Touch
@@ -52,7 +52,7 @@ def session(source: str | Path | dict[str, Any] | Session, **fields: Any) -> Ses
     if isinstance(source, Session):
         raw = msgspec.to_builtins(source)
     else:
-        raw = source if isinstance(source, dict) else load(find(str(source)), dict[str, object])
+        raw = source if isinstance(source, dict) else msgspec.to_builtins(opened(find(str(source)), Session))
     made = convert({**raw, **fields}, Session, "session")
     prepare(made, "session")
     return made

@@ -13,7 +13,7 @@ from rich.table import Table
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
-from app.session.session_file import Session, Setup, find, find_all
+from app.session.session_file import Session, Setup, find, find_all, opened
 from pendant.all_settings import find as find_setting
 from pendant.settings.schema import SettingError
 from sim.arm.arm_file import Arm
@@ -46,6 +46,7 @@ Out = Annotated[
     Path, typer.Option(help="Folder for events.jsonl, log.mcap, summary.json, report.html; of several sessions, a folder each.")
 ]
 Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
+AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
 
 
@@ -74,11 +75,12 @@ def serve(
         Path | None,
         typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
     ] = None,
+    any_file: AnyFile = False,
 ) -> None:
     """Serve the web app: push the arm, hold its free-drive button, read why it stopped."""
     from app.serving import serve_until_interrupted
 
-    setup = Setup() if config is None else load(config, Setup)
+    setup = Setup() if config is None else opened(config, Setup, any_file)
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     where = "serve" if config is None else config.name
@@ -104,6 +106,7 @@ def run(
     realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
     set_: Set = None,
     junit: Annotated[Path | None, typer.Option(help="Write the expectations as JUnit XML.", show_default=False)] = None,
+    any_file: AnyFile = False,
 ) -> None:
     """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
     from app.runs.batch import Job, run_all, work
@@ -114,7 +117,7 @@ def run(
     jobs: list[Job] = []
     paths = [path for name in sessions for path in find_all(name)]
     for path in paths:
-        content = load(path, Session)
+        content = opened(path, Session, any_file)
         content = msgspec.structs.replace(
             content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
         )
@@ -185,19 +188,22 @@ def claims(
 
 
 @app.command(epilog=example("pendant check my.yaml", "pendant check cell.yaml", "pendant check my-arm.yaml"))
-def check(file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")]) -> None:
-    """Check a file without running it: a session, a configuration or a robot."""
+def check(
+    file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")], any_file: AnyFile = False
+) -> None:
+    """Check a file, and simulate what it describes for a moment: a session, a configuration or a robot."""
+    from app.runs.runner import try_out
+
     path = find(file)
     raw = load(path, dict[str, object])
     if "chain" in raw:
         load_arm(path)
-        what = "robot"
+        what, setup = "robot", Setup(robot=str(path))
     elif "duration" in raw or "timeline" in raw or "title" in raw:
-        prepare(load(path, Session), path.name)
-        what = "session"
+        what, setup = "session", opened(path, Session, any_file)
     else:
-        prepare(load(path, Setup), path.name)
-        what = "configuration"
+        what, setup = "configuration", opened(path, Setup, any_file)
+    try_out(prepare(setup, path.name))
     Console().print(f"{escape(path.name)}: a valid {what}")
 
 

@@ -12,7 +12,8 @@ import typer
 from app.files.checked import BadInput
 from app.files.library import mesh_path
 from app.log.playback import Player
-from app.log.reader import read, repair
+from app.log.reader import read
+from app.log.scan import repair
 from app.runs.runner import simulate
 from app.runs.warm_up import warm_up
 from app.session.prepare import Prepared

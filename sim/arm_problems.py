@@ -27,8 +27,6 @@ def problems(arm: Arm) -> list[Problem]:
 
 def _lengths(arm: Arm) -> list[Problem]:
     n = arm.n
-    if n == 0:
-        return [("chain.joints", [], "expected at least one joint")]
     c, m, t, f, o = arm.chain, arm.motors, arm.transmissions, arm.frictions, arm.outline
     lists: dict[str, Sequence[object]] = {
         **{f"chain.{name}": getattr(c, name) for name in ("a", "d", "alpha", "home")},
@@ -134,8 +132,6 @@ def _curves(arm: Arm) -> list[Problem]:
         if arm.sensors.current.range < arm.motors.current[k]:
             allowed = f"expected at least the largest current {arm.motors.current[k]:g} A"
             found.append(("sensors.current.range", arm.sensors.current.range, allowed))
-    if f.output_share > 1:
-        found.append(("frictions.output_share", f.output_share, "expected 0 to 1"))
     return found
 
 

@@ -1,10 +1,15 @@
 """Whether the bodies of a scenario can exist: what the types of loads and world objects cannot say."""
 
+import math
+
 from app.files.checked import BadInput
 from pendant.equipment.load import Problem, problem
 from pendant.equipment.tools import table_problem, tool_problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Load, ToolModel
+from sim.arm.scenario import AnyObject, Load, Moving, ToolModel
+
+FASTEST = 5.0
+"""Of an object that moves [m/s]."""
 
 OVERLOAD = 10.0
 """Heaviest load, as a multiple of the arm's rated payload: enough to try any mistake, and within what the physics can bear."""
@@ -29,13 +34,19 @@ def check_tool(tool: ToolModel, arm: Arm, where: str, field: str) -> None:
     _refuse(tool_problem(tool, OVERLOAD * arm.payload), arm, where, f"{field}.")
 
 
-def check_tools(tools: list[ToolModel], arm: Arm, where: str, field: str) -> None:
+def check_tools(tools: list[ToolModel], arm: Arm, where: str, *, most: float = OVERLOAD) -> None:
     """Refuse a table of tools with one that `check_tool` refuses, or with two of a name.
+
+    Args:
+        tools: the table.
+        arm: that is to carry each of them.
+        where: the file's name.
+        most: mass of a tool, as a multiple of the arm's rated payload.
 
     Raises:
         BadInput: as said.
     """
-    _refuse(table_problem(tools, OVERLOAD * arm.payload), arm, where, field)
+    _refuse(table_problem(tools, most * arm.payload), arm, where, "tools")
 
 
 def _refuse(wrong: Problem | None, arm: Arm, where: str, prefix: str) -> None:
@@ -45,7 +56,7 @@ def _refuse(wrong: Problem | None, arm: Arm, where: str, prefix: str) -> None:
 
 
 def check_world(world: list[AnyObject], where: str) -> None:
-    """Refuse objects of the same name, and sizes that are not positive.
+    """Refuse objects of the same name, and such as move faster than any machine beside an arm.
 
     Raises:
         BadInput: as said.
@@ -54,6 +65,8 @@ def check_world(world: list[AnyObject], where: str) -> None:
     for i, thing in enumerate(world):
         if thing.name in names[:i]:
             raise BadInput(where, f"world[{i}].name", thing.name, "each object needs a name of its own")
-        for size in getattr(thing, "size", ()):  # a plane has none
-            if size <= 0:
-                raise BadInput(where, f"world[{i}].size", size, "lengths above 0 m")
+        if isinstance(thing, Moving):
+            speed = 2.0 * math.pi * math.hypot(*thing.amplitude) / thing.period
+            if speed > FASTEST:
+                allowed = f"at most {FASTEST:g} m/s; this makes {speed:.3g}"
+                raise BadInput(where, f"world[{i}].amplitude", thing.amplitude, allowed)

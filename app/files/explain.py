@@ -25,7 +25,7 @@ def explained(error: msgspec.ValidationError, raw: object, kind: Any, where: str
     field, value, hints = _walk(raw, kind, path)
     structs = [hint.kind for hint in hints if is_struct(hint.kind)]
     if unknown := re.search(r"unknown field `(.*)`", message):
-        allowed = sorted({name for struct in _matching(structs, value) for name in _names(struct)})
+        allowed = sorted({name for struct in _matching(structs, value) for name in names_of(struct)})
         near = difflib.get_close_matches(unknown[1], allowed, n=1)
         hint = f"did you mean {near[0]}? " if near else ""
         return BadInput(
@@ -70,7 +70,7 @@ def _inside(there: _Hint, raw: Any, step: Any) -> list[_Hint]:
     """The types that may stand at `step` of a value of type `there`."""
     if is_struct(there.kind):
         struct = _matching([there.kind], raw)
-        return _alternatives(_hints_of(struct[0])[step]) if struct and step in _names(struct[0]) else []
+        return _alternatives(_hints_of(struct[0])[step]) if struct and step in names_of(struct[0]) else []
     origin, args = get_origin(there.kind), get_args(there.kind)
     if origin is dict:
         return _alternatives(args[1])
@@ -134,7 +134,8 @@ def _hints_of(struct: Any) -> dict[str, Any]:
     return {field.encode_name: hints[field.name] for field in msgspec.structs.fields(struct)}
 
 
-def _names(struct: Any) -> list[str]:
+def names_of(struct: Any) -> list[str]:
+    """The fields of a struct by the names that a file uses, with that of its tag."""
     tag = _tag_field(struct)
     return ([tag] if tag else []) + list(_hints_of(struct))
 
@@ -180,6 +181,6 @@ def _described_one(hint: _Hint) -> str:
     if origin is dict or hint.kind is dict:
         return "a mapping" + (f" to {_described(_alternatives(args[1]))}" if args else "")
     if is_struct(hint.kind):
-        return f"a mapping of {', '.join(_names(hint.kind))}"
+        return f"a mapping of {', '.join(names_of(hint.kind))}"
     word = _WORDS.get(hint.kind, "a value")
     return " ".join([word, " and ".join(bounds), f"of {count} characters" if count else ""]).strip()

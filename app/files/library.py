@@ -56,6 +56,11 @@ def mesh_path(arm_name: str, link: str) -> Path:
     return path
 
 
+def shipped(name: str, folder: str) -> bool:
+    """Whether `name` is one of those that the product ships in a folder of its library, "robots" or "tools"."""
+    return name in _names(folder)
+
+
 def _names(folder: str) -> list[str]:
     return sorted(path.stem for path in (ASSETS / folder).glob("*.yaml"))
 

@@ -10,6 +10,7 @@ from typing import Protocol
 from app.files.checked import BadInput
 from app.log.recorder import Recorder
 from pendant.decision import Decision
+from pendant.events.event import Event
 from pendant.tick.modes import TICK
 from sim.arm.scenario import Scenario
 from sim.simulation import Simulation
@@ -19,6 +20,7 @@ class Watched(Protocol):
     """What it needs of the loop, sim.run.loop.Loop."""
 
     watch: Callable[[Simulation, Decision], None] | None
+    ended: Callable[[Event], None] | None
 
     @property
     def simulation(self) -> Simulation:
@@ -47,6 +49,7 @@ class LiveRecording:
         self.on = False
         self.path: Path | None = None  # of the last file
         self.failure = ""  # why the last recording ended by itself
+        loop.ended = self._see_end
 
     @property
     def seconds(self) -> float:
@@ -121,6 +124,13 @@ class LiveRecording:
                 self._stop()
             else:
                 recorder.see(simulation, decision)
+
+    def _see_end(self, event: Event) -> None:
+        """On the loop's thread: nothing is simulated any more, so the file is ended with the cause."""
+        with self._lock:
+            if self._recorder is not None:
+                self._recorder.note(event)
+            self._stop()
 
     def _opened(self, simulation: Simulation) -> Recorder | None:
         path = self._free_path()

@@ -57,7 +57,7 @@ class Player:
     def picture(self) -> int:
         """The picture that is shown: the last one that is not after the time."""
         tick = round(self.time * TICK_RATE)
-        return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each["tick"]) - 1, 0)
+        return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each.tick) - 1, 0)
 
 
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
@@ -66,7 +66,7 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
     names = ["foot", *log.arm.chain.joints, "flange"]
     payload = frames.get("payload")
     objects = [frames[f"object {thing.name}"] for thing in log.scenario.world]
-    touches = tuple((t["part"], tuple(t["point"]), tuple(t["force"]), tuple(t["torque"])) for t in said["touches"])
+    touches = tuple((t.part, tuple(t.point), tuple(t.force), tuple(t.torque)) for t in said.touches)
     valid = int(state["valid"][row])
     decision = Decision(
         mode=Mode(WORDS["mode"][state["mode"][row]]),
@@ -77,7 +77,7 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         gain=float(state["gain"][row]),
         force_cap=0.0,
         baseline=(0.0,) * 6,
-        periods=tuple(Remaining(each["name"], each["ticks"], each["total"]) for each in said["periods"]),
+        periods=tuple(Remaining(each.name, each.ticks, each.total) for each in said.periods),
         events=(),
         step=int(state["step"][row]),
     )
@@ -98,7 +98,7 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         friction=state["friction"][row],
     )
     return Snapshot(
-        said["tick"],
+        said.tick,
         decision,
         estimate,
         np.array([frames[name] for name in names]),

@@ -11,9 +11,8 @@ import numpy as np
 
 from app.files.checked import ABSENT, BadInput
 from app.log import layout
-from app.log.block import Block, Picture
 from app.log.layout import STATE, TRUTH
-from app.log.writer import Writer
+from app.log.writer import Block, Picture, Writer
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
@@ -48,17 +47,20 @@ class Recorder:
         simulation: what is to be recorded; it may have run already.
         title: of the session.
         waits: for a disk that is too slow; otherwise that ends the recording.
+        planned: how long the run is to last [s]; None: nobody knows.
 
     Raises:
         BadInput: the file cannot be written.
     """
 
-    def __init__(self, path: Path, simulation: Simulation, title: str, waits: bool = True) -> None:
+    def __init__(
+        self, path: Path, simulation: Simulation, title: str, *, waits: bool = True, planned: float | None = None
+    ) -> None:
         self.path = path
         self.failure: OSError | None = None  # what ended the recording before its time
         self._waits = waits
         self._n = n = simulation.arm.n
-        self._writer = Writer(path, simulation, title)
+        self._writer = Writer(path, simulation, title, planned)
         self._vectors = layout.width(STATE, n) - 2 * len(AT)  # numbers before those of monitored parameters
         self._offset, self._last = 0, 0  # of the log's ticks over the simulation's; the log's last tick
         self._full = 1  # the first tick goes by itself, so that a log can be shown as soon as it is there
@@ -101,6 +103,10 @@ class Recorder:
         if self._count == self._full:
             self._hand_over()
             self._full = BLOCK
+
+    def note(self, event: Event) -> None:
+        """Record what no tick told, as of the last tick seen."""
+        self._events.append((self._last, event))
 
     def close(self) -> None:
         """Write what is left and the end of the file.

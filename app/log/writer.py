@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -11,15 +11,39 @@ from app.files.checked import ABSENT, BadInput
 from app.files.library import mesh_path
 from app.files.versions import versions
 from app.log import foxglove, layout
-from app.log.block import Block, Picture
 from app.log.container import Container
 from app.log.events_file import line_of
 from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
-from pendant.all_settings import describe, digest, limits_checksum, value_of
+from pendant.all_settings import Settings, describe, digest, limits_checksum, value_of
+from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
 from sim.arm.scenario import Plane, Scenario
 from sim.simulation import Simulation
+
+
+class Picture(NamedTuple):
+    """What is drawn of a tick. Poses are (7,): position [m], then quaternion wxyz, in W."""
+
+    tick: int
+    decision: Decision
+    links: np.ndarray[Any, Any]  # (n + 2, 7)
+    objects: np.ndarray[Any, Any]  # (m, 7)
+    payload: np.ndarray[Any, Any] | None
+    payload_mass: float  # [kg]
+    touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
+
+
+class Block(NamedTuple):
+    """Ticks on their way to the file."""
+
+    ticks: np.ndarray[Any, Any]  # (k,)
+    numbers: np.ndarray[Any, Any]  # (k, ...) of /state
+    codes: list[tuple[int, ...]]  # of each tick
+    truth: np.ndarray[Any, Any]  # (k, ...) of /truth
+    pictures: list[Picture]
+    events: list[tuple[int, Event]]
+    settings: list[tuple[int, Settings]]
 
 
 class Writer:
@@ -29,17 +53,18 @@ class Writer:
         path: of the file; one that is there is replaced.
         simulation: what is recorded.
         title: of the session.
+        planned: how long it is to last [s]; None: nobody knows.
 
     Raises:
         BadInput: the file cannot be written.
     """
 
-    def __init__(self, path: Path, simulation: Simulation, title: str) -> None:
+    def __init__(self, path: Path, simulation: Simulation, title: str, planned: float | None = None) -> None:
         self._names = ["foot", *simulation.arm.chain.joints, "flange"]
         self._n = n = simulation.arm.n
         self._file = Container(path, f"pendant {versions()['pendant']}")
         try:
-            self._channels = self._declare(simulation, title)
+            self._channels = self._declare(simulation, title, planned)
         except OSError as error:
             raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
         self._state_type = layout.record(layout.width(STATE, n), len(CODES))
@@ -113,7 +138,7 @@ class Writer:
     def _say(self, topic: str, tick: int, content: Any) -> None:
         self._file.add(self._channels[topic], tick * foxglove.NANOSECONDS, msgspec.json.encode(content))
 
-    def _declare(self, simulation: Simulation, title: str) -> dict[str, int]:
+    def _declare(self, simulation: Simulation, title: str, planned: float | None) -> dict[str, int]:
         """Channels, and what does not change: arm, scenario, versions; the shapes go into /robot."""
         file, arm, scenario, n = self._file, simulation.arm, simulation.scenario, self._n
         self._objects = [f"object {thing.name}" for thing in scenario.world]
@@ -126,6 +151,7 @@ class Writer:
                 "seed": str(scenario.seed),
                 "settings": digest(simulation.settings),
                 "limits": limits_checksum(simulation.settings),
+                **({} if planned is None else {"planned": f"{planned:g}"}),
             },
         )
         file.note("words", {name: " ".join(words) for name, words in WORDS.items()})

@@ -188,7 +188,8 @@ def _identity(summary: Summary) -> list[tuple[str, str]]:
     return [
         ("robot", run.get("robot", "")),
         ("seed", run.get("seed", "")),
-        ("duration", f"{summary.duration:.3f} s" + ("" if summary.whole else " (the log was cut)")),
+        ("duration", f"{summary.duration:.3f} s"),
+        *([("not whole", f"of the recording {summary.missing}")] if summary.missing else []),
         ("payload configured, true", f"{summary.payload_configured:g} kg, {summary.payload_true:g} kg"),
         ("settings", run.get("settings", "")),
         ("check sum of the limits", summary.limits),

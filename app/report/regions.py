@@ -4,7 +4,7 @@ import msgspec
 
 from app.files.checked import load
 from app.files.library import ASSETS
-from sim.arm.arm_file import Positive
+from pendant.settings.bounds import Positive
 
 
 class Region(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

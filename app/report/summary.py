@@ -102,6 +102,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     note: str = NOT_A_VALIDATION
     duration: float  # [s]
     whole: bool  # the log has its end
+    missing: str  # what of the run is not in the log, in words; "" where all of it is
     payload_configured: float  # at the end [kg]
     payload_true: float  # at the end [kg]
     modes: list[Span]
@@ -136,6 +137,7 @@ def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
         limits=_checksum(last),
         duration=float(t[-1]) if len(t) else 0.0,
         whole=log.whole,
+        missing=log.missing,
         payload_configured=float(state["configured_mass"][-1]) if len(t) else 0.0,
         payload_true=float(log.truth["payload_mass"][-1]) if len(t) else 0.0,
         modes=spans(state["mode"], t, WORDS["mode"]),

@@ -6,6 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+import mujoco
+import numpy as np
+
+from app.files.bad_input import ABSENT, BadInput
 from app.log.events_file import EventsFile
 from app.log.recorder import Recorder
 from app.session.expectation_watch import Verdict
@@ -14,7 +18,8 @@ from app.session.prepare import Prepared
 from app.session.session_file import Session
 from app.session.timeline import Timeline
 from pendant.decision import Decision
-from pendant.events.event import Event
+from pendant.events.event import Event, Kind
+from pendant.inputs import NOTHING
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK, Mode
 from sim.exchange.desk import Wishes
@@ -66,28 +71,69 @@ class RunOutcome:
         return any(verdict.looked and not verdict.passed for verdict in self.verdicts)
 
 
+BROKEN = (ArithmeticError, np.linalg.LinAlgError, mujoco.FatalError)
+"""What a simulation breaks down with; it says nothing about the code."""
+
+MOMENT = 200
+"""Ticks after which what cannot be simulated has broken down, if nobody touches it."""
+
+
 def simulate(prepared: Prepared) -> Simulation:
-    """A simulation of what a session or a configuration asks for."""
-    return Simulation(prepared.arm, prepared.scenario, prepared.settings)
+    """A simulation of what a session or a configuration asks for.
+
+    Raises:
+        BadInput: no model can be built of it.
+    """
+    try:
+        return Simulation(prepared.arm, prepared.scenario, prepared.settings)
+    except (*BROKEN, ValueError) as error:  # MuJoCo's compiler says ValueError
+        raise _unable(prepared, "", error) from error
+
+
+def try_out(prepared: Prepared) -> None:
+    """Build what a file describes and let it stand for a moment, apart from whatever else runs.
+
+    Raises:
+        BadInput: it cannot be simulated.
+    """
+    simulation = simulate(prepared)
+    for _ in range(MOMENT):
+        _tick(simulation, prepared, Wishes(NOTHING, (), ()))
+
+
+def _tick(simulation: Simulated, prepared: Prepared, wishes: Wishes) -> Decision:
+    try:
+        return simulation.tick(wishes)
+    except BROKEN as error:
+        raise _unable(prepared, "while it runs", error) from error
+
+
+def _unable(prepared: Prepared, when: str, error: Exception) -> BadInput:
+    reason = " ".join(str(error).split()) or type(error).__name__
+    return BadInput(prepared.where, when, ABSENT, f"cannot be simulated ({reason})")
 
 
 def record(session: Session, prepared: Prepared, out: Path, *, realtime: bool = False, progress: Progress = silent) -> RunOutcome:
     """Run a session as `run`, and record it into `out`/log.mcap.
 
     Raises:
-        BadInput: a file cannot be written.
+        BadInput: a file cannot be written, or what is simulated breaks down; the recording ends there, with the cause.
     """
     simulation = simulate(prepared)
-    with Recorder(out / "log.mcap", simulation, session.title) as recorder:
-        return run(
-            session,
-            prepared,
-            simulation,
-            out,
-            realtime=realtime,
-            progress=progress,
-            see=lambda now: recorder.see(simulation, now),
-        )
+    with Recorder(out / "log.mcap", simulation, session.title, planned=session.duration) as recorder:
+        try:
+            return run(
+                session,
+                prepared,
+                simulation,
+                out,
+                realtime=realtime,
+                progress=progress,
+                see=lambda now: recorder.see(simulation, now),
+            )
+        except BadInput as error:
+            recorder.note(Event(Kind.BROKEN_DOWN, simulation.tick_count, {"reason": error.allowed}))
+            raise
 
 
 def run(
@@ -112,7 +158,7 @@ def run(
         see: shown the decision of every tick that was done; a recorder, for example.
 
     Raises:
-        BadInput: the file cannot be written.
+        BadInput: the file cannot be written, or what is simulated breaks down.
     """
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
@@ -122,7 +168,7 @@ def run(
     with EventsFile(out / "events.jsonl") as file:
         last, tenth = ticks(session.duration), ticks(0.1)
         for tick in range(1, last + 1):
-            decision = simulation.tick(timeline.wishes(tick, simulation.snapshot))
+            decision = _tick(simulation, prepared, timeline.wishes(tick, simulation.snapshot))
             timeline.see(tick, decision)
             quiet = not decision.events
             for each in watches:

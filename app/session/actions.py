@@ -7,9 +7,10 @@ from msgspec import Meta
 
 from app.session.profiles import AnyProfile, Constant, HalfSine, Ramp
 from app.session.triggers import When
+from pendant.equipment.load import Angles
 from pendant.inputs import Button, Command
 from pendant.limits.axis_locks import PRESETS, freeing
-from sim.arm.arm_file import Positive
+from pendant.settings.bounds import Span
 from sim.arm.scenario import Load, Vector
 from sim.plant.changes import AnyChange
 from sim.plant.touch import ZERO, Push, Triple
@@ -73,7 +74,7 @@ class Tap(Action, tag="tap", frozen=True, kw_only=True):
     """A control is pressed shortly; for a control that acts once, this is how to use it."""
 
     control: Control
-    length: Positive = msgspec.field(default=0.2, name="for")  # [s]
+    length: Span = msgspec.field(default=0.2, name="for")  # [s]
 
 
 class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
@@ -86,7 +87,7 @@ class DigitalInput(Action, tag="input", frozen=True, kw_only=True):
 class Effort(Action, frozen=True, kw_only=True):
     """Base of what a hand does to a point of the arm for a while."""
 
-    length: Positive = msgspec.field(name="for")  # [s]
+    length: Span = msgspec.field(name="for")  # [s]
     part: str = "flange"  # "foot", a joint's link by its joint name, "flange", "tool"
     point: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # in the part's frame [m]
 
@@ -179,7 +180,7 @@ class Axes(Action, tag="axes", frozen=True, kw_only=True):
     preset: Literal["all", "plane", "translation", "rotation"] | None = None
     free: list[Literal["x", "y", "z", "rx", "ry", "rz"]] | None = None
     frame: Literal["base", "tool", "user"] = "base"  # of the tool as it stands then
-    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # of the user's frame in the base [rad]
+    rpy: Angles = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # of the user's frame in the base [rad]
 
     def __post_init__(self) -> None:
         """Check that it says what is free, once, and that only the user's frame is turned."""

@@ -8,8 +8,8 @@ from msgspec import Meta
 from app.session.triggers import After
 from pendant.event_table import TABLE
 from pendant.events.event import Kind
+from pendant.settings.bounds import Signed, Span, Time
 from pendant.tick.modes import Mode, Phase
-from sim.arm.arm_file import NotNegative, Positive
 from sim.arm.scenario import Vector
 
 SafetyName = Literal["NORMAL", "REDUCED", "SAFEGUARD_STOP", "PROTECTIVE_STOP", "EMERGENCY_STOP"]
@@ -39,8 +39,8 @@ class Expectation(After, frozen=True, forbid_unknown_fields=True, kw_only=True, 
 class During(Expectation, frozen=True, kw_only=True):
     """Base of what is looked at in an interval."""
 
-    begin: NotNegative = msgspec.field(default=0.0, name="from")  # [s]
-    end: Positive | None = msgspec.field(default=None, name="to")  # None: the session's end [s]
+    begin: Time = msgspec.field(default=0.0, name="from")  # [s]
+    end: Span | None = msgspec.field(default=None, name="to")  # None: the session's end [s]
 
     def __post_init__(self) -> None:
         """Check that the interval has a length."""
@@ -55,10 +55,10 @@ class State(Expectation, tag="state", frozen=True, kw_only=True):
     mode: Mode | None = None
     phase: Phase | None = None
     safety: SafetyName | None = None
-    at: NotNegative | None = None  # [s]
-    by: Positive | None = None  # [s]
-    begin: NotNegative | None = msgspec.field(default=None, name="from")  # [s]
-    end: Positive | None = msgspec.field(default=None, name="to")  # [s]
+    at: Time | None = None  # [s]
+    by: Span | None = None  # [s]
+    begin: Time | None = msgspec.field(default=None, name="from")  # [s]
+    end: Span | None = msgspec.field(default=None, name="to")  # [s]
 
     def __post_init__(self) -> None:
         """Check that there is one thing to see, and one time."""
@@ -106,8 +106,8 @@ class Heard(During, tag="tone", frozen=True, kw_only=True):
 class Bounds(During, frozen=True, kw_only=True):
     """Base of what must stay within bounds."""
 
-    min: float | None = None
-    max: float | None = None
+    min: Signed | None = None
+    max: Signed | None = None
 
     def __post_init__(self) -> None:
         """Check that there are bounds, in order."""
@@ -153,8 +153,8 @@ class Period(Expectation, tag="period", frozen=True, kw_only=True):
     """The `run`-th run of a period (FD-20), counted after `after`, lasts `length` within `tolerance`."""
 
     name: str
-    length: Positive  # [s]
-    tolerance: NotNegative = 0.01  # [s]
+    length: Span  # [s]
+    tolerance: Time = 0.01  # [s]
     run: Annotated[int, Meta(ge=1)] = 1
 
 

@@ -97,6 +97,7 @@ class Prepared(NamedTuple):
     scenario: Scenario
     settings: Settings
     program: Steps | None
+    where: str = ""  # the file's name, for messages
 
 
 def prepare(setup: Setup, where: str) -> Prepared:
@@ -120,7 +121,7 @@ def prepare(setup: Setup, where: str) -> Prepared:
     for ident, state in setup.features.items():
         if state == "off":
             settings = apply(settings, dict(FEATURES[ident]))
-    prepared = Prepared(arm, _scenario(setup, arm, where), settings, program)
+    prepared = Prepared(arm, _scenario(setup, arm, where), settings, program, where)
     if isinstance(setup, Session):
         _check_session(setup, prepared, where)
     return prepared
@@ -156,7 +157,7 @@ def _tools(setup: Setup, tool: ToolModel | None, arm: Arm, where: str) -> list[T
     """The table: the file's tools, then those shipped whose names they leave."""
     if tool is not None:
         check_tool(tool, arm, where, "tool")
-    check_tools(setup.tools, arm, where, "tools")
+    check_tools(setup.tools, arm, where)
     names = {entry.name for entry in setup.tools}
     return setup.tools + [shipped for shipped in map(load_tool, tools()) if shipped.name not in names]
 

@@ -6,7 +6,9 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from sim.arm.arm_file import NotNegative, Positive
+from pendant.settings.bounds import MOST_STEPS, Gain, Share, Time
+
+Frequency = Annotated[float, Meta(ge=0.01, le=100.0)]  # of a hand that trembles [Hz]
 
 
 class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="shape"):
@@ -28,8 +30,8 @@ class Constant(Profile, tag="constant", frozen=True, kw_only=True):
 class Ramp(Profile, tag="ramp", frozen=True, kw_only=True):
     """Rises in `rise`, stays, falls in `fall`; both straight."""
 
-    rise: NotNegative = 0.2  # [s]
-    fall: NotNegative = 0.2  # [s]
+    rise: Time = 0.2  # [s]
+    fall: Time = 0.2  # [s]
 
     def factor(self, t: float, length: float) -> float:
         """See `Profile.factor`."""
@@ -49,10 +51,10 @@ class HalfSine(Profile, tag="half-sine", frozen=True, kw_only=True):
 class Tremor(Profile, tag="tremor", frozen=True, kw_only=True):
     """A hand that trembles: a ramp, times 1 + share·sin(2 pi frequency t)."""
 
-    rise: NotNegative = 0.2  # [s]
-    fall: NotNegative = 0.2  # [s]
-    frequency: Positive = 8.0  # of a physiological tremor: 6..12 [Hz]
-    share: Annotated[float, Meta(ge=0, le=1)] = 0.1  # amplitude, as a share of the force
+    rise: Time = 0.2  # [s]
+    fall: Time = 0.2  # [s]
+    frequency: Frequency = 8.0  # of a physiological tremor: 6..12 [Hz]
+    share: Share = 0.1  # amplitude, as a share of the force
 
     def factor(self, t: float, length: float) -> float:
         """See `Profile.factor`."""
@@ -63,8 +65,8 @@ class Tremor(Profile, tag="tremor", frozen=True, kw_only=True):
 class Points(Profile, tag="points", frozen=True, kw_only=True):
     """Straight between given points; before the first and after the last as those."""
 
-    times: Annotated[list[NotNegative], Meta(min_length=2)]  # after the start, rising [s]
-    factors: list[float]
+    times: Annotated[list[Time], Meta(min_length=2, max_length=MOST_STEPS)]  # after the start, rising [s]
+    factors: Annotated[list[Gain], Meta(max_length=MOST_STEPS)]
 
     def __post_init__(self) -> None:
         """Check that the lists fit each other."""

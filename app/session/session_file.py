@@ -1,28 +1,37 @@
 """Session files: what to simulate, what happens when, and what is expected of it. The schema; `prepare` checks and uses it."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta
 
-from app.files.checked import ABSENT, BadInput
-from app.files.library import ASSETS
+from app.files.checked import ABSENT, BadInput, load
+from app.files.library import ASSETS, shipped
 from app.session.actions import AnyAction
 from app.session.expectations import AnyExpectation
+from pendant.equipment.load import Angles
+from pendant.equipment.tools import MOST as MOST_TOOLS
 from pendant.program.steps import Program
+from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, MOST_WALLS, Angle, Text
 from pendant.walls.definitions import AnyBorder
-from sim.arm.scenario import AnyObject, Load, ToolModel, Vector
+from sim.arm.scenario import AnyObject, Load, ToolModel
+
+Posture = Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]
+Walls = Annotated[list[AnyBorder], Meta(max_length=MOST_WALLS)]
+Claims = Annotated[list[Text], Meta(max_length=MOST_STEPS)]
+Tools = Annotated[list[ToolModel], Meta(max_length=MOST_TOOLS)]
+World = Annotated[list[AnyObject], Meta(max_length=MOST_OBJECTS)]
 
 
 class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """What to simulate: the header of a session, and the whole of a configuration file for `pendant serve --config`."""
 
-    robot: str = "ur5e"
-    mounting: Literal["floor", "wall", "ceiling"] | Vector = "floor"  # or roll, pitch, yaw of B in W [rad]
-    posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
-    tool: ToolModel | str | None = None  # or the name of a shipped tool, or a path
-    tools: list[ToolModel] = []  # to choose from on the pendant, besides those shipped
+    robot: Text = "ur5e"
+    mounting: Literal["floor", "wall", "ceiling"] | Angles = "floor"  # or roll, pitch, yaw of B in W [rad]
+    posture: Posture | None = None  # joint angles at the start; None: the arm's home [rad]
+    tool: ToolModel | Text | None = None  # or the name of a shipped tool, or a path
+    tools: Tools = []  # to choose from on the pendant, besides those shipped
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     settings: dict[str, float | bool | str] = {}  # overrides, by dotted name
@@ -30,28 +39,31 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
-    world: list[AnyObject] | str = []  # objects, or the name of a bundled world
-    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
+    world: World | Text = []  # objects, or the name of a bundled world
+    walls: Walls = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
 
 
 class Session(Setup, frozen=True, kw_only=True):
     """A scripted session."""
 
-    title: str
-    watch: str = ""  # what to look at, in two sentences; the page offers sessions that say it as scenarios
+    title: Text
+    watch: Text = ""  # what to look at, in two sentences; the page offers sessions that say it as scenarios
     duration: Annotated[float, Meta(gt=0, le=3600)]  # [s]
-    claims: list[str] = []  # rows of `pendant claims` that this session shows (app/session/claims.py)
+    claims: Claims = []  # rows of `pendant claims` that this session shows (app/session/claims.py)
     switch: str | None = None  # the feature, or setting that is true or false or a choice, without which it must fail
     program: Program | None = None  # loaded at the start
-    timeline: list[AnyAction] = []
-    expectations: list[AnyExpectation] = []
+    timeline: Annotated[list[AnyAction], Meta(max_length=MOST_STEPS)] = []
+    expectations: Annotated[list[AnyExpectation], Meta(max_length=MOST_STEPS)] = []
 
 
 class WorldSection(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A bundled world."""
 
-    title: str
-    objects: list[AnyObject]
+    title: Text
+    objects: World
+
+
+T = TypeVar("T", bound=Setup)
 
 
 def folder(kind: str) -> Path:
@@ -90,3 +102,34 @@ def find_all(name: str) -> list[Path]:
     if not found:
         raise BadInput(name, "", ABSENT, "no session in this folder; expected files that end in .yaml")
     return found
+
+
+def opened(path: Path, kind: type[T], anywhere: bool = False) -> T:
+    """The session or configuration at `path`, with the arm and the tool that it names found.
+
+    Args:
+        path: of the file.
+        kind: Session or Setup.
+        anywhere: files that it names may be anywhere on this machine.
+
+    Raises:
+        BadInput: as `load`; or it names a file that is neither in its folder nor below.
+    """
+    setup = load(path, kind)
+    folder = path.parent.resolve()
+    found: dict[str, str] = {}
+    for field, library in (("robot", "robots"), ("tool", "tools")):
+        name = getattr(setup, field)
+        if isinstance(name, str) and not shipped(name, library):
+            found[field] = _within(folder, name, anywhere=anywhere, field=field, where=path.name)
+    return msgspec.structs.replace(setup, **found)
+
+
+def _within(folder: Path, name: str, *, anywhere: bool, field: str, where: str) -> str:
+    try:
+        path = (folder / name).resolve()
+    except (OSError, ValueError):  # a circle of links, a NUL
+        return name
+    if not (anywhere or path.is_relative_to(folder)):
+        raise BadInput(where, field, name, "a file in the folder of this one or below; with --any-file it may be anywhere")
+    return str(path) if path.exists() else name

@@ -8,8 +8,8 @@ from msgspec import Meta
 
 from pendant.decision import Decision
 from pendant.events.event import Kind
+from pendant.settings.bounds import Time
 from pendant.tick.modes import Mode, Phase, Safety
-from sim.arm.arm_file import NotNegative
 
 WORDS: dict[str, tuple[str, ...]] = {
     "mode": tuple(mode.value for mode in Mode),
@@ -45,8 +45,8 @@ class After(msgspec.Struct, frozen=True, kw_only=True):
 class When(After, frozen=True, kw_only=True):
     """Base of a time-line entry: either `at` a time, or `delay` after something."""
 
-    at: NotNegative | None = None  # since the start of the session [s]
-    delay: NotNegative = 0.0  # [s]
+    at: Time | None = None  # since the start of the session [s]
+    delay: Time = 0.0  # [s]
 
     def __post_init__(self) -> None:
         """Check that there is one time."""

@@ -98,8 +98,8 @@ class Replay(Site):
         places = {f"{event.t:.2f} s {event.headline}": event.t for event in log.events}
         self.goto = gui.add_dropdown("Event", (NOWHERE, *places))
         self.facts = Html(gui)
-        if not log.whole:
-            Html(gui, svg.note("Cut", "This recording lacks its end: the process was ended while it wrote.", Colour.AMBER))
+        if log.missing:
+            Html(gui, svg.note("Not whole", f"Of this recording {log.missing}.", Colour.AMBER))
         gui.main_panel.dock_right()
         gui.main_panel.set_width(304)
 

@@ -22,6 +22,8 @@ class Running(Protocol):
     paused: bool
     watch: Callable[[Simulation, Decision], None] | None  # shown each tick
     dropped: float  # time that it was too late for, so far [s]
+    failure: str  # why nothing is simulated; empty while something is
+    ended: Callable[[Event], None] | None  # told why no tick follows
 
     @property
     def simulation(self) -> Simulation:
@@ -54,7 +56,7 @@ class Running(Protocol):
         ...
 
     def latest(self) -> Snapshot:
-        """The newest snapshot; RuntimeError when the simulation has ended."""
+        """The newest snapshot."""
         ...
 
     def events(self, since: int) -> list[Event]:

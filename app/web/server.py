@@ -67,12 +67,8 @@ class Served(Site):
         self.recording.close()
 
     def draw(self) -> bool:
-        """Show what is new of the loop; False once it has failed."""
-        try:
-            snapshot = self._loop.latest()
-        except RuntimeError as failure:
-            self.panel.fail(str(failure))
-            return False
+        """Show what is new of the loop; there is always a next picture."""
+        snapshot = self._loop.latest()
         if snapshot.tick != self._shown:
             self.scene.show(snapshot)
             self._shown = snapshot.tick

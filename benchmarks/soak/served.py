@@ -91,7 +91,7 @@ def run(seed: int) -> None:
         pace.look(state)
         state.at, state.memory, state.dropped = time.monotonic() - start, resident(), loop.dropped
         state.events, state.clients = len(loop.events(0)), len(served.server.get_clients())
-        state.failed = loop.failure is not None or served._painter.done()
+        state.failed = bool(loop.failure) or served._painter.done()
         print(json.dumps(asdict(state)), flush=True)
     served.close()
     loop.stop()

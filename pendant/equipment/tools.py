@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from pendant.equipment.load import NOTHING, Load, NotNegative, Problem, Vector, misplaced, problem
+from pendant.equipment.load import NOTHING, Angles, Load, Moments, Problem, Vector, misplaced, problem
+from pendant.settings.bounds import Mass
 
 LONGEST = 40
 """Of a tool's name [characters]."""
@@ -18,11 +19,11 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     """A tool: its tool centre point and its load go together, so that no change takes one without the other."""
 
     name: str
-    mass: NotNegative  # [kg]
+    mass: Mass  # [kg]
     com: Vector  # centre of mass in F [m]
     tcp: Vector  # tool centre point: p_FT [m]
-    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of T in F [rad]
-    inertia: list[float] | None = None  # about the centre: ixx iyy izz ixy ixz iyz, axes of F [kg·m²]
+    rpy: Angles = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of T in F [rad]
+    inertia: Moments | None = None  # about the centre: ixx iyy izz ixy ixz iyz, axes of F [kg·m²]
 
 
 BARE = Tool(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])

@@ -108,6 +108,7 @@ class Kind(StrEnum):
     SETTING_CHANGED = "setting_changed"
     SETTING_REFUSED = "setting_refused"
     OVERRUN = "overrun"
+    BROKEN_DOWN = "broken_down"
 
 
 class Event(msgspec.Struct, frozen=True):

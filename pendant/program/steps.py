@@ -8,6 +8,7 @@ import msgspec
 from msgspec import Meta
 
 from pendant.program.reaction import Until
+from pendant.settings.bounds import MOST_JOINTS, MOST_STEPS, Angle, Coordinate, Text
 from pendant.tick.pose import Vector
 
 UNFELT: Vector = (0.0, 0.0, 0.0)
@@ -27,7 +28,7 @@ class Move(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
 class JointMove(Move, tag="joint", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """To joint angles, all joints arriving together, at rest."""
 
-    q: tuple[float, ...]  # (n,) output angles [rad]
+    q: Annotated[tuple[Angle, ...], Meta(max_length=MOST_JOINTS)]  # (n,) output angles [rad]
     speed: Fraction = 0.25  # of each joint's limit
     acceleration: Fraction = 0.25  # of each joint's limit
     until: Until | None = None  # a contact that ends it (CD-15)
@@ -39,7 +40,7 @@ class JointMove(Move, tag="joint", frozen=True, forbid_unknown_fields=True, kw_o
 class LinearMove(Move, tag="linear", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The tool centre point along a straight line in B, to a pose X_BT, at rest."""
 
-    position: tuple[float, float, float]  # p_BT [m]
+    position: tuple[Coordinate, Coordinate, Coordinate]  # p_BT [m]
     quaternion: tuple[float, float, float, float]  # wxyz, orientation of T in B
     speed: Annotated[float, Meta(gt=0.0, le=3.0)] = 0.1  # [m/s]
     acceleration: Annotated[float, Meta(gt=0.0, le=50.0)] = 0.5  # [m/s²]
@@ -103,8 +104,8 @@ AnyStep = JointMove | LinearMove | Wait | WaitForContact | SwitchTool | ApplyFor
 class Program(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A named list of steps, run once from first to last."""
 
-    name: str = "program"
-    steps: Annotated[tuple[AnyStep, ...], Meta(min_length=1)]
+    name: Text = "program"
+    steps: Annotated[tuple[AnyStep, ...], Meta(min_length=1, max_length=MOST_STEPS)]
 
 
 class ProgramState(StrEnum):

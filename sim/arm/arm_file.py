@@ -5,9 +5,35 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-Positive = Annotated[float, Meta(gt=0)]
-NotNegative = Annotated[float, Meta(ge=0)]
-Count = Annotated[int, Meta(ge=1)]
+from pendant.settings.bounds import (
+    MOST_JOINTS,
+    Angle,
+    Capacity,
+    Celsius,
+    Count,
+    Days,
+    Extent,
+    HeatCapacity,
+    HeatResistance,
+    JointAcceleration,
+    JointSpeed,
+    JointTorque,
+    LinkMass,
+    Moment,
+    Name,
+    NotNegative,
+    Offset,
+    PerKelvin,
+    Positive,
+    Reach,
+    RotorInertia,
+    Share,
+    Text,
+    Thickness,
+)
+
+Range = Annotated[float, Meta(ge=0.01, le=100.0)]  # of a joint, each way [rad]
+Joints = Annotated[list[Name], Meta(min_length=2, max_length=MOST_JOINTS)]
 Status = Literal["official", "measured", "assumed"]
 
 
@@ -15,41 +41,41 @@ class Sourced(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     """Where a group of values comes from. `assumed` names those of its values that are assumed although the rest is not."""
 
     status: Status
-    source: Annotated[str, Meta(min_length=1)]
+    source: Annotated[str, Meta(min_length=1, max_length=2000)]
     assumed: list[str] = []
 
 
 class ChainParameters(Sourced, frozen=True):
     """Kinematics, standard Denavit-Hartenberg (link i's frame sits behind joint i: Rz(q) Tz(d) Tx(a) Rx(alpha))."""
 
-    joints: list[str]  # names, base to flange
-    a: list[float]  # [m]
-    d: list[float]  # [m]
-    alpha: list[float]  # [rad]
+    joints: Joints  # names, base to flange
+    a: list[Offset]  # [m]
+    d: list[Offset]  # [m]
+    alpha: list[Angle]  # [rad]
     elbow: int  # index of the joint whose origin is the elbow
-    home: list[float]  # default posture [rad]
+    home: list[Angle]  # default posture [rad]
 
 
 class Masses(Sourced, frozen=True):
     """Link masses and centres."""
 
-    mass: list[Positive]  # [kg]
-    com: list[list[float]]  # centre of mass in the DH link frame [m]
+    mass: list[LinkMass]  # [kg]
+    com: list[list[Offset]]  # centre of mass in the DH link frame [m]
 
 
 class Inertias(Sourced, frozen=True):
     """Link inertia about the centre of mass: ixx iyy izz ixy ixz iyz [kg·m²], axes of the joint frame (z = joint axis, q = 0)."""
 
-    tensor: list[list[float]]
+    tensor: list[list[Moment]]
 
 
 class ArmLimits(Sourced, frozen=True):
     """Joint limits."""
 
-    position: list[Positive]  # ± [rad]
-    speed: list[Positive]  # [rad/s]
-    acceleration: list[Positive]  # [rad/s²]
-    torque: list[Positive]  # at the output [N·m]
+    position: list[Range]  # ± [rad]
+    speed: list[JointSpeed]  # [rad/s]
+    acceleration: list[JointAcceleration]  # [rad/s²]
+    torque: list[JointTorque]  # at the output [N·m]
 
 
 class Motors(Sourced, frozen=True):
@@ -58,7 +84,7 @@ class Motors(Sourced, frozen=True):
     gear: list[Positive]
     torque_constant: list[Positive]  # motor side [N·m/A]
     current: list[Positive]  # largest [A]
-    rotor_inertia: list[Positive]  # reflected to the output [kg·m²]
+    rotor_inertia: list[RotorInertia]  # reflected to the output [kg·m²]
     ripple: list[NotNegative]  # torque ripple amplitude at the output [N·m], at twice the wave generator's turn
 
 
@@ -78,19 +104,19 @@ class Frictions(Sourced, frozen=True):
     speed: list[NotNegative]  # where the curve was measured [rad/s], rising
     torque: list[list[Positive]]  # a row a joint, friction at those speeds [N·m]
     breakaway: list[Positive]  # at rest [N·m]
-    output_share: NotNegative  # part of it that acts on the output side (bearings, seals)
+    output_share: Share  # part of it that acts on the output side (bearings, seals)
     load: list[NotNegative]  # rise with |tau_J| [N·m per N·m]
-    temperature: Positive  # reference [°C]
-    per_kelvin: float  # relative change a kelvin at the reference
+    temperature: Celsius  # reference [°C]
+    per_kelvin: PerKelvin  # relative change a kelvin at the reference
     presliding: list[Positive]  # bristle stiffness [N·m/rad]
 
 
 class Thermals(Sourced, frozen=True):
     """Joint temperature, one mass a joint."""
 
-    capacity: list[Positive]  # [J/K]
-    resistance: list[Positive]  # to the room [K/W]
-    ambient: float  # [°C]
+    capacity: list[HeatCapacity]  # [J/K]
+    resistance: list[HeatResistance]  # to the room [K/W]
+    ambient: Celsius  # [°C]
 
 
 class Encoders(Sourced, frozen=True):
@@ -116,12 +142,12 @@ class Drift(Sourced, frozen=True):
     `sim.sensing.sensor_drift` has the model, and the largest error and the fastest change that these numbers allow.
     """
 
-    warm_up: Positive  # time constant [s]; a sensor's own is half to one and a half times as long, by the seed
+    warm_up: Days  # time constant [s]; a sensor's own is half to one and a half times as long, by the seed
     force: NotNegative  # largest zero error of an axis when warm [N]; each is drawn evenly within ±
     torque: NotNegative  # the same [N·m]
     walk_force: NotNegative  # standard deviation of the walk [N]
     walk_torque: NotNegative  # the same [N·m]
-    walk_time: Positive  # time in which the walk forgets where it was (correlation time) [s]
+    walk_time: Days  # time in which the walk forgets where it was (correlation time) [s]
 
 
 class ForceTorque(Sourced, frozen=True):
@@ -132,8 +158,8 @@ class ForceTorque(Sourced, frozen=True):
     stiffness: Positive  # between its two faces [N/m]
     stiffness_soft: Positive  # demonstration setting (CD-17) [N/m]
     damping_ratio: NotNegative
-    plate_mass: Positive  # of the tool-side face [kg]
-    plate_length: NotNegative  # from the sensing plane to the tool-side face [m]
+    plate_mass: LinkMass  # of the tool-side face [kg]
+    plate_length: Extent  # from the sensing plane to the tool-side face [m]
     drift: Drift | None = None  # None: its zero stays where it is
 
 
@@ -151,30 +177,30 @@ class SensorNumbers(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_
 class Outline(Sourced, frozen=True):
     """The housings, for pictures. Link k starts at the seam of joint k and ends at the seam of joint k + 1."""
 
-    seam: list[float]  # where link k meets its predecessor: z in the joint frame of link k [m]
-    housing_radius: list[Positive]  # of the housing of each joint [m]
-    tube_offset: list[float]  # z of a link's tube in its joint frame [m]; of use only where a is not 0
-    tube_radius: list[Positive]  # of a link's tube in its middle [m]; of use only where a is not 0
-    foot_radius: Positive  # of the base [m]
-    flange_radius: Positive  # of the tool flange [m]
+    seam: list[Offset]  # where link k meets its predecessor: z in the joint frame of link k [m]
+    housing_radius: list[Thickness]  # of the housing of each joint [m]
+    tube_offset: list[Offset]  # z of a link's tube in its joint frame [m]; of use only where a is not 0
+    tube_radius: list[Thickness]  # of a link's tube in its middle [m]; of use only where a is not 0
+    foot_radius: Thickness  # of the base [m]
+    flange_radius: Thickness  # of the tool flange [m]
 
 
 class Capsule(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A collision shape of a link: a segment with a radius, in the link's joint frame (z = joint axis, q = 0) [m]."""
 
     link: int  # -1 the base, 0 the first link, ...
-    start: list[float]
-    end: list[float]
-    radius: Positive
+    start: list[Offset]
+    end: list[Offset]
+    radius: Thickness
 
 
 class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """An arm, as its file says. Lists run from base to flange; n joints."""
 
-    name: str
-    title: str
-    reach: Positive  # [m]
-    payload: Positive  # largest [kg]
+    name: Name
+    title: Text
+    reach: Reach  # [m]
+    payload: Capacity  # largest [kg]
     rating: Sourced  # of reach and payload
     chain: ChainParameters
     masses: Masses
@@ -186,7 +212,7 @@ class Arm(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True)
     thermals: Thermals
     sensors: SensorNumbers
     outline: Outline
-    shapes: list[Capsule]
+    shapes: Annotated[list[Capsule], Meta(max_length=60)]
 
     @property
     def n(self) -> int:

@@ -1,22 +1,26 @@
 """What to simulate: mounting, tool, true and configured payload, world, seed."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
+from msgspec import Meta
 
 import pendant.equipment.tools
-from pendant.equipment.load import Load, Vector
+from pendant.equipment.load import Angles, Load, Vector
+from pendant.settings.bounds import Extent, Force, Friction, Name, Size, Span, Stiffness, Thickness
 from pendant.walls.definitions import AnyBorder
-from sim.arm.arm_file import NotNegative, Positive
 
 __all__ = ["BARE", "AnyObject", "Load", "Scenario", "ToolModel", "Vector", "table"]
+
+
+Sizes = Annotated[list[Size], Meta(min_length=3, max_length=3)]  # full lengths [m]
 
 
 class ToolModel(pendant.equipment.tools.Tool, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A tool as it is: told to the controller, and with the shape of a capsule along z of F. Without an inertia a cylinder."""
 
-    length: NotNegative = 0.0  # of its shape; 0 for none [m]
-    radius: Positive = 0.03  # [m]
+    length: Extent = 0.0  # of its shape; 0 for none [m]
+    radius: Thickness = 0.03  # [m]
 
 
 BARE = ToolModel(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.0])
@@ -26,17 +30,17 @@ BARE = ToolModel(name="flange", mass=0.0, com=[0.0, 0.0, 0.0], tcp=[0.0, 0.0, 0.
 class WorldObject(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
     """A thing the arm can touch. Pose in W."""
 
-    name: str
+    name: Name
     position: Vector  # [m]
-    rpy: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw [rad]
-    stiffness: Positive = 1e5  # true contact stiffness [N/m]
-    friction: NotNegative = 0.5  # Coulomb coefficient
+    rpy: Angles = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw [rad]
+    stiffness: Stiffness = 1e5  # true contact stiffness [N/m]
+    friction: Friction = 0.5  # Coulomb coefficient
 
 
 class BoxObject(WorldObject, tag="box", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A box (table, wall, block); `position` is its centre."""
 
-    size: Vector  # full lengths [m]
+    size: Sizes  # full lengths [m]
 
 
 class Plane(WorldObject, tag="plane", frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -46,31 +50,31 @@ class Plane(WorldObject, tag="plane", frozen=True, forbid_unknown_fields=True, k
 class Pad(WorldObject, tag="pad", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A soft pad: a box of its own, low stiffness."""
 
-    size: Vector
-    stiffness: Positive = 1e3
+    size: Sizes
+    stiffness: Stiffness = 1e3
 
 
 class SnapFit(WorldObject, tag="snap-fit", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A box whose resistance breaks at `force` and gives way by `travel` along its -z axis, then resists again."""
 
-    size: Vector
-    force: Positive = 30.0  # [N]
-    travel: Positive = 0.004  # [m]
+    size: Sizes
+    force: Force = 30.0  # [N]
+    travel: Size = 0.004  # [m]
 
 
 class TwoFrictions(WorldObject, tag="two-frictions", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A box whose top has `friction` where its x < 0 and `friction_beyond` where its x > 0."""
 
-    size: Vector
-    friction_beyond: NotNegative = 1.0
+    size: Sizes
+    friction_beyond: Friction = 1.0
 
 
 class Moving(WorldObject, tag="moving", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A box that moves to and fro: position + amplitude·sin(2 pi t / period)."""
 
-    size: Vector
+    size: Sizes
     amplitude: Vector  # [m]
-    period: Positive = 4.0  # [s]
+    period: Span = 4.0  # [s]
 
 
 AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving
@@ -79,7 +83,7 @@ AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """All that a simulation starts from, besides the arm and the settings."""
 
-    mounting: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
+    mounting: Angles = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
     tool: ToolModel | None = None  # mounted, and the one in use at the start
     tools: list[ToolModel] = []  # to choose from on the pendant, besides that one

@@ -4,7 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from sim.arm.arm_file import NotNegative
+from pendant.settings.bounds import Celsius, Factor, Signed
 from sim.arm.scenario import Load, Vector
 
 
@@ -27,9 +27,9 @@ class SensorFault(TrueChange, tag="sensor", frozen=True, forbid_unknown_fields=T
 
     sensor: Literal["motor_encoder", "output_encoder", "current", "force_torque", "accelerometer", "gyro"]
     channel: int | None = None
-    offset: float = 0.0  # step, at once [sensor's unit]
-    drift: float = 0.0  # [sensor's unit/s]
-    noise_factor: NotNegative = 1.0
+    offset: Signed = 0.0  # step, at once [sensor's unit]
+    drift: Signed = 0.0  # [sensor's unit/s]
+    noise_factor: Factor = 1.0
     outage: bool = False
 
 
@@ -37,14 +37,14 @@ class FrictionChange(TrueChange, tag="friction", frozen=True, forbid_unknown_fie
     """True friction of a joint (None: all) times `factor` (wear, grease)."""
 
     joint: str | None = None
-    factor: NotNegative
+    factor: Factor
 
 
 class Temperature(TrueChange, tag="temperature", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """True temperature of a joint (None: all)."""
 
     joint: str | None = None
-    celsius: float
+    celsius: Celsius
 
 
 class MoveObject(TrueChange, tag="move_object", frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -13,6 +13,9 @@ Array = NDArray[np.float64]
 
 SIGN_SPEED = 0.01  # [rad/s]
 
+FASTEST = 1e3
+"""No joint is faster [rad/s]; one that is shows that the physics diverged."""
+
 
 class PhysicsState(NamedTuple):
     """Arrays of MuJoCo's that a tick reads."""
@@ -116,8 +119,12 @@ def drive(plant, friction, inputs, torque) -> None:
 
 
 @kernel
-def finish(plant, state) -> None:
-    """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction."""
+def finish(plant, state) -> bool:
+    """Gather the state, the mean of each flange sensor over the substeps, and the heat of friction.
+
+    Returns:
+        Whether all of it is finite, and no joint faster than anything is.
+    """
     gather(plant, state)
     own, history = plant[0], PhysicsState(*state).history
     for j in range(own.flange.size):
@@ -127,3 +134,9 @@ def finish(plant, state) -> None:
         own.flange[j] = total / own.kept.shape[0]
     for i in range(own.heat.size):
         own.heat[i] += abs(own.friction_in[i] * own.theta_d[i])
+    sane = True
+    for i in range(own.q.size):
+        sane = sane and abs(own.qd[i]) < FASTEST and abs(own.theta_d[i]) < FASTEST  # what is not a number is not less
+    for j in range(own.flange.size):
+        sane = sane and abs(own.flange[j]) < np.inf
+    return sane

@@ -64,6 +64,8 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
     spec.option.timestep = step.length
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    # MuJoCo would put a state that is not finite back to its beginning, in silence.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     rigid, friction = chain(arm), Friction(arm)
 
     base = spec.worldbody.add_body(name="foot", quat=quaternion_from_matrix(rotation_from_rpy(scenario.mounting)))

@@ -137,6 +137,7 @@ class Plant:
 
         Raises:
             KeyError: a touch names a part that does not exist; `parts` has those that do.
+            FloatingPointError: the state is not finite any more, or a joint faster than anything is.
         """
         self.hands.apply(touches)
         if self.scenario.world:
@@ -145,7 +146,8 @@ class Plant:
             self._brake(braked)
         drive(self.record, self.friction.record, self._driven, motor_torque)
         mujoco.mj_step(self.model, self.data, nstep=self.step.substeps)
-        finish(self.record, self._state)
+        if not finish(self.record, self._state):
+            raise FloatingPointError(f"the physics diverged after {self.tick * self.step.tick:.3f} s")
         self.tick += 1
         if self.tick % WARMTH_TICKS == 0:
             self._warm()

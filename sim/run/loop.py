@@ -1,6 +1,7 @@
 """The paced loop: ticks a simulation in a thread of its own, in step with the clock, and never chases a debt."""
 
 import gc
+import logging
 import os
 import sys
 import threading
@@ -13,7 +14,7 @@ from typing import Protocol
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Tool
-from pendant.events.event import Event
+from pendant.events.event import Event, Kind
 from pendant.tick.modes import TICK, TICK_RATE
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Desk, Wishes
@@ -33,6 +34,10 @@ DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must lea
 PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
 
 
+LONGEST_REASON = 300
+"""Of what is told of a failure [characters]."""
+
+
 class Script(Protocol):
     """What acts by itself: a session's time line."""
 
@@ -45,6 +50,10 @@ class Script(Protocol):
         ...
 
 
+Beginning = tuple[Callable[[], Simulation], Callable[[], Script] | None]
+"""What makes a simulation, and the script that acts in it."""
+
+
 class Loop:
     """Runs `make()`'s simulation in real time, or slower.
 
@@ -55,6 +64,7 @@ class Loop:
     def __init__(self, make: Callable[[], Simulation]) -> None:
         self._make = make
         self._write: Callable[[], Script] | None = None
+        self._next: Beginning | None = None  # what is to begin
         self._script: Script | None = None
         self.simulation = make()
         self.desk = Desk()
@@ -66,12 +76,12 @@ class Loop:
         self.dropped = 0.0  # debt dropped so far [s]
         self._spell = Lateness()
         self._steps = threading.Semaphore(0)  # single steps asked for and not done yet
-        self._reset = False
+        self.ended: Callable[[Event], None] | None = None  # told on the loop's thread why no tick follows
         self._stop = threading.Event()
         self._events: list[Event] = []
         self._snapshot: Snapshot | None = None
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
-        self.failure: BaseException | None = None
+        self.failure = ""  # why the arm stands and nothing is simulated, until the next start
 
     @property
     def seed(self) -> int:
@@ -111,10 +121,8 @@ class Loop:
         """The newest snapshot.
 
         Raises:
-            RuntimeError: the loop has not been started, or its thread died of an error.
+            RuntimeError: the loop has not been started.
         """
-        if self.failure is not None:
-            raise RuntimeError(f"the simulation stopped: {self.failure}") from self.failure
         if self._snapshot is None:
             raise RuntimeError("the loop has not been started")
         return self._snapshot
@@ -129,8 +137,8 @@ class Loop:
             self._steps.release()
 
     def reset(self) -> None:
-        """Go back to the scenario's start at the next tick."""
-        self._reset = True
+        """Go back to the scenario's start at the next tick; after a failure to that of the last simulation that began."""
+        self._next = (self._make, self._write)
 
     def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
         """Go over to another simulation at the next tick; a later `reset` leads back to its start.
@@ -139,14 +147,15 @@ class Loop:
             make: builds it.
             write: gives the script that is to act in it, beside whoever is at the desk; called anew at each start.
         """
-        self._make, self._write = make, write
-        self._reset = True
+        self._next = (make, write)
 
-    def _start_over(self) -> None:
-        self._reset = False
-        self.simulation = self._make()
+    def _start_over(self, make: Callable[[], Simulation], write: Callable[[], Script] | None) -> None:
+        self._next = None
+        self.simulation = make()
+        self._make, self._write = make, write
+        self.failure = ""
         gc.collect()  # the one before holds megabytes that are not Python's, and would wait long to be found
-        self._script = self._write() if self._write is not None else None
+        self._script = write() if write is not None else None
         self.desk.clear()
         self._do_tick()
 
@@ -177,11 +186,24 @@ class Loop:
 
     def _run(self) -> None:
         _ask_for_real_time()
-        try:
-            self._pace()
-        except BaseException as error:
-            self.failure = error
-            raise
+        while not self._stop.is_set():
+            try:
+                self._pace()
+            except Exception as error:  # noqa: BLE001 - whatever it is, the page must say so
+                self._break_down(error)
+
+    def _break_down(self, error: Exception) -> None:
+        """The last line of defence: the arm stays where it is, and why is told, until somebody starts over."""
+        logging.getLogger(__name__).error("the simulation broke down", exc_info=error)
+        self.actual_rate = 0.0
+        self.failure = f"{type(error).__name__}: {' '.join(str(error).split())}"[:LONGEST_REASON]
+        event = Event(Kind.BROKEN_DOWN, self.simulation.plant.tick, {"reason": self.failure})
+        self._events.append(event)
+        if self.ended is not None:
+            self.ended(event)
+        while self._next is None and not self._stop.is_set():
+            self.desk.clear()
+            time.sleep(PAUSE_NAP)
 
     def _pace(self) -> None:
         due = time.perf_counter()
@@ -189,8 +211,8 @@ class Loop:
         while not self._stop.is_set():
             if spell.times and spell.over(time.perf_counter()):
                 self._tell_spell()
-            if self._reset:
-                self._start_over()
+            if self._next is not None:
+                self._start_over(*self._next)
                 due = time.perf_counter()
             if self.paused:
                 self._stand()

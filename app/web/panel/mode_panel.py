@@ -86,6 +86,8 @@ class Panel:
             self._read(event)
         if self._note is not None and self._over(self._note, decision):
             self._note = None
+        if self._loop.failure:
+            return self._fail(self._loop.failure)
         word, colour = _state(decision)
         bars = decision.monitored
         changed = [
@@ -101,10 +103,16 @@ class Panel:
         ]
         return any(changed)
 
-    def fail(self, reason: str) -> None:
-        """Say that the simulation is no more."""
-        self.light.show(svg.light("FAULT", "Stopped", "Unknown", Colour.RED))
-        self.note.show(svg.note("The simulation ended", f"{reason}. Start the program again.", Colour.RED))
+    def _fail(self, reason: str) -> bool:
+        """Say that nothing is simulated any more, and how to go on; True if that was new."""
+        changed = [
+            self.light.show(svg.light("FAULT", "Nothing moves", "Unknown", Colour.RED)),
+            self.note.show(svg.note("The simulation broke down", f"{reason}. Press Start over, on the tab Lab.", Colour.RED)),
+            self.rings.show(svg.rings(())),
+            enable(self.leave, False),
+            enable(self.reset, False),
+        ]
+        return any(changed)
 
     def let_go(self, client: int) -> None:
         """Release what `client` holds: the button, the enabling device."""

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import msgspec
 import viser
 import yaml
+from msgspec import Meta
 
 from app.files.bodies import OVERLOAD, check_tools
 from app.files.checked import BadInput, parse
@@ -14,8 +15,8 @@ from app.web.running import Running
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
-from pendant.equipment.load import FARTHEST
-from pendant.equipment.tools import Tool
+from pendant.equipment.tools import MOST, Tool
+from pendant.settings.bounds import FARTHEST
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import BARE
 from sim.arm.scenario import ToolModel as ShapedTool
@@ -46,7 +47,7 @@ HEAVIEST = 1e4
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A file of tools; it also serves as a file for `pendant serve --config`."""
 
-    tools: list[ShapedTool]
+    tools: Annotated[list[ShapedTool], Meta(max_length=MOST)]
 
 
 class ToolEditor:
@@ -110,7 +111,7 @@ class ToolEditor:
         """Take the tools of a file into the table, over those of the same names, or say in a line why not."""
         try:
             tools = parse(content.decode("utf-8", "replace"), Table, name).tools
-            check_tools(tools, self._arm, name, "tools")
+            check_tools(tools, self._arm, name, most=1.0)
         except BadInput as refusal:
             self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
             return

@@ -55,10 +55,13 @@ def test_a_missing_file_says_so(tmp_path: Path) -> None:
         load_arm(tmp_path / "none.yaml")
 
 
+DRIFT = "arm.yaml: sensors.force_torque.drift"
+
+
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        ("payload: 5.0", "payload: -1", "arm.yaml: payload = -1: expected a number > 0"),
+        ("payload: 5.0", "payload: -1", "arm.yaml: payload = -1: expected a number >= 0.01 and <= 1000"),
         (
             "payload: 5.0",
             "payload: 5.0\npayload: 6.0",
@@ -71,10 +74,22 @@ def test_a_missing_file_says_so(tmp_path: Path) -> None:
             "  status: guessed",
             "arm.yaml: motors.status = guessed: expected one of official, measured, assumed",
         ),
-        ("warm_up: 600.0", "warm_up: 0.0", "arm.yaml: sensors.force_torque.drift.warm_up = 0.0: expected a number > 0"),
-        ("walk_time: 1800.0", "walk_time: -1", "arm.yaml: sensors.force_torque.drift.walk_time = -1: expected a number > 0"),
-        ("walk_force: 0.3", "walk_force: -0.3", "arm.yaml: sensors.force_torque.drift.walk_force = -0.3: expected a number >= 0"),
-        ("output_share: 0.08", "output_share: 1.08", "arm.yaml: frictions.output_share = 1.08: expected 0 to 1"),
+        (
+            "warm_up: 600.0",
+            "warm_up: 0.0",
+            f"{DRIFT}.warm_up = 0.0: expected a number >= 1 and <= 1e+06",
+        ),
+        (
+            "walk_time: 1800.0",
+            "walk_time: -1",
+            f"{DRIFT}.walk_time = -1: expected a number >= 1 and <= 1e+06",
+        ),
+        (
+            "walk_force: 0.3",
+            "walk_force: -0.3",
+            f"{DRIFT}.walk_force = -0.3: expected a number >= 0 and <= 1e+09",
+        ),
+        ("output_share: 0.08", "output_share: 1.08", "arm.yaml: frictions.output_share = 1.08: expected a number >= 0 and <= 1"),
     ],
 )
 def test_a_bad_arm_is_one_line(tmp_path: Path, old: str, new: str, line: str) -> None:

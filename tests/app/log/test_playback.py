@@ -73,7 +73,7 @@ def test_time_runs_while_it_plays_and_stops_at_the_end(player: Player) -> None:
 def test_a_time_has_its_tick_and_its_picture(player: Player, time: float, row: int, picture: int) -> None:
     player.jump(time)
     assert (player.row, player.picture) == (row, picture)
-    assert player.log.pictures[picture]["tick"] == 8 * picture + 1
+    assert player.log.pictures[picture].tick == 8 * picture + 1
 
 
 def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]) -> None:
@@ -92,12 +92,12 @@ def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]
             assert getattr(found.decision, name) == getattr(was.decision, name)
         assert (found.tick, found.truth_payload_mass, found.configured_mass) == (tick, 1.0, 1.0)
         assert found.touches == was.touches
-    assert any(each["touches"] for each in log.pictures)
+    assert any(each.touches for each in log.pictures)
 
 
 def test_a_log_without_a_tick_is_refused(played: tuple[Log, dict[int, Snapshot]]) -> None:
     log = played[0]
-    empty = Log(log.path, False, log.run, log.arm, log.scenario, log.ticks[:0], {}, {}, [], [], [], [])
+    empty = Log(log.path, False, "", log.run, log.arm, log.scenario, log.ticks[:0], {}, {}, [], [], [], [])
     with pytest.raises(BadInput, match="holds no tick"):
         Player(empty)
 

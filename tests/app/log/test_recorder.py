@@ -19,8 +19,9 @@ from mcap_ros2.decoder import DecoderFactory
 from app.files.checked import BadInput, convert
 from app.log import foxglove
 from app.log.playback import Player
-from app.log.reader import Log, read, repair
+from app.log.reader import Log, read
 from app.log.recorder import AHEAD, BLOCK, SLOW, Recorder
+from app.log.scan import repair
 from app.runs.runner import record, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session

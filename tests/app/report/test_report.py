@@ -190,7 +190,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
 def test_an_empty_log_gives_a_report_too(log: Log, tmp_path: Path) -> None:
     none = {name: values[:0] for name, values in log.state.items()}
     truth = {name: values[:0] for name, values in log.truth.items()}
-    empty = Log(log.path, False, log.run, log.arm, log.scenario, log.ticks[:0], none, truth, [], [], [], [])
+    empty = Log(log.path, False, "", log.run, log.arm, log.scenario, log.ticks[:0], none, truth, [], [], [], [])
     assert write_report(empty, tmp_path / "new").duration == 0.0
     assert "No expectations were given" in (tmp_path / "new" / "report.html").read_text()
     (tmp_path / "file").write_text("")

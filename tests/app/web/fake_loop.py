@@ -72,6 +72,8 @@ class FakeLoop:
     def __init__(self) -> None:
         self.desk = Desk()
         self.watch: Any = None
+        self.ended: Any = None
+        self.failure = ""
         self.speed = 1.0
         self.paused = False
         self.actual_rate = 1.0

@@ -37,7 +37,7 @@ def test_what_is_wrong_is_said_with_its_value_and_what_is_allowed(load: Load, ex
 def test_what_is_not_a_number_is_refused() -> None:
     assert problem(Load(mass=math.nan), 5.0) is not None
     assert misplaced([0.0, math.nan, 0.0], "tcp") is not None
-    assert strange([math.nan] * 6) is not None
+    assert strange([math.nan] * 6, 1.0) is not None
 
 
 @pytest.mark.parametrize(
@@ -47,6 +47,8 @@ def test_what_is_not_a_number_is_refused() -> None:
         ([0.01, 0.01, 0.021, 0.0, 0.0, 0.0], "principal moments"),  # thinner than a disc
         ([0.0, 0.01, 0.01, 0.0, 0.0, 0.0], "principal moments"),
         ([0.01, 0.01, 0.01, 0.02, 0.0, 0.0], "principal moments"),  # one of them below 0
+        ([1.01, 1.01, 1.01, 0.0, 0.0, 0.0], "principal moments from 1e-08 to 1 kg·m² for 1 kg"),  # a kilogram more than 1 m away
+        ([0.9e-8, 0.9e-8, 0.9e-8, 0.0, 0.0, 0.0], "principal moments from 1e-08 to 1 kg·m² for 1 kg"),  # denser than anything
     ],
 )
 def test_an_inertia_that_no_body_has_is_refused(inertia: list[float], words: str) -> None:

@@ -15,12 +15,12 @@ import sim.run.lateness
 import sim.run.loop
 from pendant.all_settings import Settings
 from pendant.decision import Decision
-from pendant.events.event import Kind
+from pendant.events.event import Event, Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
-from sim.run.loop import DEBT, SNAPSHOT_TICKS, Loop
+from sim.run.loop import DEBT, LONGEST_REASON, SNAPSHOT_TICKS, Loop
 from sim.simulation import Simulation
 from tests.sim.arms import UR5E
 from tests.sim.bench import push
@@ -343,18 +343,68 @@ def test_before_the_start_there_is_nothing_to_see() -> None:
         Loop(Ticker).latest()
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_failing_simulation_is_told_to_whoever_looks(running: Callable[..., Loop], clock: Clock) -> None:
+def breaking(at: int) -> Callable[[], Ticker]:
     def during(tick: int) -> None:
-        if tick == 30:
+        if tick == at:
             raise FloatingPointError("speed is not finite")
 
-    loop = running(lambda: Ticker(during))
-    until(lambda: loop.failure is not None)
-    with pytest.raises(RuntimeError, match="the simulation stopped: speed is not finite"):
-        loop.latest()
+    return lambda: Ticker(during)
+
+
+def test_an_error_in_a_tick_is_told_and_nothing_more_is_simulated(
+    running: Callable[..., Loop], caplog: pytest.LogCaptureFixture
+) -> None:
+    told: list[Event] = []
+    loop = running(breaking(30), ended=told.append)
+    until(lambda: bool(told))
+    reason = "FloatingPointError: speed is not finite"
+    assert loop.failure == reason
+    assert told == loop.events(0) == [Event(Kind.BROKEN_DOWN, 30, {"reason": reason})]
+    assert "speed is not finite" in caplog.text, "the log has the cause, with where it happened"
+    loop.desk.touch("hand", push("flange", (1.0, 0.0, 0.0)))
+    time.sleep(0.05)
     assert loop.simulation.plant.tick == 30
-    loop.stop()
+    assert loop.latest().tick == 25, "what was there last is still shown"
+
+
+def test_after_an_error_one_can_start_over(running: Callable[..., Loop]) -> None:
+    made: list[Ticker] = []
+
+    def make() -> Ticker:
+        made.append(breaking(30)() if not made else Ticker())
+        return made[-1]
+
+    loop = running(make)
+    until(lambda: loop.failure != "")
+    loop.desk.command(Command.START_PROGRAM)
+    loop.reset()
+    until(lambda: loop.simulation is not made[0] and loop.simulation.plant.tick > 50)
+    assert loop.failure == ""
+    assert not any(wishes.inputs.commands for wishes in made[1].wishes), "what was wished meanwhile is forgotten"
+
+
+def test_what_cannot_begin_leaves_the_way_back_to_what_ran(running: Callable[..., Loop]) -> None:
+    def refuse() -> Ticker:
+        raise ValueError("mass matrix is not positive")
+
+    loop = running()
+    first = loop.simulation
+    loop.begin(refuse)
+    until(lambda: loop.failure != "")
+    assert loop.simulation is first
+    loop.reset()
+    until(lambda: loop.simulation is not first and loop.simulation.plant.tick > 10)
+    assert loop.failure == ""
+
+
+def test_a_long_reason_is_cut(running: Callable[..., Loop]) -> None:
+    def refuse() -> Ticker:
+        raise ValueError("x" * 5000)
+
+    loop = running()
+    loop.begin(refuse)
+    until(lambda: loop.failure != "")
+    assert len(loop.failure) == LONGEST_REASON
 
 
 def test_stop_ends_the_thread(running: Callable[..., Loop]) -> None:

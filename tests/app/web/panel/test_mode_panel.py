@@ -201,10 +201,17 @@ def test_leave_and_reset_are_there_when_they_can_do_something(loop: FakeLoop, st
         assert not still.panel.stop.disabled
 
 
-def test_a_dead_simulation_is_a_fault(still: Served) -> None:
-    still.panel.fail("the simulation stopped: no more")
+def test_a_simulation_that_broke_down_is_a_fault_until_it_starts_over(loop: FakeLoop, still: Served) -> None:
+    loop.failure = "FloatingPointError: no more"
+    still.docks.show(loop.latest())
     assert "FAULT" in still.panel.light.shown
-    assert "no more" in still.panel.note.shown
+    assert "no more. Press Start over, on the tab Lab." in still.panel.note.shown
+    assert still.panel.leave.disabled
+    assert still.panel.reset.disabled
+    loop.failure = ""
+    still.docks.show(loop.latest())
+    assert "TEACH" in still.panel.light.shown
+    assert "no more" not in still.panel.note.shown
 
 
 def test_the_button_holds_and_its_click_lets_go(served: Served, join: Join, loop: FakeLoop) -> None:
