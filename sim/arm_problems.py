@@ -118,7 +118,12 @@ def _curves(arm: Arm) -> list[Problem]:
     found: list[Problem] = []
     if len(f.speed) < 2 or any(b <= a for a, b in pairwise(f.speed)):
         found.append(("frictions.speed", f.speed, "expected at least 2 speeds, rising"))
-    for k in range(arm.n):
+    for k in range(arm.n if not found else 0):
+        # The output side has a share of the straight line through the curve (sim/plant/joint_friction.py).
+        straight = f.output_share * float(np.polyfit(f.speed, f.torque[k], 1)[1])
+        if not 0.0 <= straight < f.breakaway[k]:
+            allowed = f"expected a line through it that passes 0 to {f.breakaway[k] / max(f.output_share, 1e-9):.4g} N·m at rest"
+            found.append((f"frictions.torque[{k}]", f.torque[k], allowed))
         if any(b < a for a, b in pairwise(f.torque[k])):
             found.append((f"frictions.torque[{k}]", f.torque[k], "expected torques that do not fall with speed"))
         if f.breakaway[k] < f.torque[k][0] * 0.9:

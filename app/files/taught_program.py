@@ -1,5 +1,6 @@
 """What a user teaches: waypoints and a program of steps between them, as one file."""
 
+import math
 from typing import Annotated, Literal
 
 import msgspec
@@ -7,6 +8,7 @@ from msgspec import Meta
 
 from pendant.program.reaction import Until
 from pendant.program.steps import AnyStep, JointMove, LinearMove, Program, SwitchTool, Wait, WaitForContact, ZeroSensor
+from pendant.settings.bounds import MOST_JOINTS, Angle
 from sim.arm.scenario import Vector
 
 Name = Annotated[str, Meta(min_length=1, max_length=40)]
@@ -31,9 +33,15 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     """A posture that was registered."""
 
     name: Name
-    q: list[float]  # (n,) joint angles [rad]
+    q: Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]  # (n,) joint angles [rad]
     position: Vector  # of the tool centre point in B [m]
     quaternion: Annotated[list[float], Meta(min_length=4, max_length=4)]  # of the tool in B, wxyz
+
+    def __post_init__(self) -> None:
+        """Check that the quaternion is an orientation."""
+        length = math.hypot(*self.quaternion)
+        if not abs(length - 1.0) <= 1e-3:
+            raise ValueError(f"quaternion: its length is {length:.4g}, allowed: 1 (wxyz)")
 
 
 class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

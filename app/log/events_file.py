@@ -85,5 +85,5 @@ def read(path: Path) -> list[EventLine]:
         raise BadInput(str(path), "", ABSENT, f"cannot be read ({error.strerror})") from None
     try:
         return [msgspec.json.decode(line, type=EventLine) for line in lines[:-1]]
-    except msgspec.MsgspecError as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
         raise BadInput(path.name, "", ABSENT, f"not an events file ({error})") from None

@@ -114,13 +114,8 @@ def _take(scan: Scan, code: int, data: bytes, *, at: int, stop: int) -> None:
     """Take in one record of the file's data."""
     summary = scan.summary
     stream = ReadDataStream(io.BytesIO(data[at + 9 : stop]))
-    if code == Opcode.SCHEMA:
-        schema = Schema.read(stream)
-        summary.schemas[schema.id] = schema
-    elif code == Opcode.CHANNEL:
-        channel = Channel.read(stream)
-        summary.channels[channel.id] = channel
-        summary.counts.setdefault(channel.id, 0)
+    if code in (Opcode.SCHEMA, Opcode.CHANNEL):
+        _declare(summary, code, stream)
     elif code == Opcode.ATTACHMENT:
         attachment = Attachment.read(stream)
         scan.files[attachment.name] = attachment.data
@@ -152,6 +147,17 @@ def _take(scan: Scan, code: int, data: bytes, *, at: int, stop: int) -> None:
         Header.read(stream)
 
 
+def _declare(summary: FileSummary, code: int, stream: ReadDataStream) -> None:
+    """Take in a schema or a channel."""
+    if code == Opcode.SCHEMA:
+        schema = Schema.read(stream)
+        summary.schemas[schema.id] = schema
+    else:
+        channel = Channel.read(stream)
+        summary.channels[channel.id] = channel
+        summary.counts.setdefault(channel.id, 0)
+
+
 def _unpack(scan: Scan, chunk: Chunk) -> None:
     if chunk.uncompressed_size > LARGEST or chunk.compression != "zstd":
         raise ValueError("a chunk that is too large, or packed in another way")
@@ -162,7 +168,12 @@ def _unpack(scan: Scan, chunk: Chunk) -> None:
     channels = scan.summary.channels
     scan.last = set()
     while at < len(body):
-        code, length, number = struct.unpack_from("<BQH", body, at)
+        code, length = struct.unpack_from("<BQ", body, at)
+        if code in (Opcode.SCHEMA, Opcode.CHANNEL):  # other writers put them into the chunks
+            _declare(scan.summary, code, ReadDataStream(io.BytesIO(body[at + 9 : at + 9 + length])))
+            at += 9 + length
+            continue
+        (number,) = struct.unpack_from("<H", body, at + 9)
         scan.last.add(number)
         topic = channels[number].topic
         content = body[at + 31 : at + 9 + length]

@@ -90,15 +90,18 @@ def simulate(prepared: Prepared) -> Simulation:
         raise _unable(prepared, "", error) from error
 
 
-def try_out(prepared: Prepared) -> None:
+def try_out(prepared: Prepared, ticks: int = MOMENT) -> None:
     """Build what a file describes and let it stand for a moment, apart from whatever else runs.
 
     Raises:
         BadInput: it cannot be simulated.
     """
     simulation = simulate(prepared)
-    for _ in range(MOMENT):
+    for _ in range(ticks):
         _tick(simulation, prepared, Wishes(NOTHING, (), ()))
+    told = simulation.estimate
+    if not all(np.isfinite(values).all() for values in (told.q, told.qd, told.tau_J, told.tau_ext, told.F_user, told.v_F)):
+        raise _unable(prepared, "", FloatingPointError("what the sensors tell is not finite"))
 
 
 def _tick(simulation: Simulated, prepared: Prepared, wishes: Wishes) -> Decision:

@@ -101,7 +101,7 @@ class Transmissions(Sourced, frozen=True):
 class Frictions(Sourced, frozen=True):
     """Joint friction, both sides together, without load at the reference temperature."""
 
-    speed: list[NotNegative]  # where the curve was measured [rad/s], rising
+    speed: Annotated[list[NotNegative], Meta(max_length=12)]  # where the curve was measured [rad/s], rising
     torque: list[list[Positive]]  # a row a joint, friction at those speeds [N·m]
     breakaway: list[Positive]  # at rest [N·m]
     output_share: Share  # part of it that acts on the output side (bearings, seals)

@@ -1,5 +1,6 @@
 """The MuJoCo model of an arm in its world, built from the arm's file and the scenario."""
 
+import logging
 from dataclasses import dataclass
 
 import mujoco
@@ -43,6 +44,14 @@ class Step:
     def length(self) -> float:
         """Of one physics step [s]."""
         return self.tick / self.substeps
+
+
+def _log(text: str) -> None:
+    """What MuJoCo warns of goes into the log: it would write a file of its own into the working folder."""
+    logging.getLogger(__name__).debug(text)
+
+
+mujoco.set_mju_user_warning(_log)
 
 
 def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:

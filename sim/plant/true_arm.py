@@ -104,6 +104,9 @@ class Plant:
         mujoco.mj_forward(self.model, data)
         self._read()
         self.flange[:] = self.data.sensordata[self._sensor_order()]
+        why = self.world.overlap()
+        if why:
+            raise ValueError(why)
 
     def _deflection(self, torque: Array) -> Array:
         """Deflection (n,) of the main springs under `torque` (n,), by Newton's method."""

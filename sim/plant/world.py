@@ -13,6 +13,10 @@ from sim.plant.objects import SNAP_REST, SNAP_SLIP
 Array = NDArray[np.float64]
 
 
+INSIDE = 0.005
+"""An arm that begins farther inside an object is thrown away by it [m]."""
+
+
 class World:
     """What objects need once a tick.
 
@@ -52,6 +56,16 @@ class World:
                 tip = data.geom_xpos[self._tip] - data.xpos[body]
                 friction = item.friction_beyond if float(R[:, 0] @ tip) > 0.0 else item.friction
                 model.pair_friction[self._pairs[k], :2] = friction
+
+    def overlap(self) -> str:
+        """Which object the arm is inside of, how deep, in a clause, or ""; what it only touches does not count."""
+        names = [f"object/{item.name}" for item in self._items]
+        for contact in self._data.contact:
+            if contact.dist < -INSIDE:
+                geoms = {self._model.geom(int(geom)).name for geom in contact.geom}
+                item = next(item.name for item, name in zip(self._items, names, strict=True) if name in geoms)
+                return f"the arm begins {-1000.0 * contact.dist:.0f} mm inside {item!r}"
+        return ""
 
     def place(self, name: str, position: Sequence[float]) -> None:
         """Put the object `name` at `position` (3,) in W [m].

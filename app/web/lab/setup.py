@@ -5,14 +5,17 @@ import math
 import msgspec
 import viser
 
-from app.files.checked import load
+from app.files.checked import BadInput, load
 from app.files.library import load_tool, tools
-from app.session.prepare import MOUNTINGS
+from app.runs.runner import simulate
+from app.session.prepare import MOUNTINGS, Prepared
 from app.session.session_file import WorldSection, bundled, folder
 from app.web.running import Running
+from app.web.widgets import svg
+from app.web.widgets.html import Html
+from app.web.widgets.svg import Colour
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario, ToolModel
-from sim.simulation import Simulation
 
 AS_IS = "as it is"
 NOTHING = "nothing"
@@ -31,11 +34,18 @@ class LabSetup:
             self.seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1)
             self.mismatch = gui.add_checkbox("Controller mismatch", True)
             self.begin = gui.add_button("Begin with this", color="gray")
+            self.message = Html(gui)
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
-            scenario, settings = self.chosen(), self._loop.settings
-            self._loop.begin(lambda: Simulation(self._arm, scenario, settings))
+            prepared = Prepared(self._arm, self.chosen(), self._loop.settings, None, "set-up")
+            try:
+                simulate(prepared)
+            except BadInput as refusal:
+                self.message.show(svg.note("Refused", str(refusal), Colour.AMBER))
+                return
+            self.message.show("")
+            self._loop.begin(lambda: simulate(prepared))
 
     def chosen(self) -> Scenario:
         """What the controls ask for; what they leave is as in the running scenario."""

@@ -11,14 +11,17 @@ from msgspec import Meta
 
 from app.files.bodies import OVERLOAD, check_tools
 from app.files.checked import BadInput, parse
+from app.runs.runner import try_out
+from app.session.prepare import Prepared
 from app.web.running import Running
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
-from pendant.equipment.tools import MOST, Tool
+from pendant.all_settings import Settings
+from pendant.equipment.tools import MOST, Tool, tool_problem
 from pendant.settings.bounds import FARTHEST
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import BARE
+from sim.arm.scenario import BARE, Scenario
 from sim.arm.scenario import ToolModel as ShapedTool
 
 
@@ -112,6 +115,7 @@ class ToolEditor:
         try:
             tools = parse(content.decode("utf-8", "replace"), Table, name).tools
             check_tools(tools, self._arm, name, most=1.0)
+            self._try(tools, name)
         except BadInput as refusal:
             self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
             return
@@ -119,6 +123,12 @@ class ToolEditor:
         old = [new.pop(tool.name, tool) for tool in self._loop.tools]
         self._loop.desk.tabulate((*old, *new.values()))
         self.message.show(svg.note("File read", f"{len(tools)} tools.", Colour.GREEN))
+
+    def _try(self, tools: Sequence[ShapedTool], where: str) -> None:
+        """Let each tool that is not in the table stand on an arm of its own for a tick. Raises BadInput: it cannot."""
+        for tool in tools:
+            if tool not in self._loop.tools:
+                try_out(Prepared(self._arm, Scenario(tool=tool), Settings(), None, where), ticks=1)
 
     def _fill(self, tool: Tool) -> None:
         self._tool = tool
@@ -152,6 +162,12 @@ class ToolEditor:
             table = tuple(tool if each.name == self._tool.name else each for each in table)
         else:
             table = tuple(each for each in table if each.name != self._tool.name)
+        if self.change.value != DELETE and isinstance(tool, ShapedTool) and tool_problem(tool, self._arm.payload) is None:
+            try:
+                self._try((tool,), tool.name)
+            except BadInput as refusal:
+                self.message.show(svg.note("Tool refused", str(refusal), Colour.AMBER))
+                return
         self.wanted = tool.name
         self.message.show("")
         self._loop.desk.tabulate(table)
