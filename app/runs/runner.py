@@ -17,11 +17,14 @@ from app.session.measures import watch
 from app.session.prepare import Prepared
 from app.session.session_file import Session
 from app.session.timeline import Timeline
+from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK, Mode
+from sim.arm.arm_file import Arm
+from sim.arm.scenario import Scenario, ToolModel
 from sim.exchange.desk import Wishes
 from sim.exchange.scoring import Scored
 from sim.exchange.snapshot import Snapshot
@@ -102,6 +105,11 @@ def try_out(prepared: Prepared, ticks: int = MOMENT) -> None:
     told = simulation.estimate
     if not all(np.isfinite(values).all() for values in (told.q, told.qd, told.tau_J, told.tau_ext, told.F_user, told.v_F)):
         raise _unable(prepared, "", FloatingPointError("what the sensors tell is not finite"))
+
+
+def try_tool(arm: Arm, tool: ToolModel, where: str) -> None:
+    """Let a tool stand on an arm of its own for a tick. Raises BadInput: it cannot be simulated."""
+    try_out(Prepared(arm, Scenario(tool=tool), Settings(), None, where), ticks=1)
 
 
 def _tick(simulation: Simulated, prepared: Prepared, wishes: Wishes) -> Decision:

@@ -17,10 +17,11 @@ ODD: tuple[Any, ...] = (None, -1, 1e300, "x", [], {}, True, 2**60)
 def rewritten(data: bytes) -> st.SearchStrategy[bytes]:
     """The recording with one to three things changed."""
     change = st.tuples(st.sampled_from(EDITS), st.integers(0, 2**31), st.sampled_from(ODD))
-    return st.lists(change, min_size=1, max_size=3).map(lambda changes: _rewrite(data, changes))
+    return st.lists(change, min_size=1, max_size=3).map(lambda changes: rewrite(data, changes))
 
 
-def _rewrite(data: bytes, changes: Sequence[tuple[str, int, Any]]) -> bytes:
+def rewrite(data: bytes, changes: Sequence[tuple[str, int, Any]]) -> bytes:
+    """The recording with changes: one of EDITS, a number that says of which topic and where, and what is put there."""
     reader = make_reader(io.BytesIO(data))
     topics = ["/state", "/truth", "/pendant", "/tf", "/events", "/settings"]
     per_topic = {

@@ -20,7 +20,7 @@ from app.log.reader import read
 from app.log.recorder import Recorder
 from app.log.scan import repair
 from app.report.summary import summarise
-from app.runs.runner import BROKEN, MOMENT, simulate, try_out
+from app.runs.runner import BROKEN, MOMENT, simulate, try_out, try_tool
 from app.session.actions import AnyAction
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import Session, Setup, bundled, folder, opened
@@ -86,7 +86,7 @@ def _table(path: Path) -> None:
     found = parse(path.read_bytes().decode("utf-8", "replace"), Table, path.name).tools
     check_tools(found, ARM, path.name, most=1.0)
     for tool in found[:2]:
-        try_out(Prepared(ARM, Scenario(tool=tool), Settings(), None, path.name), ticks=1)
+        try_tool(ARM, tool, path.name)
 
 
 def _lesson(path: Path) -> None:

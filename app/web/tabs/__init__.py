@@ -1,1 +1,1 @@
-"""The docks on the left side. Uses files/, log/, web/scene/, web/widgets/."""
+"""The docks on the left side. Uses files/, log/, runs/, web/scene/, web/widgets/."""

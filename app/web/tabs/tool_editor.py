@@ -11,17 +11,15 @@ from msgspec import Meta
 
 from app.files.bodies import OVERLOAD, check_tools
 from app.files.checked import BadInput, parse
-from app.runs.runner import try_out
-from app.session.prepare import Prepared
+from app.runs.runner import try_tool
 from app.web.running import Running
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
-from pendant.all_settings import Settings
 from pendant.equipment.tools import MOST, Tool, tool_problem
 from pendant.settings.bounds import FARTHEST
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import BARE, Scenario
+from sim.arm.scenario import BARE
 from sim.arm.scenario import ToolModel as ShapedTool
 
 
@@ -128,7 +126,7 @@ class ToolEditor:
         """Let each tool that is not in the table stand on an arm of its own for a tick. Raises BadInput: it cannot."""
         for tool in tools:
             if tool not in self._loop.tools:
-                try_out(Prepared(self._arm, Scenario(tool=tool), Settings(), None, where), ticks=1)
+                try_tool(self._arm, tool, where)
 
     def _fill(self, tool: Tool) -> None:
         self._tool = tool
