@@ -128,8 +128,9 @@ def opened(path: Path, kind: type[T], anywhere: bool = False) -> T:
 def _within(folder: Path, name: str, *, anywhere: bool, field: str, where: str) -> str:
     try:
         path = (folder / name).resolve()
-    except (OSError, ValueError):  # a circle of links, a NUL
-        return name
+        there = path.exists()
+    except (OSError, ValueError):  # a circle of links, a NUL, a name that is too long
+        raise BadInput(where, field, name, "the name of a file") from None
     if not (anywhere or path.is_relative_to(folder)):
         raise BadInput(where, field, name, "a file in the folder of this one or below; with --any-file it may be anywhere")
-    return str(path) if path.exists() else name
+    return str(path) if there else name
