@@ -4,9 +4,11 @@ The attackers have a process of their own, but the machine's processors are shar
 """
 
 import contextlib
+import math
 import multiprocessing
 import socket
 import statistics
+import threading
 import time
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -19,6 +21,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from benchmarks.common import Report, main
 from benchmarks.viewer import CAMERA, VERSION
+from pendant.inputs import Button
+from pendant.tick.modes import Mode
+from sim.plant.touch import Pull
 
 if TYPE_CHECKING:  # an attacker starts without them
     from app.web.server import Served
@@ -145,6 +150,70 @@ def suffer(report: Report, loop: "Loop", served: "Served", seconds: float) -> No
     report.notes.append(f"refused: {dict(served.guard.refused)}")
 
 
+def hostile_files() -> list[bytes]:
+    """Files for the page in which every value fits its type, or nearly: what no arm could carry, too much, too deep, not text."""
+    tool = {"name": "x", "mass": 1.0, "com": [0.0, 0.0, 0.1], "tcp": [0.0, 0.0, 0.1]}
+    point = {"name": "P1", "q": [0.0] * 6, "position": [0.3, 0.0, 0.4], "quaternion": [1.0, 0.0, 0.0, 0.0]}
+    odd: list[object] = [
+        {"tools": [{**tool, key: value}]} for key in ("length", "radius", "mass") for value in (1e9, 1e300, 1.7e308)
+    ]
+    odd += [{"tools": [{**tool, "inertia": [value] * 3 + [0.0] * 3}]} for value in (1e300, 1e3, 1e-30)]
+    odd += [{"tools": [{**tool, "mass": 1e-9, "inertia": [1e3] * 3 + [0.0] * 3}]}, {"tools": [tool] * 51}]
+    odd += [{"waypoints": [{**point, "q": [value] * 6}]} for value in (1e300, 1e9)]
+    odd += [{"waypoints": [{**point, "quaternion": [0.0] * 4}]}, {"waypoints": [{**point, "position": [1e300] * 3}]}]
+    return [msgspec.json.encode(each) for each in odd] + [b"\xff" * 1000, b"[" * 5000, b"- 1\n" * 15_000, b"a: &a [*a]"]
+
+
+def uploads(report: Report, loop: "Loop", served: "Served") -> None:
+    """Two hundred hostile files, while a hand leads the arm on a circle: each is answered, and no tick is lost."""
+    files, desk = hostile_files(), loop.desk
+    x, y, z = (float(value) for value in loop.latest().truth_links[-1][:3])
+    desk.hold(Button.FREE_DRIVE)
+    guided = threading.Event()
+
+    def lead() -> None:
+        begun = time.monotonic()
+        while not guided.is_set():
+            desk.hold(Button.FREE_DRIVE)
+            at = time.monotonic() - begun - 3.0
+            if at > 0.0:
+                turn = 2.0 * math.pi * at / 5.0
+                place = (x, y + 0.06 * math.sin(turn), z + 0.06 * (1.0 - math.cos(turn)))
+                desk.touch("hand", Pull("flange", (0.0, 0.0, 0.0), place, 50.0))
+            time.sleep(0.02)
+
+    hand = threading.Thread(target=lead)
+    hand.start()
+    time.sleep(5.0)
+    free = loop.latest().decision.mode is Mode.FREE_DRIVE
+    dropped, answered = loop.dropped, 0
+    editor, teach = served.docks.tools.editor, served.docks.teach
+    with join(served.url) as client:
+        for number in range(200):
+            name, content = f"file-{number}.yaml", files[number % len(files)]
+            where, said = (teach.load, teach.message) if number % 2 else (editor.load, editor.message)
+            if not number % 2:  # disabled while the arm is free: handed over as if it were not
+                served.server.get_event_loop().call_soon_threadsafe(editor.read, name, content)
+            else:
+                start = {"source_component_uuid": where._impl.uuid, "transfer_uuid": f"t{number}"}
+                whole = {"filename": name, "mime_type": "text/yaml", "part_count": 1, "size_bytes": len(content)}
+                client.send(msgspec.msgpack.encode({"type": "FileTransferStartUpload", **start, **whole}))
+                client.send(msgspec.msgpack.encode({"type": "FileTransferPart", **start, "part_index": 0, "content": content}))
+            end = time.monotonic() + 5.0
+            while name not in said.shown and time.monotonic() < end:
+                time.sleep(0.005)
+            answered += name in said.shown
+    free = free and loop.latest().decision.mode is Mode.FREE_DRIVE
+    dropped = loop.dropped - dropped
+    guided.set()
+    hand.join()
+    desk.let_go("hand")
+    desk.release(Button.FREE_DRIVE)
+    report.row("uploads: the arm is guided all the time", float(free), at_least=1.0)
+    report.share("uploads: answered on the page", answered, 200, at_least=1.0)
+    report.row("uploads: time lost by stalls", dropped, "s", at_most=0.0)
+
+
 def measure(report: Report) -> None:
     """Serve an arm, and let it be attacked."""
     from app.files.library import load_arm
@@ -159,6 +228,7 @@ def measure(report: Report) -> None:
     loop.start()
     served = serve(loop, arm, loop.scenario)
     try:
+        uploads(report, loop, served)
         suffer(report, loop, served, 20.0 if report.options.full else 3.0)
     finally:
         served.close()
