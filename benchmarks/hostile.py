@@ -130,7 +130,8 @@ def suffer(report: Report, loop: "Loop", served: "Served", seconds: float) -> No
     before = rate(loop, seconds)
     for kind, name in enumerate(ATTACKS):
         here, there = process.Pipe()
-        attacker = process.Process(target=attack, args=(kind, served.url, slider, seconds + 2.0 * SETTLE, there))
+        more = {"slider": slider, "seconds": seconds + 2.0 * SETTLE, "back": there}
+        attacker = process.Process(target=attack, args=(kind, served.url), kwargs=more)
         attacker.start()
         here.recv()
         time.sleep(SETTLE)
