@@ -147,7 +147,7 @@ class Hold(Effort, tag="hold", frozen=True, kw_only=True):
     """A hand grabs a point and keeps it where it is, or carries it: a spring and damper, its force capped."""
 
     carry: Vector = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # by the end, evenly, in W [m]
-    cap: Annotated[float, Meta(gt=0, le=2000)] = 50.0  # [N]
+    cap: Annotated[float, Meta(ge=0.01, le=2000)] = 50.0  # [N]
 
 
 class LoadProgram(Action, tag="program", frozen=True, kw_only=True):

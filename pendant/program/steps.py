@@ -16,7 +16,7 @@ UNFELT: Vector = (0.0, 0.0, 0.0)
 LEAST_FORCE, MOST_FORCE = 1.0, 90.0
 """That a program may push with [N]: beyond the sensor's noise, and within its range."""
 
-Fraction = Annotated[float, Meta(gt=0.0, le=1.0)]
+Fraction = Annotated[float, Meta(ge=0.001, le=1.0)]
 
 
 class Move(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_field="kind"):
@@ -42,8 +42,8 @@ class LinearMove(Move, tag="linear", frozen=True, forbid_unknown_fields=True, kw
 
     position: tuple[Coordinate, Coordinate, Coordinate]  # p_BT [m]
     quaternion: tuple[float, float, float, float]  # wxyz, orientation of T in B
-    speed: Annotated[float, Meta(gt=0.0, le=3.0)] = 0.1  # [m/s]
-    acceleration: Annotated[float, Meta(gt=0.0, le=50.0)] = 0.5  # [m/s²]
+    speed: Annotated[float, Meta(ge=0.0001, le=3.0)] = 0.1  # [m/s]
+    acceleration: Annotated[float, Meta(ge=0.001, le=50.0)] = 0.5  # [m/s²]
     until: Until | None = None  # a contact that ends it (CD-15)
 
     def __post_init__(self) -> None:
@@ -79,8 +79,8 @@ class ApplyForce(Move, tag="force", frozen=True, forbid_unknown_fields=True, kw_
     force: tuple[float, float, float]  # of the arm on what it touches, axes of B [N]
     duration: Annotated[float, Meta(ge=0.0, le=3600.0)] = 1.0  # that it lasts, once reached [s]
     tolerance: Annotated[float, Meta(ge=0.5, le=50.0)] = 2.0  # within which it counts as reached [N]
-    speed: Annotated[float, Meta(gt=0.0, le=0.1)] = 0.005  # at most [m/s]
-    distance: Annotated[float, Meta(gt=0.0, le=0.5)] = 0.05  # at most; nothing that resists within it: it fails [m]
+    speed: Annotated[float, Meta(ge=0.0001, le=0.1)] = 0.005  # at most [m/s]
+    distance: Annotated[float, Meta(ge=0.0001, le=0.5)] = 0.05  # at most; nothing that resists within it: it fails [m]
     untouched: tuple[float, float, float] = UNFELT  # F_user where nothing touches; files leave it out [N]
 
     def __post_init__(self) -> None:

@@ -121,6 +121,24 @@ def test_what_passes_its_bounds_and_cannot_stand_is_said_in_a_line() -> None:
     assert refused(lambda: try_out(prepared)).startswith("arm.yaml: while it runs: cannot be simulated (the physics diverged")
 
 
+@pytest.mark.parametrize(
+    ("step", "where"),
+    [
+        ({"kind": "linear", "position": [0.0, 0.0, 0.0], "quaternion": [1.0, 0.0, 0.0, 0.0], "speed": 1e-300}, "speed"),
+        (
+            {"kind": "linear", "position": [0.0, 0.0, 0.0], "quaternion": [1.0, 0.0, 0.0, 0.0], "acceleration": 1e-300},
+            "acceleration",
+        ),
+        ({"kind": "joint", "q": [0.0] * 6, "speed": 5e-324}, "speed"),
+        ({"kind": "joint", "q": [1e300] * 6}, "q[0]"),
+        ({"kind": "force", "force": [0.0, 0.0, -10.0], "speed": 1e-300}, "speed"),
+    ],
+)
+def test_a_program_that_would_never_end_is_refused(step: dict[str, Any], where: str) -> None:
+    raw = {"title": "t", "duration": 1.0, "program": {"steps": [step]}}
+    assert f"program.steps[0].{where} = " in refused(lambda: convert(raw, Session, "s.yaml"))
+
+
 def test_a_session_that_breaks_down_ends_in_a_line_and_its_recording_says_why(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
