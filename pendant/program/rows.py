@@ -1,7 +1,7 @@
 """Rows of the event table: mode and program, contacts, tool and payload, settings, and the loop."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import Clears, Effect, EventRow, Severity, denied, info
+from pendant.events.event_row import Effect, EventRow, Severity, denied, info
 
 
 def _touched(headline: str) -> EventRow:
@@ -100,12 +100,7 @@ PROGRAM: dict[Kind, EventRow] = {
         "The machine is busy; {lost:.1f} s were dropped.",
         ("late", "lost", "often"),
     ),
-    Kind.BROKEN_DOWN: EventRow(
-        Effect.INFO,
-        Severity.STOP,
-        "The simulation broke down",
-        "{reason}. Nothing moves any more. Start over, on the tab Lab.",
-        ("reason",),
-        Clears.RESET,
+    Kind.BROKEN_DOWN: denied(
+        "The simulation broke down", "{reason}. Nothing moves any more. Start over, on the tab Lab.", ("reason",)
     ),
 }
