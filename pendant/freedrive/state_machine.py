@@ -198,7 +198,8 @@ class FreeDrive:
             self.phase = Phase.OFF
             self._activation.end()
             self._containment.leave()
-        elif cause is not None:
+        else:
+            assert cause is not None  # what refuses and what leaves is an event
             self.stop(cause, settings)
             if cause is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
                 self._verdict.begin(around)

@@ -99,11 +99,6 @@ class UserForce:
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
 
-    @property
-    def by_joints(self) -> Vector:
-        """What the joints feel of it, however little, axes of B [N]."""
-        return self._by_joints
-
     def stands_out(self, step: Vector) -> bool:
         """Whether a step of the force at the flange [N] is larger than it fluctuates."""
         return dot(step, step) >= STANDS_OUT * STANDS_OUT * self._spread

@@ -169,3 +169,9 @@ def test_new_settings_are_told_from_the_next_decision_on() -> None:
     after = parts.step()
     assert told(after) == parts.expected(gain=2.0, force_cap=60.0)
     assert (after.locks, after.limits) != (before.locks, before.limits)
+
+
+@pytest.mark.parametrize(("gain", "amplified"), [(0.0, False), (1e-9, True), (2.0, True)])
+def test_a_force_is_amplified_by_any_gain_above_none(gain: float, amplified: bool) -> None:
+    told = Decision(Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, Law.FREE, None, gain, 50.0, (0.0,) * 6, (), ())
+    assert told.amplified is amplified
