@@ -79,7 +79,8 @@ CHANGES: list[tuple[object, Callable[..., object], object]] = [
 @pytest.mark.parametrize(("held", "change", "expected"), CHANGES)
 def test_what_changes_later_does_not_change_it(held: object, change: Callable[..., object], expected: object) -> None:
     held = deepcopy(held)  # the list above is not this test's to change
-    before = state_of(Part(held))
+    part = Part(held)
+    before = state_of(part)
     assert before[2] == ("value", expected)
     change(held)
     assert before[2] == ("value", expected)
