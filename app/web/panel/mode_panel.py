@@ -97,6 +97,7 @@ class Panel:
             self.back.show(snapshot, fresh),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
+            enable(self.free_drive, True),
             enable(self.reset, decision.mode is Mode.STOP),
             self.activation.show(snapshot),
             self._name_button(decision),
@@ -109,6 +110,7 @@ class Panel:
             self.light.show(svg.light("FAULT", "Nothing moves", "Unknown", Colour.RED)),
             self.note.show(svg.note("The simulation broke down", f"{reason}. Press Start over, on the tab Lab.", Colour.RED)),
             self.rings.show(svg.rings(())),
+            enable(self.free_drive, False),
             enable(self.leave, False),
             enable(self.reset, False),
         ]

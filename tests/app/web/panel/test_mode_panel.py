@@ -206,12 +206,14 @@ def test_a_simulation_that_broke_down_is_a_fault_until_it_starts_over(loop: Fake
     still.docks.show(loop.latest())
     assert "FAULT" in still.panel.light.shown
     assert "no more. Press Start over, on the tab Lab." in still.panel.note.shown
+    assert still.panel.free_drive.disabled
     assert still.panel.leave.disabled
     assert still.panel.reset.disabled
     loop.failure = ""
     still.docks.show(loop.latest())
     assert "TEACH" in still.panel.light.shown
     assert "no more" not in still.panel.note.shown
+    assert not still.panel.free_drive.disabled
 
 
 def test_the_button_holds_and_its_click_lets_go(served: Served, join: Join, loop: FakeLoop) -> None:
