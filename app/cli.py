@@ -10,19 +10,33 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.command_options import (
+    PORT,
+    AnyFile,
+    Config,
+    Host,
+    Offset,
+    Out,
+    Port,
+    Programs,
+    Robot,
+    Seed,
+    SessionNames,
+    Set,
+    announce,
+    announce_robot,
+    example,
+    setting,
+)
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
 from app.session.session_file import Session, Setup, find, find_all, opened
-from pendant.all_settings import find as find_setting
-from pendant.settings.schema import SettingError
+from app.session.timeline_checks import Prepared
 from sim.arm.arm_file import Arm
 
 # Usage errors, whichever click typer was built on: the base of the one that typer exports.
 UsageError: type[Exception] = typer.BadParameter.__mro__[1]
-
-PORT = 8080
-"""Where the web app is, when this port is free and no other was asked for."""
 
 app = typer.Typer(
     name="pendant",
@@ -31,28 +45,6 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
-Robot = Annotated[str | None, typer.Option(help="Arm to serve: a name that `pendant robots` lists, or a file.")]
-Config = Annotated[
-    Path | None, typer.Option(help="YAML file: the header of a session, without its time line.", show_default=False)
-]
-Host = Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 opens the page to the network.")]
-Port = Annotated[
-    int | None, typer.Option(help=f"Port; 0 for any free one. Without it {PORT}, or any free one.", min=0, max=65535)
-]
-SessionNames = Annotated[
-    list[str], typer.Argument(metavar="SESSION...", help="Session files, folders of them, or names of bundled sessions.")
-]
-Out = Annotated[
-    Path, typer.Option(help="Folder for events.jsonl, log.mcap, summary.json, report.html; of several sessions, a folder each.")
-]
-Seed = Annotated[int | None, typer.Option(help="Seed in place of the file's.", min=0, max=2**31 - 1)]
-AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]
-Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
-
-
-def example(*lines: str) -> str:
-    """Examples at the end of a command's help."""
-    return "Examples:\n" + "\n".join(f"  {escape(line)}" for line in lines)
 
 
 @app.command(
@@ -62,6 +54,7 @@ def example(*lines: str) -> str:
         "pendant serve --config cell.yaml",
         "pendant serve --host 0.0.0.0",
         "pendant serve --record logs",
+        "pendant serve --interfaces",
     )
 )
 def serve(
@@ -75,19 +68,48 @@ def serve(
         Path | None,
         typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
     ] = None,
+    interfaces: Annotated[
+        bool,
+        typer.Option(
+            "--interfaces", help="Serve the robot on the network too: RTDE, dashboard and more, as UR's clients know it."
+        ),
+    ] = False,
+    port_offset: Offset = 0,
+    programs: Programs = None,
     any_file: AnyFile = False,
 ) -> None:
     """Serve the web app: push the arm, hold its free-drive button, read why it stopped."""
-    from app.serving import serve_until_interrupted
+    from app.serving import Network, serve_until_interrupted
 
-    setup = Setup() if config is None else opened(config, Setup, any_file)
-    if robot is not None:
-        setup = msgspec.structs.replace(setup, robot=robot)
-    where = "serve" if config is None else config.name
+    prepared = _set_up(robot, config, any_file, "serve")
+    network = Network(host, port_offset, programs) if interfaces else None
     with serve_until_interrupted(
-        prepare(setup, where), host=host, port=port, usual=PORT, open_browser=open_browser, record=record
-    ) as site:
-        _announce(f"Serving the {setup.robot}", site.link, site.access.token is not None)
+        prepared, host=host, port=port, usual=PORT, open_browser=open_browser, record=record, network=network
+    ) as serving:
+        announce(f"Serving the {prepared.arm.name}", serving.site.link, serving.site.access.token is not None)
+        if serving.interfaces is not None:
+            announce_robot(prepared.arm, serving.interfaces)
+
+
+@app.command(
+    "robot", epilog=example("pendant robot", "pendant robot --robot ur10e --port-offset 100", "pendant robot --host 127.0.0.2")
+)
+def robot_(
+    *,
+    robot: Robot = None,
+    config: Config = None,
+    host: Host = "127.0.0.1",
+    port_offset: Offset = 0,
+    programs: Programs = None,
+    record: Annotated[Path | None, typer.Option(help="Record from the start, into this folder.", show_default=False)] = None,
+    any_file: AnyFile = False,
+) -> None:
+    """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
+    from app.robot_serving import Network, robot_until_interrupted
+
+    prepared = _set_up(robot, config, any_file, "robot")
+    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record) as interfaces:
+        announce_robot(prepared.arm, interfaces)
 
 
 @app.command(
@@ -146,7 +168,7 @@ def run(
 @app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))
 def schema(kind: Annotated[str, typer.Argument(help="session, configuration, robot or tool.")] = "session") -> None:
     """Print the JSON schema of a kind of file, with which an editor completes and checks it."""
-    from app.session.json_schema import KINDS, schema_of
+    from app.session.session_file import KINDS, schema_of
 
     if kind not in KINDS:
         raise BadInput("schema", "KIND", kind, f"one of {', '.join(KINDS)}")
@@ -164,7 +186,7 @@ def replay(
     from app.serving import replay_until_interrupted
 
     with replay_until_interrupted(log, host=host, port=port, usual=PORT, open_browser=open_browser) as site:
-        _announce(f"Showing {log}", site.link, site.access.token is not None)
+        announce(f"Showing {log}", site.link, site.access.token is not None)
 
 
 @app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))
@@ -221,37 +243,17 @@ def robots_() -> None:
     Console().print(table)
 
 
-def setting(text: str) -> tuple[str, float | bool | str]:
-    """A `--set KEY=VALUE` as name and value.
-
-    Raises BadInput: it has no "=", or there is no such setting. The value is checked with the session's own.
-    """
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise BadInput("--set", "", text, "expected KEY=VALUE, such as free_drive.period=5")
-    try:
-        find_setting(name)
-    except SettingError as error:
-        raise BadInput("--set", name, ABSENT, error.allowed) from None
-    if value in ("true", "false"):
-        return name, value == "true"
-    try:
-        return name, float(value)
-    except ValueError:
-        return name, value
-
-
 def _source(arm: Arm) -> str:
     """Where the masses come from, without the fine print after the first semicolon; the file says the rest."""
     return " ".join(arm.masses.source.split()).partition(";")[0]
 
 
-def _announce(what: str, link: str, on_a_network: bool) -> None:
-    """Say where the page is, in one line however narrow the terminal: a link that is cut does not open."""
-    console = Console(soft_wrap=True)
-    console.print(escape(f"{what} at {link}  (stop with Ctrl-C)"))
-    if on_a_network:
-        console.print("Open to the network, unencrypted: whoever has this link can move the arm. The next start makes a new one.")
+def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str) -> Prepared:
+    """What the options of a command ask for."""
+    setup = Setup() if config is None else opened(config, Setup, any_file)
+    if robot is not None:
+        setup = msgspec.structs.replace(setup, robot=robot)
+    return prepare(setup, command if config is None else config.name)
 
 
 def main() -> None:
@@ -272,3 +274,7 @@ def _refuse(text: str) -> int:
     """Say one line on standard error; the exit code to end with."""
     sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
     return 2
+
+
+if __name__ == "__main__":
+    main()

@@ -3,19 +3,21 @@
 import signal
 import threading
 import webbrowser
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-
-import typer
+from typing import NamedTuple
 
 from app.files.checked import BadInput
 from app.files.library import mesh_path
+from app.log.live import LiveRecording
 from app.log.playback import Player
 from app.log.reader import read
 from app.log.scan import repair
+from app.robot_interface.interfaces import RobotInterfaces
+from app.robot_serving import Network, open_interfaces, until_stopped
 from app.runs.runner import simulate
-from app.runs.warm_up import warm_up
 from app.session.prepare import Prepared
 from app.web.access.listening import access_through, free_port
 from app.web.access.site import Site
@@ -24,16 +26,25 @@ from app.web.server import Served
 from app.web.server import serve as serve_web
 from sim.run.loop import Loop
 
-PATIENCE = 4.0
-"""A start that takes longer is explained [s]: it is the first one after an installation."""
 
-COMPILING = "Compiling what runs in every tick. This first start takes half a minute, later ones a second or two."
+class Serving(NamedTuple):
+    """What is being served."""
+
+    site: Site  # the page
+    interfaces: RobotInterfaces | None  # the robot on the network
 
 
 @contextmanager
 def serve_until_interrupted(
-    prepared: Prepared, *, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
-) -> Iterator[Site]:
+    prepared: Prepared,
+    *,
+    host: str,
+    port: int | None,
+    usual: int,
+    open_browser: bool,
+    record: Path | None,
+    network: Network | None = None,
+) -> Iterator[Serving]:
     """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
 
     Args:
@@ -43,29 +54,27 @@ def serve_until_interrupted(
         usual: the port that a user's bookmark knows.
         open_browser: open the page too.
         record: record from the start, into this folder.
+        network: where the robot's network interfaces are to be; None for the page alone.
 
     Raises:
-        BadInput: the address cannot be used.
+        BadInput: an address cannot be used.
     """
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
-    notice = threading.Timer(PATIENCE, lambda: typer.echo(COMPILING))
-    notice.start()
-    try:
-        warm_up()
-    finally:
-        notice.cancel()
+    ended = until_stopped()
     loop = Loop(lambda: simulate(prepared))
-    loop.start()
+    recording = LiveRecording(loop, record or Path())
+    interfaces = None if network is None else open_interfaces(loop, prepared, network, recording)
     try:
-        served = _serve(loop, prepared, host=host, port=port, usual=usual, open_browser=open_browser, record=record)
+        loop.start()
+        page = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
+        served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
         try:
-            yield served
+            yield Serving(served, interfaces)
             ended.wait()
         finally:
             served.close()
     finally:
+        if interfaces is not None:
+            interfaces.close()
         loop.stop()
 
 
@@ -94,14 +103,11 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
         shown.close()
 
 
-def _serve(
-    loop: Loop, prepared: Prepared, *, host: str, port: int | None, usual: int, open_browser: bool, record: Path | None
-) -> Served:
-    if port is not None:
-        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=port, open_browser=open_browser, record=record)
+def _serve(page: Callable[..., Served], *, port: int | None, usual: int) -> Served:
+    """The page at `port`; without one at the `usual` port if it is free, else at any."""
     try:
-        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=usual, open_browser=open_browser, record=record)
+        return page(port=usual if port is None else port)
     except BadInput as taken:
-        if taken.field != "--port":
+        if port is not None or taken.field != "--port":
             raise
-        return serve_web(loop, prepared.arm, prepared.scenario, host=host, port=0, open_browser=open_browser, record=record)
+        return page(port=0)

@@ -20,6 +20,7 @@ from pendant.freedrive.settings import (
 from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
 from pendant.limits.settings import AxisSettings, JointLimits, LimitSettings, Soft, Static
+from pendant.program.settings import ProgramUse
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
 from pendant.settings.schema import switch as _switch
@@ -75,6 +76,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     tools: ToolUse = ToolUse()
     joint_control: JointControl = JointControl()
     contact: ContactUse = ContactUse()
+    program: ProgramUse = ProgramUse()
 
 
 def _rows(section: type[Section], prefix: str) -> list[SettingRow]:

@@ -20,6 +20,8 @@ class Command(Word):
     """A control of the pendant that acts once."""
 
     EMERGENCY_STOP = "emergency_stop"
+    EMERGENCY_STOP_RELEASED = "emergency_stop_released"  # its button is out again; the drives stay off
+    POWER_OFF = "power_off"  # the arm comes to rest, then its drives are switched off and the brakes hold it
     RESET = "reset"
     SAFEGUARD_OPEN = "safeguard_open"  # a level of the safety input: door open, light curtain broken
     SAFEGUARD_CLOSED = "safeguard_closed"
@@ -32,6 +34,7 @@ class Command(Word):
     TEACH = "teach"  # switch the mode to TEACH
     REMOTE = "remote"  # switch the mode to REMOTE
     START_PROGRAM = "start_program"
+    START_REMOTELY = "start_remotely"  # the remote controller starts the program, in REMOTE alone
     PAUSE_PROGRAM = "pause_program"
     RESUME_PROGRAM = "resume_program"
     STOP_PROGRAM = "stop_program"
@@ -60,6 +63,7 @@ class Inputs:
     tool: str = ""  # the tool to use from now on, by its name in the table
     load: Load | None = None  # the payload to configure, beyond the tool
     tools: tuple[Tool, ...] = ()  # the table of tools from now on; empty: as it was
+    remote_signal: bool = False  # the remote controller asks for free-drive; a level
 
 
 NOTHING = Inputs()

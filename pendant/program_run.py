@@ -11,7 +11,15 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
 from pendant.tick.pose import Vector
 
-PROGRAM_COMMANDS = frozenset({Command.START_PROGRAM, Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM})
+STARTS_FROM = {
+    Command.START_PROGRAM: frozenset({Mode.NORMAL, Mode.TEACH}),
+    Command.START_REMOTELY: frozenset({Mode.REMOTE}),
+}
+"""The modes from which a command starts the program: who has control."""
+
+LOCAL = STARTS_FROM[Command.START_PROGRAM]
+
+PROGRAM_COMMANDS = STARTS_FROM.keys() | {Command.PAUSE_PROGRAM, Command.RESUME_PROGRAM, Command.STOP_PROGRAM}
 
 
 class ProgramRun:
@@ -129,9 +137,9 @@ class ProgramRun:
         """Why a program command is not possible now, or None."""
         robot = self._robot
         state = robot.sequencer.state
-        if command is Command.START_PROGRAM:
-            if robot.mode not in (Mode.NORMAL, Mode.TEACH):
-                return way_out(robot.mode)
+        if command in STARTS_FROM:
+            if robot.mode not in STARTS_FROM[command]:
+                return "the robot is in local control" if robot.mode in LOCAL else way_out(robot.mode)
             if state is ProgramState.NONE:
                 return "no program is loaded"
         elif robot.mode is not Mode.RUN:
@@ -157,7 +165,7 @@ class ProgramRun:
         robot = self._robot
         sequencer = robot.sequencer
         values: Values = {"name": robot.program_name, "step": sequencer.index + 1}
-        if command is Command.START_PROGRAM:
+        if command in STARTS_FROM:
             self._origin = robot.mode
             robot.mode = Mode.RUN
             sequencer.start(self._felt())

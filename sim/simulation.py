@@ -106,8 +106,8 @@ class Simulation:
         self.fitting = self.supervisor.fitting
         self.controller = Controller(arm, self.calibration, self.dynamics, tcp=self.tcp, R_FT=self.R_FT)
         self._motor = np.array(arm.motors.gear) * np.array(arm.motors.torque_constant)
-        self._current = self.dynamics.gravity(self.plant.q) / self._motor
-        self.sensors.read(self.plant, self._current)  # as it comes one tick late: what the first tick will know
+        self.current = self.dynamics.gravity(self.plant.q) / self._motor
+        self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
         self._estimate: Estimate | None = None
         self._glance = Glance(self)
@@ -152,7 +152,7 @@ class Simulation:
         if supervisor.zero is not self.zero:
             self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
             self.contact_sources.set_zero(self._zero)
-        sample = self.sensors.read(plant, self._current)
+        sample = self.sensors.read(plant, self.current)
         if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
@@ -167,8 +167,8 @@ class Simulation:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
-        self._current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
-        plant.advance(self._current * self._motor, wishes.touches, decision.law is _OFF)
+        self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
+        plant.advance(self.current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
         return decision
 

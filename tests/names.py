@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from app.session.json_schema import KINDS, schema_of
+from app.session.session_file import KINDS, schema_of
 from pendant.all_settings import describe
 from pendant.event_table import TABLE
 from pendant.settings.renamed import RENAMED

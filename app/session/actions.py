@@ -18,6 +18,8 @@ from sim.plant.touch import ZERO, Push, Triple
 Control = Literal[
     "free_drive",
     "emergency_stop",
+    "emergency_stop_released",
+    "power_off",
     "reset",
     "leave_free_drive",
     "normal",

@@ -2,28 +2,25 @@
 
 import math
 import re
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import msgspec
 
 from app.files.bodies import check_load, check_tool, check_tools, check_world
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, load_tool, tools
-from app.session.actions import Action, Axes, ChangeSettings, Effort, Laboratory, LoadProgram, SelectTool, SetPayload
 from app.session.claims import CLAIMS
-from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session, Setup, WorldSection, bundled, folder
+from app.session.timeline_checks import Prepared, applied, check_timeline
 from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.freedrive.settings import SequenceDynamic
 from pendant.limits.settings import MaintainLimits, OperationLimits
-from pendant.program.steps import Program as Steps
 from pendant.program.steps import misfit
-from pendant.settings.schema import Limit, SettingError
+from pendant.settings.schema import Limit
 from pendant.walls.containment import PARTS, TETHER
 from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Scenario, ToolModel, table
-from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
+from sim.arm.scenario import AnyObject, Scenario, ToolModel
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -90,16 +87,6 @@ LAST_OF = {"FD": 25, "VW": 10, "HF": 2, "CD": 18, "AF": 9}
 """The highest number of each group of requirements."""
 
 
-class Prepared(NamedTuple):
-    """A setup, checked and turned into what `sim.simulation.Simulation` takes."""
-
-    arm: Arm
-    scenario: Scenario
-    settings: Settings
-    program: Steps | None
-    where: str = ""  # the file's name, for messages
-
-
 def prepare(setup: Setup, where: str) -> Prepared:
     """Turn a setup into arm, scenario, settings and program; for a session, check its time line and expectations too.
 
@@ -117,13 +104,14 @@ def prepare(setup: Setup, where: str) -> Prepared:
     program = setup.program if isinstance(setup, Session) else None
     if program is not None and (why := misfit(program, arm.n)) is not None:
         raise BadInput(where, "program", ABSENT, why)
-    settings = _applied(Settings(), setup.settings, where, "settings")
+    settings = applied(Settings(), setup.settings, where, "settings")
     for ident, state in setup.features.items():
         if state == "off":
             settings = apply(settings, dict(FEATURES[ident]))
     prepared = Prepared(arm, _scenario(setup, arm, where), settings, program, where)
     if isinstance(setup, Session):
-        _check_session(setup, prepared, where)
+        _check_claims(setup, where)
+        check_timeline(setup, prepared)
     return prepared
 
 
@@ -188,14 +176,6 @@ def _check_features(features: dict[str, Literal["on", "off"]], where: str) -> No
             raise BadInput(where, f"features.{ident}", ABSENT, f"has no switch; these have: {', '.join(FEATURES)}")
 
 
-def _applied(settings: Settings, changes: dict[str, float | bool | str], where: str, field: str) -> Settings:
-    try:
-        return apply(settings, dict(changes))
-    except SettingError as error:
-        value = ABSENT if error.value is None else error.value
-        raise BadInput(where, f"{field}.{error.name}", value, error.allowed) from None
-
-
 def without(session: Session) -> Session:
     """The session with its switch off; `prepare` has checked that it names one."""
     switch = session.switch or ""
@@ -214,64 +194,3 @@ def _check_claims(session: Session, where: str) -> None:
     if session.switch is not None and session.switch not in {*FEATURES, *SWITCHES}:
         allowed = f"one of {', '.join(FEATURES)}, or a setting that is true or false or a choice, such as sequence.on"
         raise BadInput(where, "switch", session.switch, allowed)
-
-
-def _check_session(session: Session, prepared: Prepared, where: str) -> None:
-    _check_claims(session, where)
-    parts = ["foot", *prepared.arm.chain.joints, "flange", "tool"]
-    for i, action in enumerate(session.timeline):
-        _check_action(action, f"timeline[{i}]", session=session, prepared=prepared, parts=parts, where=where)
-    for i, expectation in enumerate(session.expectations):
-        _check_expectation(expectation, f"expectations[{i}]", session=session, parts=parts, where=where)
-
-
-def _check_action(action: Action, field: str, *, session: Session, prepared: Prepared, parts: list[str], where: str) -> None:
-    if action.at is not None and action.at >= session.duration:
-        raise BadInput(where, f"{field}.at", action.at, f"below the duration, {session.duration:g} s")
-    if isinstance(action, Effort):
-        _one_of(action.part, parts, where, f"{field}.part")
-    elif isinstance(action, ChangeSettings):
-        _applied(prepared.settings, action.set, where, f"{field}.set")
-    elif isinstance(action, SelectTool):
-        _one_of(action.tool, [tool.name for tool in table(prepared.scenario)], where, f"{field}.tool")
-    elif isinstance(action, SetPayload):
-        check_load(action.load, prepared.arm, where, f"{field}.load")
-    elif isinstance(action, Axes):
-        _applied(prepared.settings, action.set, where, field)
-    elif isinstance(action, LoadProgram) and session.program is None:
-        raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
-    elif isinstance(action, Laboratory):
-        _check_change(action.change, f"{field}.change", prepared, where)
-
-
-def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:
-    if isinstance(change, AttachPayload):
-        check_load(change.load, prepared.arm, where, f"{field}.load")
-    elif isinstance(change, SensorFault):
-        _check_channel(change, prepared.arm, where, f"{field}.channel")
-    elif isinstance(change, MoveObject):
-        _one_of(change.name, [thing.name for thing in prepared.scenario.world], where, f"{field}.name")
-    elif isinstance(change, FrictionChange | Temperature) and change.joint is not None:
-        _one_of(change.joint, prepared.arm.chain.joints, where, f"{field}.joint")
-
-
-def _check_channel(change: SensorFault, arm: Arm, where: str, field: str) -> None:
-    count = {"force_torque": 6, "accelerometer": 3, "gyro": 3}.get(change.sensor, arm.n)
-    if change.channel is not None and not 0 <= change.channel < count:
-        raise BadInput(where, field, change.channel, f"0 .. {count - 1} for {change.sensor}, or nothing for all")
-
-
-def _check_expectation(expectation: Expectation, field: str, *, session: Session, parts: list[str], where: str) -> None:
-    for name, key in (("at", "at"), ("by", "by"), ("begin", "from"), ("end", "to")):
-        moment = getattr(expectation, name, None)
-        if expectation.after is None and moment is not None and moment > session.duration:
-            raise BadInput(where, f"{field}.{key}", moment, f"at most the duration, {session.duration:g} s")
-    if isinstance(expectation, Value) and expectation.joint is not None:
-        _one_of(expectation.joint, parts[1:-2], where, f"{field}.joint")
-    elif isinstance(expectation, Displacement):
-        _one_of(expectation.part, parts, where, f"{field}.part")
-
-
-def _one_of(value: str, allowed: list[str], where: str, field: str) -> None:
-    if value not in allowed:
-        raise BadInput(where, field, value, f"one of {', '.join(allowed)}" if allowed else "there is none in this session")

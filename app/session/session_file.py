@@ -1,7 +1,7 @@
 """Session files: what to simulate, what happens when, and what is expected of it. The schema; `prepare` checks and uses it."""
 
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta
@@ -15,6 +15,7 @@ from pendant.equipment.tools import MOST as MOST_TOOLS
 from pendant.program.steps import Program
 from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, MOST_WALLS, Angle, Text
 from pendant.walls.definitions import AnyBorder
+from sim.arm.arm_file import Arm
 from sim.arm.scenario import AnyObject, Load, ToolModel
 
 Posture = Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]
@@ -63,7 +64,16 @@ class WorldSection(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_o
     objects: World
 
 
+KINDS: dict[str, type[Any]] = {"session": Session, "configuration": Setup, "robot": Arm, "tool": ToolModel}
+"""The kinds of files that people write."""
+
 T = TypeVar("T", bound=Setup)
+
+
+def schema_of(kind: str) -> str:
+    """The JSON schema of a kind of file, one of KINDS, as text."""
+    found = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": f"pendant {kind}"}
+    return msgspec.json.format(msgspec.json.encode(found | msgspec.json.schema(KINDS[kind])), indent=1).decode() + "\n"
 
 
 def folder(kind: str) -> Path:

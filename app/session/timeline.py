@@ -42,6 +42,7 @@ class Entry:
 
     action: Action
     trigger: Trigger
+    offset: int = 0  # the tick from which times are counted
     start: int | None = None  # the tick in which it began
     done: bool = False
     grabbed: Triple | None = None  # where a hold took hold, in W [m]
@@ -50,7 +51,7 @@ class Entry:
         """The first tick in which the action acts, None while that is not known."""
         if self.action.at is not None:
             # A hand can take hold of an arm whose place is known, that is after one tick.
-            return max(ticks(self.action.at), 2 if isinstance(self.action, Hold) else 1)
+            return self.offset + max(ticks(self.action.at), 2 if isinstance(self.action, Hold) and not self.offset else 1)
         if self.trigger.happened is None:
             return None
         # What the robot did in a tick is seen after it, so the next tick is the first that can answer.
@@ -88,6 +89,13 @@ class Timeline:
         self._waiting = [entry for entry in self._entries if entry.trigger.happened is None]
         self._next = 0  # the next tick in which an action begins, goes on or ends
         self._quiet = Wishes(NOTHING, (), ())  # the wishes until then
+
+    def add(self, actions: Sequence[Action], offset: int) -> None:
+        """Play more actions, with times counted from the tick `offset`, which is done; what is over is forgotten."""
+        new = [Entry(action, Trigger(action.after, action.nth), offset) for action in actions]
+        self._entries = [entry for entry in self._entries if not entry.done] + new
+        self._waiting += [entry for entry in new if entry.trigger.happened is None]
+        self._next = 0
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
         """The wishes for `tick`; `snapshot` copies the tick before, and is called only where a hand grabs the arm."""

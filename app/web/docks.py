@@ -3,6 +3,7 @@
 import viser
 
 from app.log.live import LiveRecording
+from app.robot_interface.interfaces import RobotInterfaces
 from app.web.access.guard import Guard
 from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
@@ -11,6 +12,7 @@ from app.web.running import Running
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
 from app.web.tabs.contact_log import Contacts
+from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
 from app.web.tabs.recording import RecordingSwitch
 from app.web.tabs.settings_tab import SettingsTab
@@ -29,7 +31,15 @@ class Docks:
     """All panels."""
 
     def __init__(
-        self, server: viser.ViserServer, guard: Guard, loop: Running, *, hand: VirtualHand, arm: Arm, recording: LiveRecording
+        self,
+        server: viser.ViserServer,
+        guard: Guard,
+        loop: Running,
+        *,
+        hand: VirtualHand,
+        arm: Arm,
+        recording: LiveRecording,
+        interfaces: RobotInterfaces | None,
     ) -> None:
         self._loop = loop
         self._read = 0
@@ -56,6 +66,10 @@ class Docks:
             self.plots = Plots(gui, loop, arm)
         with self._lower.add_tab("Record"):
             self.recording = RecordingSwitch(gui, recording)
+        self.network: NetworkTab | None = None
+        if interfaces is not None:
+            with self._lower.add_tab("Network"):
+                self.network = NetworkTab(gui, interfaces)
         self._upper.dock_left()
         self._upper.set_width(LEFT)
         self._lower.dock_below(self._upper)
@@ -95,5 +109,6 @@ class Docks:
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
             self.recording.show(),
+            self.network is not None and self.network.show(),
         ]
         return any(changed)

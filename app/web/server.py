@@ -9,6 +9,7 @@ import viser
 
 from app.files.library import mesh_path
 from app.log.live import LiveRecording, must_be_writable
+from app.robot_interface.interfaces import RobotInterfaces
 from app.web.access.control import Control
 from app.web.access.listening import Access, access_through, must_be_free
 from app.web.access.site import Site
@@ -38,6 +39,7 @@ class Served(Site):
         access: Access,
         port: int,
         recording: LiveRecording,
+        interfaces: RobotInterfaces | None,
     ) -> None:
         super().__init__(access, port, brand_color=(25, 113, 194))
         self._loop = loop
@@ -46,7 +48,7 @@ class Served(Site):
         self.scene = Scene(self.server, arm, scenario, meshes=meshes, first=loop.latest())
         self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
         self.recording = recording
-        self.docks = Docks(self.server, self.guard, loop, hand=self.hand, arm=arm, recording=recording)
+        self.docks = Docks(self.server, self.guard, loop, hand=self.hand, arm=arm, recording=recording, interfaces=interfaces)
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         self.preferences = Preferences(self.guard, self.docks.settings_dock, self._paint_page)
@@ -124,13 +126,17 @@ def serve(
     port: int = 0,
     open_browser: bool = False,
     record: Path | None = None,
+    recording: LiveRecording | None = None,
+    interfaces: RobotInterfaces | None = None,
 ) -> Served:
     """Serve the web app of a running loop.
 
     Args:
         host: an address of this machine; one in a network demands a token, which is in the `link`.
         port: 0 for any free one.
-        record: record from the start, into this folder; None: when it is switched on, into the working folder.
+        record: record from the start, into this folder; None: when it is switched on.
+        recording: the switch of recordings; None for one of its own, into `record` or the working folder.
+        interfaces: the robot on the network, for the page to show; None where there is none.
 
     Raises:
         BadInput: the host is no address of this machine, the port is taken, or `record` cannot be written.
@@ -138,11 +144,11 @@ def serve(
     access = access_through(host)
     must_be_free(access.host, port)
     meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
-    recording = LiveRecording(loop, record or Path())
+    recording = recording or LiveRecording(loop, record or Path())
     if record is not None:
         must_be_writable(record)
         recording.start()
-    served = Served(loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording)
+    served = Served(loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording, interfaces=interfaces)
     if open_browser:
         webbrowser.open(served.link)
     return served

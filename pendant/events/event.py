@@ -69,6 +69,8 @@ class Kind(StrEnum):
     LEFT_ENABLING = "left_enabling"
     RUN_ENABLING = "run_enabling"
     EMERGENCY_STOP = "emergency_stop"
+    EMERGENCY_STOP_RELEASED = "emergency_stop_released"
+    POWERED_OFF = "powered_off"
     SAFEGUARD_STOP = "safeguard_stop"
     SAFEGUARD_CLOSED = "safeguard_closed"
     REDUCED_ON = "reduced_on"

@@ -51,6 +51,7 @@ class Activation:
         "_left",
         "_rated",
         "_sequence",
+        "_source",
         "_stored",
         "_total",
         "phase",
@@ -73,6 +74,7 @@ class Activation:
         self._sequence: Sequence | None = None
         self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
         self._left = self._total = 0  # ticks of the sequence
+        self._source = ""  # that asked for the attempt
         self._stored = Stored()  # for the sequence to compare with
 
     @property
@@ -126,8 +128,10 @@ class Activation:
         if attempt is None and gate.shut:
             return Happened([Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.appeared else [])
         counting = self.phase is Phase.ACTIVATION and not signal.source
-        if not counting and not around.guided and not may_enter(around.mode, settings):
-            return _not_from(around.mode, tick, settings)
+        if attempt is None:
+            self._source = signal.source
+        if not counting and not around.guided and not may_enter(around.mode, self._source, settings):
+            return _not_from(around.mode, tick, self._source, settings)
         if not around.enabled:
             return becomes(Transition.REFUSED, Event(Kind.REFUSED_ENABLING, tick, {"grip": around.grip or ""}))
         events: list[Event] = []
@@ -187,8 +191,8 @@ class Activation:
     def _check(self, around: Surroundings, settings: Settings) -> Happened:
         """The sequence runs; the button does not matter any more (FD-8a)."""
         sequence, balancing = self._sequence, self._compensation
-        if not around.guided and not may_enter(around.mode, settings):
-            return _not_from(around.mode, around.estimate.tick, settings)
+        if not around.guided and not may_enter(around.mode, self._source, settings):
+            return _not_from(around.mode, around.estimate.tick, self._source, settings)
         if balancing is not None:
             return self._balance(balancing, around, settings)
         assert sequence is not None
@@ -244,9 +248,9 @@ def _asked(outcome: Outcome, attempt: Attempt, around: Surroundings, settings: S
     return Event(Kind.LET_GO_ASKED if outcome is Outcome.LET_GO else Kind.REFUSED_STILL_HELD, tick, values)
 
 
-def _not_from(mode: Mode, tick: int, settings: Settings) -> Happened:
-    """Free-drive cannot be entered from `mode`."""
-    return becomes(Transition.REFUSED, Event(Kind.REFUSED_MODE, tick, {"mode": mode, "allowed": origins(settings)}))
+def _not_from(mode: Mode, tick: int, source: str, settings: Settings) -> Happened:
+    """`source` cannot ask for free-drive in `mode`."""
+    return becomes(Transition.REFUSED, Event(Kind.REFUSED_MODE, tick, {"mode": mode, "allowed": origins(source, settings)}))
 
 
 def _behind(reading: Reading, tick: int, settings: Settings) -> Event:

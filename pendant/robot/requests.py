@@ -8,7 +8,7 @@ from pendant.inputs import Command, Inputs
 from pendant.limits.validity import joints_ok
 from pendant.program.steps import ProgramState
 from pendant.signals.settings import PushSettings
-from pendant.signals.sources import BUTTON, DIGITAL, NONE, Sources
+from pendant.signals.sources import BUTTON, DIGITAL, NONE, REMOTE_CONTROLLER, Sources
 from pendant.tick.estimate import Estimate
 
 
@@ -81,6 +81,8 @@ class Calls:
             self.signal = BUTTON
         elif use.digital and use.digital_input in inputs.high:
             self.signal = DIGITAL
+        elif inputs.remote_signal:
+            self.signal = REMOTE_CONTROLLER
         return events
 
     def relearn(self) -> None:

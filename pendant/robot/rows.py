@@ -24,6 +24,17 @@ SAFETY: dict[Kind, EventRow] = {
         cool_down=True,
         category=1,
     ),
+    Kind.EMERGENCY_STOP_RELEASED: info("Emergency stop released", "Reset to go on."),
+    Kind.POWERED_OFF: EventRow(
+        Effect.LEAVE_TO_STOP,
+        Severity.STOP,
+        "Power off",
+        "It was {mode}. The brakes hold the arm; reset to switch the drives on.",
+        ("mode",),
+        Clears.RESET,
+        cool_down=True,
+        category=1,
+    ),
     Kind.SAFEGUARD_STOP: EventRow(
         Effect.SAFEGUARD_STOP,
         Severity.STOP,

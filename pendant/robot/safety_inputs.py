@@ -35,9 +35,15 @@ class SafetyInputs:
         """The commands of a tick; `held`: the free-drive button is."""
         self._take_levels(estimate.tick, commands, settings, events)
         stop = Command.EMERGENCY_STOP in commands
-        if stop and self._robot.safety is not Safety.EMERGENCY_STOP:
-            event = Event(Kind.EMERGENCY_STOP, estimate.tick, {"mode": self._robot.mode})
-            self._robot.happen(event, settings, events)
+        if stop:
+            if self._robot.safety is not Safety.EMERGENCY_STOP:
+                event = Event(Kind.EMERGENCY_STOP, estimate.tick, {"mode": self._robot.mode})
+                self._robot.happen(event, settings, events)
+        elif Command.EMERGENCY_STOP_RELEASED in commands and self._robot.safety is Safety.EMERGENCY_STOP:
+            self._robot.safety = Safety.SAFEGUARD_STOP if self._safeguard else self._resting
+            events.append(Event(Kind.EMERGENCY_STOP_RELEASED, estimate.tick))
+        if Command.POWER_OFF in commands and not self._robot.stopping.off:
+            self._robot.happen(Event(Kind.POWERED_OFF, estimate.tick, {"mode": self._robot.mode}), settings, events)
         if Command.RESET in commands:
             self._reset(estimate, settings, events, stop=stop, held=held)
 

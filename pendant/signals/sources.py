@@ -35,6 +35,9 @@ class Presence(NamedTuple):
 NONE = Presence()
 BUTTON = Presence("button")
 DIGITAL = Presence("digital input")
+REMOTE_CONTROLLER = Presence("remote controller")
+"""The program on the other side of the network asks for free-drive."""
+
 PROGRAM = Presence("program", whole=True)
 """A step of a program asks for the arm to be guided by hand (CD-15)."""
 

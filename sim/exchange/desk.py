@@ -33,6 +33,7 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             theirs.tool or ours.tool,
             theirs.load or ours.load,
             theirs.tools or ours.tools,
+            ours.remote_signal or theirs.remote_signal,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 

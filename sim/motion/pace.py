@@ -44,17 +44,17 @@ class Pace:
         self._target = 1.0
         self.rate = 1.0
 
-    def begin(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None) -> None:
-        """A motion begins, at rest."""
+    def begin(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None, share: float) -> None:
+        """A motion begins, at rest; `share` as for `step`."""
         self._look(motion, limits)
-        self.rate = self._target
+        self.rate = self._target * share
 
-    def step(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None) -> float:
-        """The rate of the next tick."""
+    def step(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None, share: float) -> float:
+        """The rate of the next tick; `share`: of the rate that the limits allow (program.speed)."""
         if limits != self._limits:
             self._look(motion, limits)
         most = TICK / RAMP
-        self.rate += min(max(self._target - self.rate, -most), most)
+        self.rate += min(max(self._target * share - self.rate, -most), most)
         return self.rate
 
     def _look(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None) -> None:

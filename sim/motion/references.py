@@ -102,8 +102,8 @@ class References:
         motion = self._motion
         if isinstance(motion, JointTrajectory | LinearTrajectory):
             if begins:
-                self._pace.begin(motion, decision.speed_limits)
-            self.now = motion.step(self._pace.step(motion, decision.speed_limits))
+                self._pace.begin(motion, decision.speed_limits, decision.speed)
+            self.now = motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
         else:
             self.now = motion.step()
         if isinstance(self._motion, ForceTrajectory):

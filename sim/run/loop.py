@@ -69,6 +69,7 @@ class Loop:
         self.simulation = make()
         self.desk = Desk()
         self.watch: Callable[[Simulation, Decision], None] | None = None  # shown each tick done, on the loop's thread
+        self.companion: Script | None = None  # acts beside desk and script, and stays through a reset: the network interfaces
         self.speed = 1.0
         self.paused = False
         self.actual_rate = 0.0
@@ -164,9 +165,13 @@ class Loop:
         script, tick = self._script, self.simulation.tick_count + 1
         if script is not None:
             wishes = wishes.joined(script.wishes(tick, self.simulation.snapshot))
+        if (companion := self.companion) is not None:
+            wishes = wishes.joined(companion.wishes(tick, self.simulation.snapshot))
         decision = self.simulation.tick(wishes)
         if script is not None:
             script.see(tick, decision)
+        if companion is not None:
+            companion.see(tick, decision)
         if (watch := self.watch) is not None:
             watch(self.simulation, decision)
         if decision.events:

@@ -256,6 +256,18 @@ def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[
         if w.phase is not Phase.OFF:
             _end(w, t, present, cool=True)
         _stop(w, t, Safety.EMERGENCY_STOP, static, 1)
+    elif (
+        Command.EMERGENCY_STOP_RELEASED in i.commands
+        and Command.EMERGENCY_STOP not in i.commands
+        and w.safety is Safety.EMERGENCY_STOP
+    ):
+        kinds.append(Kind.EMERGENCY_STOP_RELEASED)
+        w.safety = Safety.SAFEGUARD_STOP if w.safeguard else calm
+    if Command.POWER_OFF in i.commands and w.off_from > t:
+        kinds.append(Kind.POWERED_OFF)
+        if w.phase is not Phase.OFF:
+            _end(w, t, present, cool=True)
+        _stop(w, t, Safety.NORMAL, static, 1)
     if Command.RESET in i.commands:
         rows = [
             (Command.EMERGENCY_STOP in i.commands, Kind.COMMAND_REFUSED),
@@ -315,6 +327,7 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
         free_to_start = w.phase is not Phase.SEQUENCE
         can = {
             Command.START_PROGRAM: w.mode in (Mode.NORMAL, Mode.TEACH) and w.loaded and static and i.joints and free_to_start,
+            Command.START_REMOTELY: w.mode is Mode.REMOTE and w.loaded and static and i.joints and free_to_start,
             Command.PAUSE_PROGRAM: w.mode is Mode.RUN and runs,
             Command.RESUME_PROGRAM: w.mode is Mode.RUN and pauses and static and i.joints and free_to_start,
             Command.STOP_PROGRAM: w.mode is Mode.RUN,
@@ -323,7 +336,7 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
             continue
         if not can[command]:
             kinds.append(Kind.COMMAND_REFUSED)
-        elif command is Command.START_PROGRAM:
+        elif command in (Command.START_PROGRAM, Command.START_REMOTELY):
             kinds.append(Kind.PROGRAM_STARTED)
             w.origin, w.mode, w.program, w.at, fresh = w.mode, Mode.RUN, ProgramState.RUNNING, 1, True
         elif command is Command.PAUSE_PROGRAM:

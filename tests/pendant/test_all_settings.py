@@ -108,6 +108,7 @@ EXPECTED = {
     "reduced.transition": (0.5, 0.1, 1.0, "s", "FD-1", True),
     "static.speed": (0.01, 0.001, 0.1, "rad/s", "static", True),
     "static.time": (0.1, 0.02, 2.0, "s", "static", True),
+    "program.speed": (1.0, 0.0, 1.0, "", "CD-15", False),
     "tools.ramp": (1.0, 0.0, 10.0, "s", "tools", False),
     "tools.measure": (0.5, 0.1, 5.0, "s", "tools", False),
 }

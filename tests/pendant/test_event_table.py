@@ -109,6 +109,7 @@ EFFECTS = {
     Kind.SENSORS_LOST: Effect.LEAVE_TO_STOP,
     Kind.RUN_SENSORS_LOST: Effect.PROTECTIVE_STOP,
     Kind.EMERGENCY_STOP: Effect.EMERGENCY_STOP,
+    Kind.POWERED_OFF: Effect.LEAVE_TO_STOP,
     Kind.SAFEGUARD_STOP: Effect.SAFEGUARD_STOP,
     Kind.REDUCED_EXCEEDED: Effect.PROTECTIVE_STOP,
     Kind.REFUSED_ENABLING: Effect.NO_ENTRY,
@@ -142,7 +143,7 @@ def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> No
 def test_stop_categories_are_those_of_the_robots() -> None:
     """UR5e user manual, 8.2: an emergency stop removes the power at standstill, a safeguard stop leaves it on; beyond the
     limits of REDUCED is category 0."""
-    others = {Kind.EMERGENCY_STOP: 1, Kind.REDUCED_EXCEEDED: 0}
+    others = {Kind.EMERGENCY_STOP: 1, Kind.POWERED_OFF: 1, Kind.REDUCED_EXCEEDED: 0}
     assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 
 

@@ -20,7 +20,7 @@ from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tooling.tool_in_use import Tooling
 
-SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False})
+SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
 SPEEDS = SpeedLimits(0.1, 0.2, 0.3)
 SHAKE = Shake(Pattern.ENTERED, 0.001, 0.2, 3.0)
 PERIODS = (Remaining("free-drive", 3, 7),)
@@ -69,7 +69,7 @@ class Parts:
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
-            "limits": limits_checksum(self.settings),
+            "limits": limits_checksum(self.settings), "speed": 0.4,
         } | changes  # fmt: skip
 
 

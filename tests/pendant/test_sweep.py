@@ -72,6 +72,18 @@ SITUATIONS = {
     "safeguard stop, moving": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.SAFEGUARD_OPEN,))], Mode.STOP, Phase.OFF),
     "reduced": ([*REST, Step(commands=(Command.REDUCED_ON,))], Mode.TEACH, Phase.OFF),
     "reduced and stopped": ([*REST, Step(commands=(Command.REDUCED_ON, Command.EMERGENCY_STOP))], Mode.STOP, Phase.OFF),
+    "emergency stop released": (
+        [*REST, Step(commands=(Command.EMERGENCY_STOP,)), Step(commands=(Command.EMERGENCY_STOP_RELEASED,))],
+        Mode.STOP,
+        Phase.OFF,
+    ),
+    "power off": ([*REST, Step(commands=(Command.POWER_OFF,))], Mode.STOP, Phase.OFF),
+    "power off, moving": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.POWER_OFF,), qd=0.4)], Mode.STOP, Phase.OFF),
+    "RUN, started remotely": (
+        [*REST, Step(load=PROGRAM), Step(commands=(Command.REMOTE,)), Step(commands=(Command.START_REMOTELY,)), Step()],
+        Mode.RUN,
+        Phase.OFF,
+    ),
     "protective stop": ([*IN_RUN, Step(joints=False)], Mode.STOP, Phase.OFF),
     "STOP": ([*ON, Step(joints=False, held=True)], Mode.STOP, Phase.OFF),
     "activation": (REST + ticks_of(4, held=True), Mode.TEACH, Phase.ACTIVATION),

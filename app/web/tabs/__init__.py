@@ -1,1 +1,3 @@
-"""The docks on the left side. Uses files/, log/, runs/, web/scene/, web/widgets/."""
+"""The docks on the left side. Uses files/, log/, robot_interface/, robot_interface/controller/,
+robot_interface/transport/, runs/, web/scene/, web/widgets/.
+"""

@@ -13,8 +13,7 @@ from app.runs.batch import Job, run_all
 from app.runs.junit import junit, write
 from app.runs.runner import RunOutcome
 from app.session.expectation_watch import Verdict
-from app.session.json_schema import KINDS, schema_of
-from app.session.session_file import Session, bundled, find, find_all
+from app.session.session_file import KINDS, Session, bundled, find, find_all, schema_of
 
 SHORT: dict[str, Any] = {
     "title": "short",

@@ -32,5 +32,49 @@ def test_free_drive_is_entered_from_the_allowed_modes_alone(mode: Mode, allowed:
 def test_no_setting_allows_entry_from_remote_stop_or_free_drive() -> None:
     everything = {f"free_drive.allowed_from.{name}": True for name in ("normal", "teach", "run")}
     settings = apply(Settings(), everything)
-    assert {mode for mode in Mode if may_enter(mode, settings)} == {Mode.NORMAL, Mode.TEACH, Mode.RUN}
-    assert origins(settings) == "NORMAL, TEACH, RUN"
+    assert {mode for mode in Mode if may_enter(mode, "button", settings)} == {Mode.NORMAL, Mode.TEACH, Mode.RUN}
+    assert origins("button", settings) == "NORMAL, TEACH, RUN"
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.parametrize("source", ["button", "digital input", "push", "remote controller"])
+def test_in_remote_the_remote_controller_alone_enters_and_nowhere_else(mode: Mode, source: str) -> None:
+    """FD-1: REMOTE refuses the pendant's activation."""
+    settings = Settings()
+    if source == "remote controller":
+        assert may_enter(mode, source, settings) is (mode is Mode.REMOTE)
+        assert origins(source, settings) == "REMOTE"
+    else:
+        assert may_enter(mode, source, settings) is (mode is Mode.TEACH)
+
+
+def test_the_remote_controller_goes_through_the_sequence_and_its_period_ends_it() -> None:
+    bench = Bench(free_drive__period=1.0, sequence__on=True)
+    bench.run(60)
+    bench.step(Inputs(commands=(Command.REMOTE,)))
+    asks = Inputs(remote_signal=True)
+    bench.events.clear()
+    assert bench.run(1100, asks).mode is Mode.FREE_DRIVE
+    kinds = [event.kind for event in bench.events]
+    assert kinds[:3] == [Kind.SIGNAL_SEEN, Kind.SEQUENCE_STARTED, Kind.ENTERED]
+    assert bench.events[0].values["source"] == "remote controller"
+    assert bench.run(600, asks).mode is Mode.REMOTE
+    assert Kind.LEFT_PERIOD in {event.kind for event in bench.events}
+
+
+def test_the_remote_controller_is_refused_in_local_control() -> None:
+    bench = Bench()
+    bench.run(60)
+    bench.events.clear()
+    bench.step(Inputs(remote_signal=True))
+    assert bench.events == [Event(Kind.REFUSED_MODE, bench.tick, {"mode": Mode.TEACH, "allowed": "REMOTE"})]
+
+
+def test_a_sequence_that_the_remote_controller_began_ends_with_its_control() -> None:
+    bench = Bench(sequence__on=True)
+    bench.run(60)
+    bench.step(Inputs(commands=(Command.REMOTE,)))
+    bench.run(600, Inputs(remote_signal=True))
+    bench.events.clear()
+    bench.step(Inputs(commands=(Command.TEACH,), remote_signal=True))
+    assert Kind.REFUSED_MODE in {event.kind for event in bench.events}

@@ -8,7 +8,7 @@ from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import ProgramState
 from pendant.robot.requests import Calls
 from pendant.settings.schema import Value
-from pendant.signals.sources import BUTTON, DIGITAL, NONE, Presence
+from pendant.signals.sources import BUTTON, DIGITAL, NONE, REMOTE_CONTROLLER, Presence
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -194,3 +194,12 @@ def test_where_the_last_source_by_hand_is_switched_off_no_hand_is_felt() -> None
     for _ in range(10):
         assert (bench.calls.hand_off, bench.calls.touched, bench.calls.force) == (True, False, 0.0)
         bench.step(PUSHED)
+
+
+def test_the_remote_controllers_level_is_a_signal_unless_button_or_input_give_one() -> None:
+    asks = Inputs(remote_signal=True)
+    bench = Bench(digital=True)
+    assert bench.step(inputs=asks)[0] is REMOTE_CONTROLLER
+    assert bench.step(inputs=asks, button=True)[0] is BUTTON
+    assert bench.step(inputs=Inputs(high=frozenset({bench.settings.signals.digital_input}), remote_signal=True))[0] is DIGITAL
+    assert bench.step()[0] is NONE

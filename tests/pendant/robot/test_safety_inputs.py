@@ -9,7 +9,7 @@ from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.robot.reduced import SpeedLimits
 from pendant.robot.safety_inputs import SafetyInputs
 from pendant.tick.estimate import Estimate
-from pendant.tick.modes import Mode, Phase, Safety
+from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
@@ -17,6 +17,7 @@ from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
 OPEN, CLOSED = Command.SAFEGUARD_OPEN, Command.SAFEGUARD_CLOSED
 ON, OFF = Command.REDUCED_ON, Command.REDUCED_OFF
 STOP, RESET = Command.EMERGENCY_STOP, Command.RESET
+RELEASED, POWER_OFF = Command.EMERGENCY_STOP_RELEASED, Command.POWER_OFF
 
 
 def told(bench: Bench, *commands: Command) -> list[Kind]:
@@ -131,3 +132,52 @@ def test_where_no_joint_can_be_told_nothing_is_too_fast(value: Estimate) -> None
     bench.step(NOTHING, value)
     assert Kind.REDUCED_EXCEEDED not in [event.kind for event in bench.last.events]
     assert bench.last.mode is Mode.TEACH
+
+
+def test_a_released_emergency_stop_leaves_the_drives_off_until_a_reset() -> None:
+    bench = resting()
+    assert told(bench, STOP) == [Kind.EMERGENCY_STOP]
+    assert told(bench, RELEASED) == [Kind.EMERGENCY_STOP_RELEASED]
+    decision = bench.step(NOTHING)
+    assert (decision.mode, decision.safety, decision.law) == (Mode.STOP, Safety.NORMAL, Law.OFF)
+    assert told(bench, RESET) == [Kind.RESET]
+    assert bench.step(NOTHING).law is Law.HOLD
+
+
+def test_an_emergency_stop_that_is_pressed_is_not_released_in_the_same_tick() -> None:
+    bench = resting()
+    assert told(bench, STOP, RELEASED) == [Kind.EMERGENCY_STOP]
+    assert told(bench, RELEASED, STOP) == []
+    assert bench.step(NOTHING).safety is Safety.EMERGENCY_STOP
+
+
+def test_what_was_not_pressed_cannot_be_released() -> None:
+    bench = resting()
+    assert told(bench, RELEASED) == []
+    assert told(bench, OPEN, RELEASED) == [Kind.SAFEGUARD_STOP]
+
+
+@pytest.mark.parametrize(("level", "safety"), [(OPEN, Safety.SAFEGUARD_STOP), (ON, Safety.REDUCED), (CLOSED, Safety.NORMAL)])
+def test_a_released_emergency_stop_leaves_what_else_holds(level: Command, safety: Safety) -> None:
+    bench = resting()
+    told(bench, level)
+    told(bench, STOP)
+    told(bench, RELEASED)
+    assert bench.step(NOTHING).safety is safety
+
+
+def test_power_off_is_told_once_and_leaves_the_safety_mode() -> None:
+    bench = resting()
+    assert told(bench, POWER_OFF) == [Kind.POWERED_OFF]
+    decision = bench.step(NOTHING)
+    assert (decision.mode, decision.safety, decision.law) == (Mode.STOP, Safety.NORMAL, Law.OFF)
+    assert told(bench, POWER_OFF) == []
+    assert told(bench, RESET) == [Kind.RESET]
+
+
+def test_power_off_brakes_a_moving_arm_first() -> None:
+    bench = resting()
+    laws = [bench.step(Inputs(commands=(POWER_OFF,)), estimate(qd=0.3)).law]
+    laws += [bench.step(NOTHING, estimate(qd=0.3)).law for _ in range(3)]
+    assert laws == [Law.BRAKE] * 4
+    assert bench.run(100).law is Law.OFF

@@ -6,7 +6,7 @@ import pytest
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, LinearMove
 from pendant.robot.reduced import SpeedLimits
-from pendant.tick.modes import Mode, Safety
+from pendant.tick.modes import TICK, Mode, Safety
 from sim.arm.frames import quaternion_from_matrix
 from sim.motion.moves import JointTrajectory, LinearTrajectory
 from sim.motion.pace import RAMP, SHARE, Pace
@@ -46,12 +46,12 @@ def test_a_move_keeps_below_every_limit_and_on_its_path(made: type) -> None:
     path = []
     while not full.done:
         path.append(full.step().q)
-    pace.begin(motion, REDUCED)
+    pace.begin(motion, REDUCED, 1.0)
     assert pace.rate < 1.0
     worst = np.zeros(3)
-    q, count = motion.step(pace.step(motion, REDUCED)).q, 1
+    q, count = motion.step(pace.step(motion, REDUCED, 1.0)).q, 1
     while not motion.done:
-        now = motion.step(pace.step(motion, REDUCED)).q
+        now = motion.step(pace.step(motion, REDUCED, 1.0)).q
         worst = np.maximum(worst, speeds(q, now))
         q, count = now, count + 1
     shares = worst / REDUCED
@@ -63,17 +63,17 @@ def test_a_move_keeps_below_every_limit_and_on_its_path(made: type) -> None:
 def test_a_slow_move_is_left_alone() -> None:
     motion = JointTrajectory(HOME, JointMove(id=1, q=tuple((HOME + 0.1).tolist()), speed=0.02, acceleration=0.1), LIMITS)
     pace = Pace(MODEL, TCP)
-    pace.begin(motion, REDUCED)
+    pace.begin(motion, REDUCED, 1.0)
     assert pace.rate == 1.0
 
 
 def test_reduced_comes_and_goes_by_a_ramp_and_speeds_belong_to_the_way() -> None:
     motion, pace = joint_move(), Pace(MODEL, TCP)
-    pace.begin(motion, None)
+    pace.begin(motion, None, 1.0)
     before = None
     rates = []
     for tick in range(500):
-        reference = motion.step(pace.step(motion, REDUCED if 200 <= tick < 350 else None))
+        reference = motion.step(pace.step(motion, REDUCED if 200 <= tick < 350 else None, 1.0))
         rates.append(pace.rate)
         if before is not None:
             np.testing.assert_allclose(reference.q - before.q, (reference.qd + before.qd) / 1000.0, atol=2e-5)
@@ -106,3 +106,27 @@ def test_reduced_in_the_middle_of_a_fast_program_slows_it_down_in_time() -> None
     bench.run(1.2)
     assert (bench.mode, decision.safety) == (Mode.RUN, Safety.REDUCED)
     assert bench.estimate.v_tcp < 0.25
+
+
+def test_a_share_of_the_speed_stretches_the_time_and_keeps_the_path() -> None:
+    full, half, pace = joint_move(), joint_move(), Pace(MODEL, TCP)
+    pace.begin(half, None, 0.5)
+    ticks = 0
+    while not half.done:
+        half.step(pace.step(half, None, 0.5))
+        ticks += 1
+    assert abs(ticks - 2 * full.remaining / TICK) <= 2
+
+
+def test_a_share_of_none_halts_the_motion_and_it_goes_on_later() -> None:
+    motion, pace = joint_move(), Pace(MODEL, TCP)
+    pace.begin(motion, None, 1.0)
+    for _ in range(100):
+        motion.step(pace.step(motion, None, 1.0))
+    for _ in range(200):
+        motion.step(pace.step(motion, None, 0.0))
+    assert np.all(motion.step(pace.step(motion, None, 0.0)).qd == 0.0)
+    left = motion.remaining
+    while not motion.done:
+        motion.step(pace.step(motion, None, 1.0))
+    assert left > 0.0

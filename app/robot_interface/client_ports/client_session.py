@@ -1,0 +1,148 @@
+"""One connection to the primary, secondary or real-time interface."""
+
+from app.robot_interface.client_ports.bare_commands import LONGEST, TextCommands
+from app.robot_interface.client_ports.primary_messages import (
+    error_message,
+    exception_message,
+    key_message,
+    safety_message,
+    text_of,
+    version_message,
+)
+from app.robot_interface.client_ports.primary_packages import RobotState
+from app.robot_interface.client_ports.realtime_package import RealtimePackage
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.robot_words import SafetyMode
+from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
+from app.robot_interface.transport.outbox import Outbox
+from app.robot_interface.transport.peers import Peer, Peers
+from app.robot_interface.transport.tcp_port import Farewell
+from pendant.event_table import TABLE, render
+from pendant.events.event import Event, Kind
+from pendant.events.event_row import Severity
+from pendant.tick.modes import TICK_RATE
+
+EVERY = TICK_RATE // 10
+"""Ticks between two robot states."""
+
+KEYS = {
+    Kind.PROGRAM_STARTED: "PROGRAM_XXX_STARTED",
+    Kind.PROGRAM_FINISHED: "PROGRAM_XXX_STOPPED",
+    Kind.PROGRAM_STOPPED: "PROGRAM_XXX_STOPPED",
+    Kind.PROGRAM_FAILED: "PROGRAM_XXX_STOPPED",
+}
+
+LEVELS = {Severity.NOTICE: 1, Severity.WARNING: 2, Severity.STOP: 3}
+
+
+class StreamSession:
+    """What primary, secondary and real-time have in common: text in, packages out.
+
+    See `app.robot_interface.transport.tcp_port.Conversation` and `app.robot_interface.controller.cabinet.Listener`.
+    """
+
+    def __init__(
+        self, cabinet: Cabinet, commands: DashboardCommands, peers: Peers, peer: Peer, *, outbox: Outbox, writable: bool
+    ) -> None:
+        self.cabinet, self.outbox = cabinet, outbox
+        self._peers, self._peer, self._writable = peers, peer, writable
+        self._text = TextCommands(commands, cabinet.ask, self._complain)
+        cabinet.listen(self)
+
+    async def hear(self, data: bytes) -> None:
+        """Do what the text says; on the read-only port nothing."""
+        if not self._writable:
+            self._complain(1, 1, "C210: this port is read-only")
+        elif not self._text.hear(data, self.cabinet.state.remote):
+            raise Farewell(f"a line of more than {LONGEST} bytes")
+
+    def over(self) -> None:
+        """The connection is over."""
+        self.cabinet.forget(self)
+
+    def tick(self, number: int) -> None:
+        """A tick is done."""
+
+    def told(self, event: Event) -> None:
+        """Something happened in it."""
+
+    def repeat(self) -> None:
+        """No tick has been done for a while."""
+
+    def complain(self, line: int, column: int, text: str) -> None:
+        """Tell the client what cannot be done."""
+
+    def _complain(self, line: int, column: int, text: str) -> None:
+        self._peers.note(self._peer.interface, self._peer.number, f"text refused: {text}")
+        self.complain(line, column, text)
+
+
+class PrimarySession(StreamSession):
+    """Robot state ten times a second, and messages; `messages` False is the secondary interface."""
+
+    def __init__(
+        self,
+        cabinet: Cabinet,
+        commands: DashboardCommands,
+        peers: Peers,
+        peer: Peer,
+        *,
+        outbox: Outbox,
+        writable: bool,
+        state: RobotState,
+        messages: bool,
+    ) -> None:
+        self._state, self._messages = state, messages
+        self._safety: SafetyMode | None = None
+        super().__init__(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
+        outbox.send(version_message(cabinet.clock))
+        self._tell_state()
+
+    def tick(self, number: int) -> None:
+        """Every tenth of a second the state; the safety mode as soon as it changes."""
+        safety = self.cabinet.state.safety_mode
+        if self._messages and safety is not self._safety:
+            self._safety = safety
+            self.outbox.send(safety_message(self.cabinet.clock, safety))
+        if number % EVERY == 0:
+            self._tell_state()
+
+    def told(self, event: Event) -> None:
+        """Messages: keys of programs, texts and errors of everything else that is more than a note."""
+        if not self._messages:
+            return
+        if event.kind in KEYS:
+            self.outbox.send(key_message(self.cabinet.clock, KEYS[event.kind], str(event.values["name"])))
+        level = LEVELS.get(TABLE[event.kind].severity)
+        if level is not None:
+            self.outbox.send(error_message(self.cabinet.clock, level, " ".join(render(event)).strip()))
+
+    def complain(self, line: int, column: int, text: str) -> None:
+        """A runtime exception, and the text of it."""
+        self.outbox.send(exception_message(self.cabinet.clock, line, column, text))
+        self.outbox.send(text_of(self.cabinet.clock, text))
+
+    def repeat(self) -> None:
+        """Send the last state again, while nothing is simulated."""
+        self._tell_state()
+
+    def _tell_state(self) -> None:
+        self.outbox.offer(self._state.primary() if self._messages else self._state.secondary())
+
+
+class RealtimeSession(StreamSession):
+    """A package every tick."""
+
+    def __init__(
+        self, cabinet: Cabinet, commands: DashboardCommands, peers: Peers, peer: Peer, *, outbox: Outbox, writable: bool
+    ) -> None:
+        self._package = RealtimePackage(cabinet)
+        super().__init__(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
+
+    def tick(self, number: int) -> None:
+        """Send the tick's package."""
+        self.outbox.offer(self._package.bytes())
+
+    def repeat(self) -> None:
+        """Send it again, while nothing is simulated."""
+        self.tick(0)

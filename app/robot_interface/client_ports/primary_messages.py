@@ -1,0 +1,65 @@
+"""Messages of the primary interface as bytes: version, text, keys, errors, safety mode (client interfaces 5.23)."""
+
+import struct
+from enum import IntEnum
+
+from app.robot_interface.controller.robot_words import VERSION, SafetyMode
+
+ROBOT_MESSAGE = 20
+
+FROM_CONTROLLER = -2
+"""Source of a message: the robot controller."""
+
+
+class MessageType(IntEnum):
+    """Of a robot message."""
+
+    TEXT = 0
+    POPUP = 2
+    VERSION = 3
+    SAFETY_MODE = 5
+    ERROR = 6
+    KEY = 7
+    RUNTIME_EXCEPTION = 10
+
+
+def _message(clock: float, kind: MessageType, body: bytes) -> bytes:
+    content = struct.pack(">QbB", int(clock * 1e6), FROM_CONTROLLER, kind) + body
+    return struct.pack(">iB", len(content) + 5, ROBOT_MESSAGE) + content
+
+
+def version_message(clock: float) -> bytes:
+    """What a client is told first."""
+    name = b"URControl"
+    numbers = struct.pack(">BBii", *VERSION)
+    return _message(clock, MessageType.VERSION, bytes([len(name)]) + name + numbers + b"Nov 23 2026, 12:00:00")
+
+
+def text_of(clock: float, text: str) -> bytes:
+    """A text for people."""
+    return _message(clock, MessageType.TEXT, _ascii(text))
+
+
+def key_message(clock: float, title: str, text: str) -> bytes:
+    """Something that programs wait for, such as PROGRAM_XXX_STARTED with the program's name."""
+    name = title.encode()
+    return _message(clock, MessageType.KEY, struct.pack(">iiB", 0, 0, len(name)) + name + _ascii(text))
+
+
+def error_message(clock: float, level: int, text: str) -> bytes:
+    """An error for people; `level` 1 is a note, 2 a warning, 3 a stop."""
+    return _message(clock, MessageType.ERROR, struct.pack(">iiiII", 0, 0, level, 0, 0) + _ascii(text))
+
+
+def safety_message(clock: float, mode: SafetyMode) -> bytes:
+    """The safety mode is another."""
+    return _message(clock, MessageType.SAFETY_MODE, struct.pack(">iiBII", 0, 0, mode, 0, 0))
+
+
+def exception_message(clock: float, line: int, column: int, text: str) -> bytes:
+    """A program cannot go on."""
+    return _message(clock, MessageType.RUNTIME_EXCEPTION, struct.pack(">ii", line, column) + _ascii(text))
+
+
+def _ascii(text: str) -> bytes:
+    return text.encode("ascii", "replace")

@@ -1,0 +1,122 @@
+"""What the controller tells of itself in words and numbers of the UR e-Series, derived from the pendant's decision."""
+
+from dataclasses import dataclass
+
+from app.robot_interface.controller.robot_words import (
+    SAFETY_BITS,
+    ControlMode,
+    JointMode,
+    OperationalMode,
+    RobotMode,
+    RuntimeState,
+    SafetyMode,
+)
+from pendant.decision import Decision
+from pendant.program.steps import ApplyForce, ProgramState
+from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
+
+UNLOCK_AFTER = 5.0
+"""Time after a protective stop in which it cannot be unlocked [s] (dashboard server, e-Series)."""
+
+SAFETY = {
+    Safety.NORMAL: SafetyMode.NORMAL,
+    Safety.REDUCED: SafetyMode.REDUCED,
+    Safety.SAFEGUARD_STOP: SafetyMode.SAFEGUARD_STOP,
+    Safety.PROTECTIVE_STOP: SafetyMode.PROTECTIVE_STOP,
+    Safety.EMERGENCY_STOP: SafetyMode.ROBOT_EMERGENCY_STOP,
+}
+
+RUNTIME = {
+    ProgramState.NONE: RuntimeState.STOPPED,
+    ProgramState.STOPPED: RuntimeState.STOPPED,
+    ProgramState.RUNNING: RuntimeState.PLAYING,
+    ProgramState.PAUSED: RuntimeState.PAUSED,
+}
+
+ON_HOLD = frozenset({Safety.PROTECTIVE_STOP, Safety.SAFEGUARD_STOP})
+"""Stops after which a UR keeps its drives' mode: the safety mode says that it stands."""
+
+
+@dataclass(slots=True)
+class ControllerState:
+    """The controller in one tick."""
+
+    mode: Mode = Mode.TEACH
+    safety: Safety = Safety.NORMAL
+    phase: Phase = Phase.OFF
+    law: Law = Law.HOLD
+    program_state: ProgramState = ProgramState.NONE
+    program: str = ""  # name of the loaded one, without .urp
+    forcing: bool = False  # a step pushes with a force
+    stopped_at: int = 0  # tick in which the protective stop began
+    tick: int = 0
+    idle: bool = False  # drives on, brakes still closed
+    remote: bool = True  # in remote control
+    popup: str = ""  # that is shown
+    operational: OperationalMode = OperationalMode.NONE
+    failure: str = ""  # why nothing is simulated
+    refusal: str = ""  # why free-drive was refused last; "" once it was entered
+
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in a tick."""
+        if decision.safety is Safety.PROTECTIVE_STOP and self.safety is not Safety.PROTECTIVE_STOP:
+            self.stopped_at = tick
+        self.tick, self.mode, self.safety = tick, decision.mode, decision.safety
+        self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
+        self.forcing = isinstance(decision.move, ApplyForce)
+        self.idle = self.idle and self.off
+        if decision.mode in (Mode.TEACH, Mode.NORMAL):
+            self.remote = False
+        elif decision.mode is Mode.REMOTE:
+            self.remote = True
+
+    @property
+    def off(self) -> bool:
+        """The drives have no power, and no stop is there that has to be unlocked first."""
+        return self.law is Law.OFF and self.safety not in ON_HOLD
+
+    @property
+    def robot_mode(self) -> RobotMode:
+        """Of drives and brakes."""
+        if self.off:
+            return RobotMode.IDLE if self.idle else RobotMode.POWER_OFF
+        return RobotMode.RUNNING
+
+    @property
+    def safety_mode(self) -> SafetyMode:
+        """Of the safety system."""
+        return SafetyMode.FAULT if self.failure else SAFETY[self.safety]
+
+    @property
+    def runtime(self) -> RuntimeState:
+        """Of the program."""
+        return RUNTIME[self.program_state]
+
+    @property
+    def joint_mode(self) -> JointMode:
+        """Of every joint."""
+        modes = {RobotMode.POWER_OFF: JointMode.POWER_OFF, RobotMode.IDLE: JointMode.IDLE}
+        return modes.get(self.robot_mode, JointMode.RUNNING)
+
+    @property
+    def control_mode(self) -> ControlMode:
+        """What the joints are controlled by."""
+        if self.mode is Mode.FREE_DRIVE:
+            return ControlMode.TEACH
+        return ControlMode.FORCE if self.forcing else ControlMode.POSITION
+
+    @property
+    def robot_bits(self) -> int:
+        """`robot_status_bits`: power on, program running, free-drive (a UR's teach button)."""
+        power = self.robot_mode in (RobotMode.IDLE, RobotMode.RUNNING)
+        return power | (self.runtime is RuntimeState.PLAYING) << 1 | (self.mode is Mode.FREE_DRIVE) << 2
+
+    @property
+    def safety_bits(self) -> int:
+        """`safety_status_bits`."""
+        return SAFETY_BITS[self.safety_mode]
+
+    @property
+    def locked_for(self) -> float:
+        """Time until a protective stop can be unlocked [s]."""
+        return max(0.0, UNLOCK_AFTER - (self.tick - self.stopped_at) * TICK)

@@ -1,0 +1,102 @@
+"""Writes a tick's measurements into the record of RTDE's fields."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.robot_interface.controller.field_record import FieldRecord
+from pendant.decision import Decision
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Law
+from pendant.tooling.tool_in_use import Fitting
+from sim.arm.frames import rotation_from_rpy
+from sim.motion.line import rotation_vector
+from sim.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+
+class MeasuredFields:
+    """What an arm of six joints measures and what is configured, in the frames and signs of RTDE.
+
+    Forces are those on the robot, in axes of the base; a pose is a position and a rotation vector.
+    """
+
+    def __init__(self, record: FieldRecord) -> None:
+        self._record = record
+        self._fitting: Fitting | None = None
+        self._simulation: Simulation | None = None
+        self._torque = np.ones(6)  # of the motors per current, at the output [N·m/A]
+        self._R_FT, self._tcp = np.eye(3), np.zeros(3)
+
+    def fill(self, simulation: Simulation, decision: Decision) -> None:
+        """Write the tick done last."""
+        if simulation is not self._simulation:
+            self._simulation, motors = simulation, simulation.arm.motors
+            self._torque = np.array(motors.gear) * np.array(motors.torque_constant)
+            self._record.put("target_gravity", simulation.estimate.g_B)
+        if decision.fitting is not None and decision.fitting is not self._fitting:
+            self._fit(decision.fitting)
+        estimate, put = simulation.estimate, self._record.put
+        self._fill_joints(simulation, estimate, decision)
+        R_BT = estimate.R_BF @ self._R_FT
+        self._fill_tool(estimate, R_BT)
+        force = estimate.F_user[:3]
+        arm = estimate.tcp[:3] - estimate.p_BF
+        put("actual_TCP_force", np.concatenate((force, estimate.F_user[3:] - _cross(arm, force))))
+        put("tcp_force_scalar", math.sqrt(float(force @ force)))
+        put("ft_raw_wrench", -estimate.w_sensor)
+        put("wrench_calc_from_currents", np.concatenate((estimate.F_joints, (0.0, 0.0, 0.0))))
+        put("speed_scaling", decision.speed)
+        put("target_speed_fraction", decision.speed)
+
+    def _fill_joints(self, simulation: Simulation, estimate: Estimate, decision: Decision) -> None:
+        put, reference = self._record.put, simulation.controller.references.now
+        if reference is None or decision.law in (Law.FREE, Law.OFF):
+            target = (estimate.q, estimate.qd, estimate.qdd)
+        else:
+            target = (reference.q, reference.qd, reference.qdd)
+        for name, values in zip(("target_q", "target_qd", "target_qdd"), target, strict=True):
+            put(name, values)
+        put("target_current", simulation.current)
+        put("target_moment", simulation.current * self._torque)
+        put("actual_q", estimate.q)
+        put("actual_qd", estimate.qd)
+        put("actual_qdd", estimate.qdd)
+        put("actual_current", estimate.tau_m / self._torque)
+        put("actual_current_as_torque", estimate.tau_m)
+        put("actual_moment", estimate.tau_J)
+        put("joint_temperatures", simulation.plant.temperature)
+        p, R, _ = simulation.dynamics.places(target[0])
+        put("target_TCP_pose", np.concatenate((p + R @ self._tcp, rotation_vector(R @ self._R_FT))))
+
+    def _fill_tool(self, estimate: Estimate, R_BT: Array) -> None:
+        put = self._record.put
+        speed = np.concatenate((estimate.tcp[3:], estimate.v_F[3:]))
+        put("actual_TCP_pose", np.concatenate((estimate.tcp[:3], rotation_vector(R_BT))))
+        put("actual_TCP_speed", speed)
+        put("target_TCP_speed", speed)
+        put("actual_TCP_acceleration", np.concatenate((estimate.a_felt, (0.0, 0.0, 0.0))))
+        put("actual_tool_accelerometer", estimate.a_F)
+        put("elbow_position", estimate.elbow[:3])
+        put("elbow_velocity", estimate.elbow[3:])
+
+    def _fit(self, fitting: Fitting) -> None:
+        """Tool and payload are others: a UR counts both as payload."""
+        self._fitting, tool = fitting, fitting.tool
+        self._tcp, self._R_FT = np.array(tool.tcp), rotation_from_rpy(tool.rpy)
+        put = self._record.put
+        put("tcp_offset", np.concatenate((self._tcp, rotation_vector(self._R_FT))))
+        mass = tool.mass + fitting.load.mass
+        first = tool.mass * np.array(tool.com) + fitting.load.mass * np.array(fitting.load.com)
+        put("payload", mass)
+        put("payload_cog", first / mass if mass else first)
+        put("payload_inertia", fitting.load.inertia or (0.0,) * 6)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """a × b, without the cost of numpy.cross."""
+    x, y, z = a.tolist()
+    u, v, w = b.tolist()
+    return np.array((y * w - z * v, z * u - x * w, x * v - y * u))

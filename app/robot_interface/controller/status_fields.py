@@ -1,0 +1,59 @@
+"""Writes the controller's state into the record of RTDE's fields: the modes' numbers, inputs, and registers of our own."""
+
+from app.robot_interface.controller.controller_state import ControllerState
+from app.robot_interface.controller.field_record import FieldRecord
+from pendant.contact.contact_change import Change
+from pendant.decision import Decision
+from pendant.tick.modes import TICK, Mode, Phase
+
+FREE_DRIVE, TRYING, REFUSED, RUNNING_OUT, CONTACT = (f"output_bit_register_{number}" for number in range(64, 69))
+"""What a UR's bits do not tell: in free-drive; being activated; refused last; a period that ends it runs; in contact."""
+
+REMAINING = "output_double_register_24"
+"""Of the period that runs [s]."""
+
+PHASES = list(Phase)
+PHASE = "output_int_register_24"
+"""The phase of free-drive, by its place in docs/reference/clients.md."""
+
+
+class StatusFields:
+    """State, inputs and registers."""
+
+    def __init__(self, record: FieldRecord) -> None:
+        self._record = record
+        self._told: tuple[object, ...] = ()
+
+    def fill(self, state: ControllerState, decision: Decision) -> None:
+        """Write the tick done last; what seldom changes only when it does."""
+        put = self._record.put
+        if decision.periods:
+            put(REMAINING, decision.periods[0].ticks * TICK)
+        for contact in decision.contacts:
+            put(CONTACT, contact.change is not Change.LOST)
+        told = (
+            state.robot_mode,
+            state.safety_mode,
+            state.runtime,
+            state.phase,
+            state.mode,
+            state.refusal,
+            bool(decision.periods),
+        )
+        if told == self._told:
+            return
+        self._told = told
+        put("robot_mode", state.robot_mode)
+        put("joint_mode", (state.joint_mode,) * 6)
+        put("safety_mode", state.safety_mode)
+        put("safety_status", state.safety_mode)
+        put("safety_status_bits", state.safety_bits)
+        put("robot_status_bits", state.robot_bits)
+        put("runtime_state", state.runtime)
+        put(FREE_DRIVE, state.mode is Mode.FREE_DRIVE)
+        put(TRYING, state.phase is not Phase.OFF and state.mode is not Mode.FREE_DRIVE)
+        put(REFUSED, bool(state.refusal))
+        put(RUNNING_OUT, state.mode is Mode.FREE_DRIVE and bool(decision.periods))
+        put(PHASE, PHASES.index(state.phase))
+        if not decision.periods:
+            put(REMAINING, 0.0)

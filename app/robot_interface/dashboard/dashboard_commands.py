@@ -1,0 +1,227 @@
+"""The dashboard server's commands as PolyScope 5 answers them (DashboardServer e-Series), for the robot that there is."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from app.files.bad_input import BadInput
+from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.robot_words import SERIAL, VERSION, OperationalMode, RobotMode, RuntimeState, SafetyMode
+from pendant.events.event import Event, Kind
+from pendant.inputs import Command
+from pendant.program.steps import ProgramState
+from sim.arm.scenario import Load
+
+BANNER = "Connected: Universal Robots Dashboard Server"
+
+LOCAL = "Command is not allowed due to safety reasons, please switch robot to Remote Control mode and reconnect to port 29999"
+
+LOCKED = "Cannot unlock protective stop until 5s after occurrence. Always inspect cause of protective stop before unlocking"
+
+SOFTWARE = f"{VERSION[0]}.{VERSION[1]}.{VERSION[2]}.{VERSION[3]}"
+
+READY = frozenset({SafetyMode.NORMAL, SafetyMode.REDUCED})
+"""Safety modes in which drives can be switched on and programs started."""
+
+
+class Pending(NamedTuple):
+    """An answer that follows from what the robot does with a wish in the next tick."""
+
+    ask: Ask
+    answer: Callable[[tuple[Event, ...]], str]
+
+
+Answer = str | Pending
+
+
+class DashboardCommands:
+    """What each command does, and what it answers.
+
+    Args:
+        cabinet: the robot.
+        model: as the dashboard names the arm, "UR5" for a UR5e.
+    """
+
+    def __init__(self, cabinet: Cabinet, model: str) -> None:
+        self._cabinet, self._model = cabinet, model
+        self._exact: dict[str, Callable[[], Answer]] = {
+            "running": lambda: f"Program running: {_truth(self._plays)}",
+            "robotmode": lambda: f"Robotmode: {cabinet.state.robot_mode.name}",
+            "safetymode": lambda: f"Safetymode: {cabinet.state.safety_mode.name}",
+            "safetystatus": lambda: f"Safetystatus: {cabinet.state.safety_mode.name}",
+            "programstate": self._program_state,
+            "get loaded program": self._loaded,
+            "isprogramsaved": lambda: f"true {self._program}",
+            "play": self._play,
+            "stop": self._stop,
+            "pause": self._pause,
+            "power on": self._power_on,
+            "power off": self._power_off,
+            "brake release": self._release_brakes,
+            "unlock protective stop": self._unlock,
+            "restart safety": self._restart_safety,
+            "close safety popup": lambda: "closing safety popup",
+            "close popup": self._close_popup,
+            "is in remote control": lambda: _truth(cabinet.state.remote),
+            "polyscopeversion": lambda: f"URSoftware {SOFTWARE} (Nov 23 2026)",
+            "version": lambda: SOFTWARE,
+            "get serial number": lambda: SERIAL,
+            "get robot model": lambda: self._model,
+            "get operational mode": lambda: cabinet.state.operational.name,
+            "clear operational mode": self._clear_operational,
+            "savelog": lambda: "Log saved to disk",
+            "free-drive": self._free_drive,
+            "payload": self._payload,
+        }
+        self._begins: dict[str, Callable[[str], Answer]] = {
+            "load installation": lambda name: f"File not found: {name}",
+            "load": self._load,
+            "set operational mode": self._set_operational,
+            "popup": self._popup,
+            "addtolog": lambda text: "Added log message",
+            "generate flight report": lambda text: "Error: this robot writes no flight reports; record it instead",
+            "generate support file": lambda text: "Error: this robot writes no support files; record it instead",
+            "set payload": self._set_payload,
+        }
+        self._remote_only = frozenset(
+            {
+                *("load", "load installation", "play", "stop", "pause", "power on", "power off", "brake release"),
+                *("unlock protective stop", "restart safety", "set payload"),
+            }
+        )
+
+    def answer(self, line: str, remote: bool) -> Answer:
+        """The answer to a line.
+
+        Args:
+            line: without its end.
+            remote: the robot was in remote control when the client connected.
+        """
+        text = line.strip()
+        low = text.lower()
+        if low in self._exact:
+            return LOCAL if low in self._remote_only and not remote else self._exact[low]()
+        for verb, act in self._begins.items():
+            if low.startswith(f"{verb} ") or low == verb:
+                return LOCAL if verb in self._remote_only and not remote else act(text[len(verb) :].strip())
+        return f"could not understand: '{text}'"
+
+    @property
+    def _plays(self) -> bool:
+        return self._cabinet.state.runtime is RuntimeState.PLAYING
+
+    @property
+    def _program(self) -> str:
+        """Base name of the loaded program."""
+        name = self._cabinet.state.program
+        return f"{name}.urp" if name else "<unnamed>"
+
+    def _program_state(self) -> str:
+        return f"{self._cabinet.state.runtime.name} {self._program}"
+
+    def _loaded(self) -> str:
+        return f"Loaded program: /programs/{self._program}" if self._cabinet.state.program else "No program loaded"
+
+    def _load(self, name: str) -> Answer:
+        path = self._cabinet.programs.find(name)
+        if path is None:
+            return f"File not found: {name}"
+        failed = f"Error while loading program: {name}"
+        try:
+            program = self._cabinet.programs.load(path)
+        except BadInput:
+            return failed
+        return _when(Ask(program=program), Kind.PROGRAM_LOADED, f"Loading program: {name}", failed)
+
+    def _play(self) -> Answer:
+        state = self._cabinet.state
+        paused = state.program_state is ProgramState.PAUSED
+        command = Command.RESUME_PROGRAM if paused else Command.START_REMOTELY
+        kind = Kind.PROGRAM_RESUMED if paused else Kind.PROGRAM_STARTED
+        if state.robot_mode is not RobotMode.RUNNING:
+            return "Failed to execute: play"
+        return _when(Ask((command,)), kind, "Starting program", "Failed to execute: play")
+
+    def _stop(self) -> Answer:
+        if self._cabinet.state.runtime is RuntimeState.STOPPED:
+            return "Failed to execute: stop"
+        return _when(Ask((Command.STOP_PROGRAM,)), Kind.PROGRAM_STOPPED, "Stopped", "Failed to execute: stop")
+
+    def _pause(self) -> Answer:
+        return _when(Ask((Command.PAUSE_PROGRAM,)), Kind.PROGRAM_PAUSED, "Pausing program", "Failed to execute: pause")
+
+    def _power_on(self) -> Answer:
+        state = self._cabinet.state
+        if state.off and state.safety_mode in READY:
+            state.idle = True
+        return "Powering on"
+
+    def _power_off(self) -> Answer:
+        self._cabinet.state.idle = False
+        return Pending(Ask((Command.POWER_OFF,)), lambda events: "Powering off")
+
+    def _release_brakes(self) -> Answer:
+        state = self._cabinet.state
+        if state.off and state.safety_mode in READY:
+            return Pending(Ask((Command.RESET,)), lambda events: "Brake releasing")
+        return "Brake releasing"
+
+    def _unlock(self) -> Answer:
+        state = self._cabinet.state
+        if state.safety_mode is not SafetyMode.PROTECTIVE_STOP:
+            return "Protective stop releasing"
+        if state.locked_for > 0.0:
+            return LOCKED
+        return Pending(Ask((Command.RESET,)), lambda events: "Protective stop releasing")
+
+    def _restart_safety(self) -> Answer:
+        self._cabinet.state.idle = False
+        return Pending(Ask((Command.POWER_OFF,)), lambda events: "Restarting safety")
+
+    def _popup(self, text: str) -> str:
+        self._cabinet.state.popup = text
+        return "showing popup"
+
+    def _close_popup(self) -> str:
+        self._cabinet.state.popup = ""
+        return "closing popup"
+
+    def _set_operational(self, name: str) -> str:
+        if name.upper() not in ("MANUAL", "AUTOMATIC"):
+            return f"could not understand: 'set operational mode {name}'"
+        self._cabinet.state.operational = OperationalMode[name.upper()]
+        return f"Operational mode {name.upper()} is set"
+
+    def _clear_operational(self) -> str:
+        self._cabinet.state.operational = OperationalMode.NONE
+        return "No longer controlling the operational mode. Current operational mode: NONE"
+
+    def _free_drive(self) -> str:
+        """Ours: where free-drive stands, and why it was refused last."""
+        state = self._cabinet.state
+        return f"Free-drive: {state.phase.value}" + (f"; refused: {state.refusal}" if state.refusal else "")
+
+    def _payload(self) -> str:
+        """Ours: what is configured, tool and payload together."""
+        x, y, z = self._cabinet.record.get("payload_cog")  # type: ignore[misc]
+        return f"Payload: {self._cabinet.record.get('payload'):g} kg at {x:g} {y:g} {z:g} m"
+
+    def _set_payload(self, text: str) -> Answer:
+        """Ours: the payload beyond the tool, mass [kg] and centre in F [m]."""
+        failed = "Failed to execute: set payload; expected MASS or MASS X Y Z, in kg and m"
+        try:
+            mass, *centre = (float(word) for word in text.split())
+        except ValueError:
+            return failed
+        if len(centre) not in (0, 3):
+            return failed
+        load = Load(mass=mass, com=centre) if centre else Load(mass=mass)
+        return _when(Ask(load=load), Kind.PAYLOAD_CHANGED, "Setting payload", failed)
+
+
+def _when(ask: Ask, kind: Kind, done: str, failed: str) -> Pending:
+    """`done` if an event of `kind` follows, else `failed`."""
+    return Pending(ask, lambda events: done if any(event.kind is kind for event in events) else failed)
+
+
+def _truth(value: bool) -> str:
+    return "true" if value else "false"

@@ -1,0 +1,262 @@
+"""The HTTP control channel: what no client of a robot can do, a laboratory can. On this machine alone, and with a token."""
+
+import asyncio
+import hmac
+from collections.abc import Awaitable, Callable, Mapping
+from http import HTTPStatus
+from typing import TypeVar
+
+import msgspec
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from app.files.bad_input import ABSENT, BadInput
+from app.files.checked import convert
+from app.log.live import LiveRecording
+from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.rtde_fields import OUTPUTS
+from app.robot_interface.faults.channel_requests import Asked, CableFault, ClockPace, Switched, Timed
+from app.robot_interface.faults.served_loop import ServedLoop
+from app.robot_interface.transport.peers import Peers
+from app.robot_interface.transport.tcp_port import TcpPort
+from app.runs.runner import simulate
+from app.session.prepare import prepare
+from app.session.session_file import Setup
+from app.session.timeline_checks import Prepared, check_actions
+from pendant.event_table import render
+from pendant.inputs import Command
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK
+
+WHERE = "control channel"
+
+MOST_BYTES = 1 << 20
+"""Of a request."""
+
+PATIENCE = 10.0
+"""Time in which another set-up must have begun [s]."""
+
+T = TypeVar("T")
+Handler = Callable[[Request], Awaitable[object]]
+
+
+class ControlChannel:
+    """Answers the requests; an ASGI application.
+
+    Args:
+        loop: that runs.
+        cabinet: the robot.
+        peers: who is connected.
+        ports: by the name of their interface.
+        recording: of the loop.
+        token: that every request must bring.
+        hosts: names and addresses, with port, that a request may call this machine.
+    """
+
+    def __init__(
+        self,
+        loop: ServedLoop,
+        cabinet: Cabinet,
+        peers: Peers,
+        ports: Mapping[str, TcpPort],
+        *,
+        recording: LiveRecording,
+        token: str,
+        hosts: frozenset[str],
+    ) -> None:
+        self._loop, self._cabinet, self._peers, self._ports = loop, cabinet, peers, ports
+        self._recording, self._token, self._hosts = recording, token, hosts
+        get = {"state": self._state, "events": self._events, "connections": self._connections, "messages": self._messages}
+        post: dict[str, Handler] = {
+            "actions": self._act,
+            "network": self._network,
+            "pace": self._pace,
+            "begin": self._begin,
+            "restart": self._restart,
+            "remote": self._remote,
+            "free-drive": self._free_drive,
+            "recording": self._record,
+        }
+        routes = [Route(f"/{name}", self._guarded(handler), methods=["GET"]) for name, handler in get.items()]
+        routes += [Route(f"/{name}", self._guarded(handler), methods=["POST"]) for name, handler in post.items()]
+        routes.append(Route("/field/{name}", self._guarded(self._field), methods=["GET"]))
+        self.app = Starlette(routes=routes)
+
+    def _guarded(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
+        async def answer(request: Request) -> Response:
+            refusal = self._why_not(request)
+            if refusal is not None:
+                return _json({"error": refusal[1]}, refusal[0])
+            try:
+                return _json(await handler(request))
+            except BadInput as error:
+                return _json({"error": str(error)}, HTTPStatus.BAD_REQUEST)
+
+        return answer
+
+    def _why_not(self, request: Request) -> tuple[HTTPStatus, str] | None:
+        """Why a request is turned away: what a page of somebody else sends, and what has no token."""
+        host = request.headers.get("host", "").lower()
+        if host not in self._hosts:
+            return HTTPStatus.FORBIDDEN, "Host: another machine's name"
+        origins = request.headers.getlist("origin")
+        if origins and origins != [f"http://{host}"]:
+            return HTTPStatus.FORBIDDEN, "Origin: a page of somebody else"
+        brought = request.headers.get("authorization", "").removeprefix("Bearer ")
+        if not hmac.compare_digest(brought.encode(), self._token.encode()):
+            return HTTPStatus.UNAUTHORIZED, "Authorization: expected Bearer and the token"
+        return None
+
+    async def _state(self, _: Request) -> object:
+        state = self._cabinet.state
+        return {
+            "tick": state.tick,
+            "time": state.tick * TICK,
+            "mode": state.mode,
+            "safety": state.safety.name,
+            "phase": state.phase,
+            "robot_mode": state.robot_mode.name,
+            "safety_mode": state.safety_mode.name,
+            "runtime_state": state.runtime.name,
+            "remote": state.remote,
+            "program": state.program,
+            "popup": state.popup,
+            "refusal": state.refusal,
+            "failure": self._loop.failure,
+            "recording": None if self._recording.path is None else str(self._recording.path),
+        }
+
+    async def _events(self, request: Request) -> object:
+        after = _whole(request, "after")
+        return [
+            {
+                "number": number,
+                "tick": event.tick,
+                "kind": event.kind,
+                "values": event.values,
+                "text": " ".join(render(event)).strip(),
+            }
+            for number, event in enumerate(self._loop.events(after), after + 1)
+        ]
+
+    async def _connections(self, _: Request) -> object:
+        return [
+            {
+                "number": peer.number,
+                "interface": peer.interface,
+                "address": peer.address,
+                "about": peer.about,
+                "sent": peer.outbox.sent,
+            }
+            for peer in self._peers.all()
+        ]
+
+    async def _messages(self, request: Request) -> object:
+        return [
+            {"number": said.number, "interface": said.interface, "peer": said.peer, "text": said.text}
+            for said in self._peers.said(_whole(request, "after"))
+        ]
+
+    async def _field(self, request: Request) -> object:
+        name = request.path_params["name"]
+        if name not in OUTPUTS:
+            raise BadInput(WHERE, "field", name, "an output field of RTDE, such as actual_q")
+        return self._cabinet.record.get(name)
+
+    async def _act(self, request: Request) -> object:
+        wanted = await _body(request, Timed)
+        loop = self._loop
+        check_actions(wanted.actions, Prepared(loop.simulation.arm, loop.scenario, loop.settings, None, WHERE))
+        return {"tick": await asyncio.to_thread(self._cabinet.act, wanted.actions)}
+
+    async def _network(self, request: Request) -> object:
+        wanted = await _body(request, CableFault)
+        if wanted.interface != "all" and wanted.interface not in self._ports:
+            raise BadInput(WHERE, "interface", wanted.interface, f"one of all, {', '.join(self._ports)}")
+        for name, port in self._ports.items():
+            if wanted.interface in ("all", name):
+                if wanted.delay is not None:
+                    port.delay = wanted.delay
+                if wanted.cut is not None:
+                    port.cut(wanted.cut)
+        return {}
+
+    async def _pace(self, request: Request) -> object:
+        wanted, loop = await _body(request, ClockPace), self._loop
+        if wanted.speed is not None:
+            loop.speed = wanted.speed
+        if wanted.paused is not None:
+            loop.paused = wanted.paused
+        for _ in range(wanted.ticks):
+            loop.step_once()
+        return {"speed": loop.speed, "paused": loop.paused}
+
+    async def _begin(self, request: Request) -> object:
+        setup = await _body(request, Setup)
+        prepared = await asyncio.to_thread(prepare, setup, WHERE)
+        if prepared.arm.name != self._loop.simulation.arm.name:
+            raise BadInput(
+                WHERE, "robot", prepared.arm.name, f"{self._loop.simulation.arm.name}: another arm needs another start"
+            )
+        simulation = await asyncio.to_thread(simulate, prepared)
+        made = [simulation]
+        self._loop.begin(lambda: made.pop() if made else simulate(prepared))
+        return await self._begun(lambda: self._loop.scenario is prepared.scenario)
+
+    async def _restart(self, _: Request) -> object:
+        before = self._loop.simulation
+        self._loop.reset()
+        return await self._begun(lambda: self._loop.simulation is not before)
+
+    async def _begun(self, done: Callable[[], bool]) -> object:
+        for _ in range(ticks(PATIENCE) // 5):
+            if done() and self._cabinet.state.tick:
+                return {"tick": self._cabinet.state.tick}
+            await asyncio.sleep(5 * TICK)
+        raise BadInput(WHERE, "", ABSENT, "the simulation did not begin in time")
+
+    async def _remote(self, request: Request) -> object:
+        wanted = await _body(request, Switched)
+        self._cabinet.ask(Ask((Command.REMOTE if wanted.on else Command.TEACH,)))
+        return {}
+
+    async def _free_drive(self, request: Request) -> object:
+        wanted = await _body(request, Asked)
+        self._cabinet.free_drive_until = self._cabinet.ticks + ticks(wanted.seconds) if wanted.seconds else 0
+        return {}
+
+    async def _record(self, request: Request) -> object:
+        wanted, recording = await _body(request, Switched), self._recording
+        if wanted.on:
+            recording.start()
+        else:
+            await asyncio.to_thread(recording.close)
+        return {"path": None if recording.path is None else str(recording.path), "failure": recording.failure}
+
+
+def _json(value: object, status: HTTPStatus = HTTPStatus.OK) -> Response:
+    headers = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff"}
+    return Response(msgspec.json.encode(value), status, headers, media_type="application/json")
+
+
+def _whole(request: Request, name: str) -> int:
+    text = request.query_params.get(name, "0")
+    if not (text.isascii() and text.isdigit() and len(text) < 10):
+        raise BadInput(WHERE, name, text, "a whole number, 0 or more")
+    return int(text)
+
+
+async def _body(request: Request, kind: type[T]) -> T:
+    """The request's body as `kind`. Raises BadInput: it is too long, no JSON, or does not fit."""
+    data = bytearray()
+    async for part in request.stream():
+        data += part
+        if len(data) > MOST_BYTES:
+            raise BadInput(WHERE, "", ABSENT, f"a request of more than {MOST_BYTES} bytes")
+    try:
+        raw = msgspec.json.decode(bytes(data) or b"{}")
+    except (msgspec.DecodeError, RecursionError, UnicodeDecodeError) as error:
+        raise BadInput(WHERE, "", ABSENT, f"expected JSON ({error})") from None
+    return convert(raw, kind, WHERE)

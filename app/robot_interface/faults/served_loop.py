@@ -1,0 +1,49 @@
+"""What the control channel needs of the loop, sim.run.loop.Loop."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from pendant.all_settings import Settings
+from pendant.events.event import Event
+from sim.arm.scenario import Scenario
+from sim.run.loop import Script
+from sim.simulation import Simulation
+
+
+class ServedLoop(Protocol):
+    """The running simulation."""
+
+    speed: float
+    paused: bool
+    failure: str  # why nothing is simulated; empty while something is
+
+    @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        ...
+
+    @property
+    def scenario(self) -> Scenario:
+        """What it started from."""
+        ...
+
+    @property
+    def settings(self) -> Settings:
+        """The pendant's settings as they are now."""
+        ...
+
+    def events(self, since: int) -> list[Event]:
+        """Events from index `since` on."""
+        ...
+
+    def step_once(self) -> None:
+        """While paused: one tick."""
+        ...
+
+    def reset(self) -> None:
+        """Back to the scenario's start."""
+        ...
+
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+        """Go over to another simulation at the next tick."""
+        ...

@@ -1,0 +1,184 @@
+"""All network interfaces of one robot, on a thread of their own."""
+
+import asyncio
+import ipaddress
+import secrets
+import socket
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import uvicorn
+
+from app.files.bad_input import BadInput
+from app.log.live import LiveRecording
+from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession
+from app.robot_interface.client_ports.primary_packages import RobotState
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.program_folder import ProgramFolder
+from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
+from app.robot_interface.dashboard.dashboard_session import DashboardSession
+from app.robot_interface.faults.control_channel import ControlChannel
+from app.robot_interface.ports import CONTROL, DASHBOARD, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
+from app.robot_interface.rtde.rtde_inputs import RtdeInputs
+from app.robot_interface.rtde.rtde_session import RtdeSession
+from app.robot_interface.transport.outbox import Outbox
+from app.robot_interface.transport.peers import Peer, Peers
+from app.robot_interface.transport.tcp_port import Conversation, TcpPort
+from sim.arm.arm_file import Arm
+from sim.run.loop import Loop
+
+JOINTS = 6
+"""Of every arm that these protocols can tell."""
+
+HEARTBEAT = 0.1
+"""While nothing is simulated, the last packages are sent again with this period [s]: after 2.5 s of silence clients leave."""
+
+
+class RobotInterfaces:
+    """Serves the robot of a loop.
+
+    Args:
+        loop: that runs, or will.
+        arm: in it.
+        host: address to listen on.
+        offset: added to all ports.
+        programs: folder of programs that clients can load, besides the bundled ones.
+        token: of the control channel; None for a new one.
+        recording: the switch of recordings; None for one of its own, into the working folder.
+
+    Raises:
+        BadInput: a port is taken, or the arm has not six joints.
+    """
+
+    def __init__(
+        self,
+        loop: Loop,
+        arm: Arm,
+        *,
+        host: str,
+        offset: int = 0,
+        programs: Path | None = None,
+        token: str | None = None,
+        recording: LiveRecording | None = None,
+    ) -> None:
+        if arm.n != JOINTS:
+            raise BadInput("--interfaces", "robot", arm.name, f"an arm of {JOINTS} joints: these protocols know no other")
+        self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}
+        self.token = token or secrets.token_urlsafe(16)
+        self.peers = Peers()
+        self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs))
+        self._sockets = {name: _listening(host, number) for name, number in self.ports.items()}
+        self._tcp = self._conversations(arm)
+        hosts = frozenset(f"{name}:{self.ports[CONTROL]}" for name in (host.lower(), "localhost", "127.0.0.1"))
+        channel = ControlChannel(
+            loop,
+            self.cabinet,
+            self.peers,
+            self._tcp,
+            recording=recording or LiveRecording(loop, Path()),
+            token=self.token,
+            hosts=hosts,
+        )
+        config = uvicorn.Config(
+            channel.app,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            limit_concurrency=32,
+            timeout_keep_alive=30,
+            ws="none",
+        )
+        self._http = uvicorn.Server(config)
+        self._loop = loop
+        self._ended = asyncio.Event()
+        self._network: asyncio.AbstractEventLoop | None = None
+        self._thread = threading.Thread(target=self._run, name="network", daemon=True)
+
+    @property
+    def on_a_network(self) -> bool:
+        """Others than this machine reach it."""
+        return self.host != "localhost" and not ipaddress.ip_address(self.host).is_loopback
+
+    def start(self) -> None:
+        """Begin to answer; the loop's next tick is the first that is told."""
+        self._loop.companion = self.cabinet
+        self._thread.start()
+
+    def close(self) -> None:
+        """End all connections."""
+        self._loop.companion = None
+        if self._network is not None:
+            self._network.call_soon_threadsafe(self._ended.set)
+            self._thread.join()
+
+    def _conversations(self, arm: Arm) -> dict[str, TcpPort]:
+        """What is said on each port."""
+        cabinet, peers = self.cabinet, self.peers
+        commands = DashboardCommands(cabinet, arm.name.upper().removesuffix("E"))
+        inputs, state = RtdeInputs(cabinet), RobotState(cabinet, arm)
+
+        def dashboard(peer: Peer, outbox: Outbox) -> Conversation:
+            return DashboardSession(cabinet, commands, peers, peer, outbox=outbox)
+
+        def rtde(peer: Peer, outbox: Outbox) -> Conversation:
+            return RtdeSession(cabinet, inputs, peers, peer, outbox=outbox)
+
+        def stream(messages: bool, writable: bool) -> Callable[[Peer, Outbox], StreamSession]:
+            def open_(peer: Peer, outbox: Outbox) -> StreamSession:
+                return PrimarySession(
+                    cabinet, commands, peers, peer, outbox=outbox, writable=writable, state=state, messages=messages
+                )
+
+            return open_
+
+        def realtime(writable: bool) -> Callable[[Peer, Outbox], StreamSession]:
+            return lambda peer, outbox: RealtimeSession(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
+
+        opened: dict[str, Callable[[Peer, Outbox], Conversation]] = {DASHBOARD: dashboard, RTDE: rtde}
+        for name, writable in (("", True), (READ_ONLY, False)):
+            opened[PRIMARY + name] = stream(True, writable)
+            opened[SECONDARY + name] = stream(False, writable)
+            opened[REALTIME + name] = realtime(writable)
+        return {name: TcpPort(name, peers, open_) for name, open_ in opened.items()}
+
+    def _run(self) -> None:
+        asyncio.run(self._serve())
+
+    async def _serve(self) -> None:
+        self._network = asyncio.get_running_loop()
+        tasks = [asyncio.create_task(port.listen(self._sockets[name])) for name, port in self._tcp.items()]
+        tasks.append(asyncio.create_task(self._keep_alive()))
+        http = asyncio.create_task(self._http.serve(sockets=[self._sockets[CONTROL]]))
+        await self._ended.wait()
+        self._http.should_exit = True
+        for task in tasks:
+            task.cancel()
+        for task in (*tasks, http):
+            with suppress(asyncio.CancelledError):
+                await task
+
+    async def _keep_alive(self) -> None:
+        last = -1
+        while True:
+            await asyncio.sleep(HEARTBEAT)
+            self.cabinet.state.failure = self._loop.failure
+            if self.cabinet.ticks == last:
+                self.cabinet.repeat()
+            last = self.cabinet.ticks
+
+
+def _listening(host: str, number: int) -> socket.socket:
+    listening = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listening.setblocking(False)
+    try:
+        listening.bind((host, number))
+        listening.listen(16)
+    except OSError as error:
+        listening.close()
+        raise BadInput(
+            "--interfaces", "port", number, f"a port that is free at {host}; --port-offset moves all ({error.strerror})"
+        ) from None
+    return listening

@@ -1,0 +1,1 @@
+"""Connections: ports that listen, senders that never wait, who is there."""
