@@ -68,7 +68,7 @@ class RobotInterfaces:
         self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}
         self.token = token or secrets.token_urlsafe(16)
         self.peers = Peers()
-        self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs))
+        self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs), lambda: loop.desk.high)
         self._sockets = {name: _listening(host, number) for name, number in self.ports.items()}
         self._tcp = self._conversations(arm)
         hosts = frozenset(f"{name}:{self.ports[CONTROL]}" for name in (host.lower(), "localhost", "127.0.0.1"))

@@ -130,6 +130,11 @@ class Timeline:
         if self._next == 0:
             self._waiting = [entry for entry in self._waiting if entry.trigger.happened is None]
 
+    @property
+    def high(self) -> frozenset[int]:
+        """Digital inputs that it keeps high."""
+        return frozenset(self._high)
+
     def unstarted(self) -> list[tuple[int, Action]]:
         """Actions that never began, with their place in the time line: what they wait for did not happen in time."""
         return [(i, entry.action) for i, entry in enumerate(self._entries) if entry.start is None]

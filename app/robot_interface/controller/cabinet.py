@@ -60,10 +60,17 @@ class Cabinet:
         simulation: gives what runs now.
         joints: names of the arm's joints, base to flange.
         programs: that can be loaded.
+        high: gives the digital inputs that whoever is at the desk keeps high.
     """
 
-    def __init__(self, simulation: Callable[[], Simulation], joints: list[str], programs: ProgramFolder) -> None:
-        self._simulation, self._joints = simulation, joints
+    def __init__(
+        self,
+        simulation: Callable[[], Simulation],
+        joints: list[str],
+        programs: ProgramFolder,
+        high: Callable[[], frozenset[int]] = frozenset,
+    ) -> None:
+        self._simulation, self._joints, self._high = simulation, joints, high
         self.programs = programs
         self.state = ControllerState()
         self.record = FieldRecord()
@@ -153,7 +160,7 @@ class Cabinet:
         self.record.put("control_step", self.ticks)
         if listeners:
             self._measured.fill(self._simulation(), decision)
-            self._status.fill(self.state, decision)
+            self._status.fill(self.state, decision, self._high() | self._timeline.high)
             for listener in listeners:
                 for event in decision.events:
                     listener.told(event)
@@ -164,11 +171,14 @@ class Cabinet:
 
     def repeat(self) -> None:
         """Nothing has been simulated for a while; the network's thread has everybody say that the robot is still there."""
+        self._status.tell(self.state, ending=False)
         for listener in self._listeners:
             listener.repeat()
 
     def _begin(self) -> None:
         """A simulation starts: faults of the one before are over, and who had control has it again."""
+        with self._lock:
+            self._acts = []
         self._timeline = Timeline([], self._joints)
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
         self.events = []

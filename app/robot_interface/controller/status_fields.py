@@ -17,20 +17,34 @@ PHASE = "output_int_register_24"
 """The phase of free-drive, by its place in docs/reference/clients.md."""
 
 
+TOOL_OUTPUT = 1 << 16
+"""The tool's first digital output, which a program switches (CD-15)."""
+
+
 class StatusFields:
     """State, inputs and registers."""
 
     def __init__(self, record: FieldRecord) -> None:
         self._record = record
         self._told: tuple[object, ...] = ()
+        self._high: frozenset[int] = frozenset()
+        self._tool_on = False
 
-    def fill(self, state: ControllerState, decision: Decision) -> None:
-        """Write the tick done last; what seldom changes only when it does."""
+    def fill(self, state: ControllerState, decision: Decision, high: frozenset[int]) -> None:
+        """Write the tick done last; what seldom changes only when it does. `high`: digital inputs."""
         put = self._record.put
         if decision.periods:
             put(REMAINING, decision.periods[0].ticks * TICK)
         for contact in decision.contacts:
             put(CONTACT, contact.change is not Change.LOST)
+        if high != self._high:
+            self._high = high
+            bits = sum(1 << number for number in high)
+            put("actual_digital_input_bits", bits)
+            put("actual_configurable_digital_input_bits", bits >> 8 & 0xFF)
+        if decision.tool_on is not self._tool_on:
+            self._tool_on = decision.tool_on
+            set_outputs(self._record, TOOL_OUTPUT, TOOL_OUTPUT if decision.tool_on else 0)
         told = (
             state.robot_mode,
             state.safety_mode,
@@ -40,9 +54,13 @@ class StatusFields:
             state.refusal,
             bool(decision.periods),
         )
-        if told == self._told:
-            return
-        self._told = told
+        if told != self._told:
+            self._told = told
+            self.tell(state, bool(decision.periods))
+
+    def tell(self, state: ControllerState, ending: bool) -> None:
+        """Write the controller's state; `ending`: a period runs that ends what is."""
+        put = self._record.put
         put("robot_mode", state.robot_mode)
         put("joint_mode", (state.joint_mode,) * 6)
         put("safety_mode", state.safety_mode)
@@ -53,7 +71,16 @@ class StatusFields:
         put(FREE_DRIVE, state.mode is Mode.FREE_DRIVE)
         put(TRYING, state.phase is not Phase.OFF and state.mode is not Mode.FREE_DRIVE)
         put(REFUSED, bool(state.refusal))
-        put(RUNNING_OUT, state.mode is Mode.FREE_DRIVE and bool(decision.periods))
+        put(RUNNING_OUT, state.mode is Mode.FREE_DRIVE and ending)
         put(PHASE, PHASES.index(state.phase))
-        if not decision.periods:
+        if not ending:
             put(REMAINING, 0.0)
+
+
+def set_outputs(record: FieldRecord, mask: int, bits: int) -> None:
+    """Set the digital outputs in `mask`: 0 to 7 standard, 8 to 15 configurable, 16 and 17 of the tool."""
+    before = record.get("actual_digital_output_bits")
+    assert isinstance(before, int)
+    now = (before & ~mask) | (bits & mask)
+    record.put("actual_digital_output_bits", now)
+    record.put("actual_configurable_digital_output_bits", now >> 8 & 0xFF)

@@ -215,7 +215,8 @@ class DashboardCommands:
         if len(centre) not in (0, 3):
             return failed
         load = Load(mass=mass, com=centre) if centre else Load(mass=mass)
-        return _when(Ask(load=load), Kind.PAYLOAD_CHANGED, "Setting payload", failed)
+        refused = Kind.TOOL_REFUSED
+        return Pending(Ask(load=load), lambda seen: failed if any(e.kind is refused for e in seen) else "Setting payload")
 
 
 def _when(ask: Ask, kind: Kind, done: str, failed: str) -> Pending:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
 from app.robot_interface.controller.rtde_fields import INPUTS, OUTPUTS
+from app.robot_interface.controller.status_fields import set_outputs
 from app.robot_interface.rtde.rtde_messages import Malformed
 from pendant.settings.schema import ticks
 
@@ -26,12 +27,8 @@ STRUCTS = {
     "VECTOR6D": "6d",
 }
 
-OUTPUT_WORDS = {
-    "standard_digital_output": ("actual_digital_output_bits", 0),
-    "configurable_digital_output": ("actual_digital_output_bits", 8),
-    "tool_digital_output": ("actual_digital_output_bits", 16),
-}
-"""Outputs that a mask guards, with the field that tells them and their first bit in it."""
+OUTPUT_WORDS = {"standard_digital_output": (0, 8), "configurable_digital_output": (8, 8), "tool_digital_output": (16, 2)}
+"""Outputs that a mask guards: their first bit among all digital outputs, and how many they are."""
 
 
 class Recipe:
@@ -97,8 +94,10 @@ class RtdeInputs:
         for name, value in values.items():
             if name in OUTPUTS:
                 put(name, value if OUTPUTS[name] != "BOOL" else bool(value))
-        for name, (told, first) in OUTPUT_WORDS.items():
-            self._set_bits(told, int(_one(values, f"{name}_mask")) << first, int(_one(values, name)) << first)
+        for name, (first, count) in OUTPUT_WORDS.items():
+            mask = int(_one(values, f"{name}_mask")) & ((1 << count) - 1)
+            if mask:
+                set_outputs(self._cabinet.record, mask << first, int(_one(values, name)) << first)
         mask = int(_one(values, "standard_analog_output_mask"))
         for i in (0, 1):
             if mask >> i & 1:
@@ -108,12 +107,6 @@ class RtdeInputs:
             self._cabinet.ask(Ask(settings={"program.speed": share}))
         if FREE_DRIVE in values:
             self._cabinet.free_drive_until = self._cabinet.ticks + KEEP_ALIVE if values[FREE_DRIVE] else 0
-
-    def _set_bits(self, told: str, mask: int, bits: int) -> None:
-        if mask:
-            before = self._cabinet.record.get(told)
-            assert isinstance(before, int)
-            self._cabinet.record.put(told, (before & ~mask) | (bits & mask))
 
 
 def _one(values: dict[str, float | tuple[float, ...]], name: str) -> float:

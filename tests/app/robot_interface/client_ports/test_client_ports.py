@@ -1,0 +1,253 @@
+"""Primary, secondary and real-time packages, read by the layouts of the documentation."""
+
+import asyncio
+import socket
+import struct
+from collections.abc import Iterator
+
+import pytest
+
+from app.robot_interface.client_ports import primary_messages as messages
+from app.robot_interface.client_ports.bare_commands import LINES, LONGEST, NO_SCRIPT
+from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession
+from app.robot_interface.client_ports.primary_packages import ROBOT_TYPES, RobotState
+from app.robot_interface.client_ports.realtime_package import SIZE
+from app.robot_interface.controller.robot_words import SafetyMode
+from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
+from app.robot_interface.transport.outbox import Outbox
+from app.robot_interface.transport.peers import Peers
+from app.robot_interface.transport.tcp_port import Farewell
+from pendant.events.event import Kind
+from pendant.inputs import Command
+from tests.app.robot_interface.robot_bench import RobotBench
+from tests.sim.arms import UR5E
+
+SIZES = {0: 47, 1: 251, 2: 37, 3: 75, 4: 101, 5: 225, 6: 445, 7: 61, 8: 9, 11: 26, 12: 8}
+"""Of the packages in a robot state [bytes]."""
+
+
+class Cell:
+    """A robot, and one connection of each kind."""
+
+    def __init__(self) -> None:
+        self.robot, self.peers = RobotBench(), Peers()
+        self.robot.step(60)
+        self.commands = DashboardCommands(self.robot.cabinet, "UR5")
+        self.state = RobotState(self.robot.cabinet, UR5E)
+        self._sockets: list[socket.socket] = []
+
+    def open(self, kind: str, writable: bool = True) -> tuple[StreamSession, socket.socket]:
+        ours, theirs = socket.socketpair()
+        theirs.setblocking(False)
+        self._sockets += [ours, theirs]
+        outbox = Outbox(ours)
+        peer = self.peers.join(kind, "here", outbox)
+        common = (self.robot.cabinet, self.commands, self.peers, peer)
+        if kind == "real-time":
+            return RealtimeSession(*common, outbox=outbox, writable=writable), theirs
+        told = kind == "primary"
+        session = PrimarySession(*common, outbox=outbox, writable=writable, state=self.state, messages=told)
+        return session, theirs
+
+    def close(self) -> None:
+        for each in self._sockets:
+            each.close()
+
+
+@pytest.fixture
+def cell() -> Iterator[Cell]:
+    cell = Cell()
+    yield cell
+    cell.close()
+
+
+def packages(theirs: socket.socket) -> list[bytes]:
+    """What has come, without the sizes."""
+    try:
+        data = theirs.recv(1 << 20)
+    except BlockingIOError:
+        return []
+    found = []
+    while data:
+        (size,) = struct.unpack_from(">i", data)
+        found.append(data[4:size])
+        data = data[size:]
+    return found
+
+
+def parts(state: bytes) -> dict[int, bytes]:
+    """Packages in a robot state."""
+    assert state[0] == 16
+    found, at = {}, 1
+    while at < len(state):
+        size, kind = struct.unpack_from(">IB", state, at)
+        found[kind] = state[at + 5 : at + size]
+        at += size
+    return found
+
+
+def say(session: StreamSession, text: str | bytes) -> None:
+    asyncio.run(session.hear(text.encode() if isinstance(text, str) else text))
+
+
+def test_a_client_is_told_version_and_state_first(cell: Cell) -> None:
+    _, theirs = cell.open("primary")
+    version, state = packages(theirs)
+    assert (version[0], version[9:11]) == (20, struct.pack(">bB", -2, 3))
+    assert version[11:21] == b"\x09URControl"
+    assert struct.unpack_from(">BBii", version, 21) == (5, 25, 1, 130250)
+    assert {kind: len(body) + 5 for kind, body in parts(state).items()} == SIZES
+
+
+def test_the_secondary_interface_has_the_state_without_messages(cell: Cell) -> None:
+    _, theirs = cell.open("secondary")
+    packages(theirs)
+    cell.robot.page(Command.EMERGENCY_STOP)
+    cell.robot.step(50)
+    assert {state[0] for state in packages(theirs)} == {16}
+
+
+def test_ten_states_a_second(cell: Cell) -> None:
+    _, theirs = cell.open("primary")
+    packages(theirs)
+    cell.robot.step(500)
+    assert sum(each[0] == 16 for each in packages(theirs)) == 10
+
+
+def test_the_robots_mode_is_told_by_the_layout(cell: Cell) -> None:
+    layout = struct.Struct(">Q7?bB3dB")
+    clock, *rest = layout.unpack(parts(cell.state.primary()[4:])[0])
+    assert clock == pytest.approx(cell.robot.cabinet.clock * 1e6)
+    assert rest == [True, True, True, False, False, False, False, 7, 0, 1.0, 1.0, 1.0, 0]
+    cell.robot.page(Command.EMERGENCY_STOP)
+    cell.robot.step()
+    _, *rest = layout.unpack(parts(cell.state.primary()[4:])[0])
+    assert rest[:8] == [True, True, False, True, False, False, False, 3]
+
+
+def test_joints_tool_masterboard_and_pose_are_told_by_the_layout(cell: Cell) -> None:
+    found, get = parts(cell.state.primary()[4:]), cell.robot.cabinet.record.get
+    for joint in range(6):
+        q, target, qd, _, volts, _, _, mode = struct.unpack_from(">3d4fB", found[1], 41 * joint)
+        assert (q, target, qd) == (get("actual_q")[joint], get("target_q")[joint], get("actual_qd")[joint])  # type: ignore[index]
+        assert (volts, mode) == (48.0, 253)
+    assert struct.unpack(">12d", found[4])[:6] == tuple(get("actual_TCP_pose"))  # type: ignore[arg-type]
+    assert struct.unpack(">7d", found[7])[:6] == tuple(get("actual_TCP_force"))  # type: ignore[arg-type]
+    board = struct.unpack(">II2B2d2b2d4f3BI3B", found[3])
+    assert board[14:16] == (SafetyMode.NORMAL, 0)
+    cell.robot.page(Command.REDUCED_ON)
+    board = struct.unpack(">II2B2d2b2d4f3BI3B", parts(cell.state.primary()[4:])[3])
+    assert board[14:16] == (SafetyMode.REDUCED, 1)
+
+
+def test_limits_and_geometry_are_those_of_the_arms_file(cell: Cell) -> None:
+    found = parts(cell.state.primary()[4:])
+    numbers = struct.unpack(">12d12d5d24d4i", found[6])
+    assert numbers[:2] == (-UR5E.limits.position[0], UR5E.limits.position[0])
+    assert numbers[12:14] == (UR5E.limits.speed[0], UR5E.limits.acceleration[0])
+    assert list(numbers[29:35]) == UR5E.chain.a
+    assert numbers[-2] == ROBOT_TYPES["ur5e"] == 1
+    kinematics = struct.unpack(">6I24dI", found[5])
+    assert list(kinematics[12:30]) == [*UR5E.chain.a, *UR5E.chain.d, *UR5E.chain.alpha]
+
+
+def test_messages_of_events_programs_and_safety(cell: Cell) -> None:
+    session, theirs = cell.open("primary")
+    cell.robot.step()
+    packages(theirs)
+    cell.robot.page(Command.EMERGENCY_STOP)
+    kinds = [each[10] for each in packages(theirs) if each[0] == 20]
+    assert kinds == [messages.MessageType.ERROR, messages.MessageType.SAFETY_MODE]
+    session.over()
+    cell.robot.step(60)
+    assert packages(theirs) == []
+
+
+def test_a_program_is_told_by_the_keys_that_clients_wait_for(cell: Cell) -> None:
+    _, theirs = cell.open("primary")
+    cell.robot.step()
+    packages(theirs)
+    for command in ("load wave.urp", "play"):
+        answer = cell.commands.answer(command, True)
+        assert not isinstance(answer, str)
+        cell.robot.cabinet.ask(answer.ask)
+        cell.robot.step()
+    (key,) = [each for each in packages(theirs) if each[0] == 20 and each[10] == messages.MessageType.KEY]
+    assert key[11:] == struct.pack(">iiB", 0, 0, 19) + b"PROGRAM_XXX_STARTEDwave"
+
+
+def test_the_real_time_package_has_every_number_in_its_place(cell: Cell) -> None:
+    _, theirs = cell.open("real-time")
+    cell.robot.step(3)
+    found, get = packages(theirs), cell.robot.cabinet.record.get
+    assert [len(each) + 4 for each in found] == [SIZE] * 3
+    numbers = struct.unpack(">152d", found[-1])
+    assert numbers[0] == get("timestamp")
+    assert list(numbers[1:7]) == get("target_q")
+    assert list(numbers[31:37]) == get("actual_q")
+    assert list(numbers[55:61]) == get("actual_TCP_pose")
+    assert list(numbers[67:73]) == get("actual_TCP_force")
+    assert numbers[94] == 7.0
+    assert numbers[95:101] == (253.0,) * 6
+    assert numbers[101] == 1.0
+    assert list(numbers[108:111]) == get("actual_tool_accelerometer")
+    assert numbers[117] == 1.0
+    assert (numbers[130], numbers[131]) == (0.0, 1.0)
+    assert list(numbers[132:135]) == get("elbow_position")
+    assert numbers[138] == 1.0
+    assert numbers[142] == get("payload")
+    assert list(numbers[143:146]) == get("payload_cog")
+
+
+@pytest.mark.parametrize("kind", ["primary", "secondary", "real-time"])
+@pytest.mark.parametrize(("line", "told"), [("power off", Kind.POWERED_OFF), ("set robotmode run", None), ("stop program", None)])
+def test_lines_that_a_controller_knows_are_done(cell: Cell, kind: str, line: str, told: Kind | None) -> None:
+    assert line in LINES
+    session, _ = cell.open(kind)
+    say(session, line + "\n")
+    cell.robot.step()
+    assert told is None or told in cell.robot.kinds()
+    if line == "power off":
+        cell.robot.step(5)
+        say(session, "set robotmode run\n")
+        cell.robot.step(2)
+        assert Kind.RESET in cell.robot.kinds()
+
+
+def test_in_local_control_nothing_is_done(cell: Cell) -> None:
+    session, _ = cell.open("primary")
+    cell.robot.page(Command.TEACH)
+    say(session, "power off\n")
+    cell.robot.step()
+    assert Kind.POWERED_OFF not in cell.robot.kinds()
+    assert "local control" in cell.peers.said()[-1].text
+
+
+def test_the_read_only_port_does_nothing(cell: Cell) -> None:
+    session, theirs = cell.open("primary", writable=False)
+    packages(theirs)
+    say(session, "power off\n")
+    cell.robot.step()
+    assert Kind.POWERED_OFF not in cell.robot.kinds()
+    assert b"C210" in packages(theirs)[0]
+
+
+def test_a_program_is_refused_once_with_its_place_and_passed_over(cell: Cell) -> None:
+    session, theirs = cell.open("primary")
+    packages(theirs)
+    say(session, "def move():\n  power off\n movej([0,0,0,0,0,0])\nend\n")
+    exceptions = [each for each in packages(theirs) if each[10] == messages.MessageType.RUNTIME_EXCEPTION]
+    assert [each[11:] for each in exceptions] == [struct.pack(">ii", 1, 1) + NO_SCRIPT.encode()]
+    cell.robot.step()
+    assert Kind.POWERED_OFF not in cell.robot.kinds()
+    say(session, "power off\n")
+    cell.robot.step()
+    assert Kind.POWERED_OFF in cell.robot.kinds()
+
+
+def test_a_line_without_an_end_ends_the_connection(cell: Cell) -> None:
+    session, _ = cell.open("primary")
+    say(session, b"x" * LONGEST)
+    with pytest.raises(Farewell):
+        say(session, b"x")
+    assert StreamSession.repeat is not PrimarySession.repeat
