@@ -105,10 +105,10 @@ def robot_(
     any_file: AnyFile = False,
 ) -> None:
     """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
-    from app.robot_serving import Network, robot_until_interrupted
+    from app.robot_serving import Network, robot_until_interrupted, until_stopped
 
     prepared = _set_up(robot, config, any_file, "robot")
-    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record) as interfaces:
+    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record, until_stopped()) as interfaces:
         announce_robot(prepared.arm, interfaces)
 
 
@@ -274,7 +274,3 @@ def _refuse(text: str) -> int:
     """Say one line on standard error; the exit code to end with."""
     sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
     return 2
-
-
-if __name__ == "__main__":
-    main()

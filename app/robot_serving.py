@@ -2,13 +2,12 @@
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
-
-import typer
 
 from app.log.live import LiveRecording, must_be_writable
 from app.robot_interface.interfaces import RobotInterfaces
@@ -40,7 +39,7 @@ def until_stopped() -> threading.Event:
     ended = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: ended.set())
-    notice = threading.Timer(PATIENCE, lambda: typer.echo(COMPILING))
+    notice = threading.Timer(PATIENCE, lambda: sys.stdout.write(f"{COMPILING}\n"))
     notice.start()
     try:
         warm_up()
@@ -69,20 +68,22 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
 
 
 @contextmanager
-def robot_until_interrupted(prepared: Prepared, network: Network, record: Path | None) -> Iterator[RobotInterfaces]:
-    """Serve a robot without a page; the body runs once it answers; then wait for Ctrl-C or a polite end of the process.
+def robot_until_interrupted(
+    prepared: Prepared, network: Network, record: Path | None, ended: threading.Event
+) -> Iterator[RobotInterfaces]:
+    """Serve a robot without a page; the body runs once it answers; then wait until it is ended.
 
     Args:
         prepared: what to simulate.
         network: where its interfaces are to be.
         record: record from the start, into this folder.
+        ended: set when it is to end, as `until_stopped` gives it.
 
     Raises:
         BadInput: an address cannot be used, or `record` not be written.
     """
     if record is not None:
         must_be_writable(record)
-    ended = until_stopped()
     loop = Loop(lambda: simulate(prepared))
     recording = LiveRecording(loop, record or Path())
     interfaces = open_interfaces(loop, prepared, network, recording)

@@ -9,9 +9,9 @@ def test_the_cell_stops(robot):
     assert my_cell.stopped
 """
 
+import atexit
 import itertools
 import json
-import os
 import secrets
 import socket
 import subprocess
@@ -30,10 +30,11 @@ from app.robot_interface.ports import CONTROL, PORTS
 __all__ = ["ServedRobot", "robot"]
 
 PATIENCE = 60.0
-"""Time in which a robot must answer [s]: the first start after an installation compiles for half a minute."""
+"""Time in which a robot must answer [s]."""
 
 NAP = 0.02
 TRIES = 20
+"""Addresses that are tried."""
 
 Json = Any
 
@@ -53,7 +54,8 @@ class ServedRobot:
     def __init__(self, folder: Path, setup: Mapping[str, Json] | None = None) -> None:
         self._folder, self._setup = folder, setup
         self._token = secrets.token_urlsafe(16)
-        self._process: subprocess.Popen[bytes] | None = None
+        self._pid = 0
+        self._begun = 0  # number of the last event before the last start
         self.host = ""
         self.ports = dict(PORTS)
 
@@ -63,40 +65,31 @@ class ServedRobot:
         Raises:
             RuntimeError: it ended, or does not answer in time; with what it said.
         """
-        options: list[str] = []
+        path = None
         if self._setup is not None:
             path = self._folder / "setup.yaml"
             path.write_text(json.dumps(self._setup), encoding="utf-8")
-            options = ["--config", str(path)]
         for host in itertools.islice(_addresses(), TRIES):
             self.host = host
-            command = [sys.executable, "-m", "app.cli", "robot", "--host", host, *options]
-            with (self._folder / "robot.log").open("wb") as log:
-                self._process = subprocess.Popen(
-                    command, cwd=self._folder, env={**os.environ, "PENDANT_TOKEN": self._token}, stdout=log, stderr=log
-                )
+            setup = None if path is None else str(path)
+            self._pid = _NURSERY.order(folder=str(self._folder), setup=setup, host=host, token=self._token)
             if self._answers():
                 return
-            said = (self._folder / "robot.log").read_text(encoding="utf-8")
             self.stop()
+            said = (self._folder / "robot.log").read_text(encoding="utf-8")
             if "a port that is free" not in said:
                 raise RuntimeError(f"the robot did not start: {said.strip() or 'it said nothing'}")
         raise RuntimeError(f"none of {TRIES} loopback addresses has its ports free")
 
     def stop(self) -> None:
         """End it, and wait until it has."""
-        if self._process is not None:
-            self._process.terminate()
-            try:
-                self._process.wait(10.0)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
-            self._process = None
+        if self._pid:
+            _NURSERY.order(stop=self._pid)
+            self._pid = 0
 
     def do(self, *actions: Mapping[str, Json]) -> int:
-        """Play actions as a session's time line has them; returns the tick from which `at` counts: `at: 0.0` acts in the next."""
-        return int(self._ask("actions", {"actions": list(actions)})["tick"]) - 1
+        """Play actions as a session's time line has them; returns the tick from which `at` counts: 0.0 acts in the next."""
+        return int(self._ask("actions", {"actions": list(actions)})["after"])
 
     def push(self, force: Sequence[float], seconds: float, part: str = "flange") -> int:
         """Push with a force in W [N]; returns as `do`."""
@@ -132,11 +125,17 @@ class ServedRobot:
 
     def begin(self, **setup: Json) -> None:
         """Begin anew with another set-up, as a configuration file says it; the arm stays the same."""
+        self._begun = self._last()
         self._ask("begin", setup)
 
     def restart(self) -> None:
         """Go back to the very start."""
+        self._begun = self._last()
         self._ask("restart", {})
+
+    def _last(self) -> int:
+        """Number of the last event."""
+        return next((int(event["number"]) for event in reversed(self.events())), 0)
 
     def state(self) -> dict[str, Json]:
         """Mode, safety, phase, program and more."""
@@ -150,15 +149,15 @@ class ServedRobot:
         """The value of an output field of RTDE."""
         return self._ask(f"field/{name}")
 
-    def wait_for(self, kind: str, seconds: float = 10.0, after: int = 0) -> dict[str, Json]:
-        """Wait for an event, of those with numbers above `after`.
+    def wait_for(self, kind: str, seconds: float = 10.0, after: int | None = None) -> dict[str, Json]:
+        """Wait for an event, of those with numbers above `after`; None: of all since the last start.
 
         Raises:
             TimeoutError: it does not come in time; with the events that came.
         """
         end = time.monotonic() + seconds
         while True:
-            events = self.events(after)
+            events = self.events(self._begun if after is None else after)
             found = next((event for event in events if event["kind"] == kind), None)
             if found is not None:
                 return found
@@ -197,17 +196,14 @@ class ServedRobot:
         return self._folder / str(told["path"])
 
     def _answers(self) -> bool:
-        """Wait until it answers; False: it has ended."""
-        assert self._process is not None
+        """Wait until it answers; False: it has ended, or is silent for too long."""
         end = time.monotonic() + PATIENCE
-        while self._process.poll() is None:
+        while time.monotonic() < end and Path(f"/proc/{self._pid}/fd/0").exists():  # a process that has ended has no files
             try:
                 if self.state()["tick"]:
                     return True
             except OSError:
-                if time.monotonic() > end:
-                    return False
-            time.sleep(NAP)
+                time.sleep(NAP)
         return False
 
     def _ask(self, path: str, body: Mapping[str, Json] | None = None) -> Json:
@@ -223,6 +219,35 @@ class ServedRobot:
         except urllib.error.HTTPError as error:
             raise ValueError(json.load(error)["error"]) from None
 
+
+class _Nursery:
+    """The process in which robots begin; started when this module is imported, so that it is ready when one is asked for."""
+
+    def __init__(self) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "app.robot_nursery"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        atexit.register(self.close)
+
+    def order(self, **order: Json) -> int:
+        """Hand over an order. Raises RuntimeError: the process has ended."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        try:
+            self._process.stdin.write(json.dumps(order) + "\n")
+            self._process.stdin.flush()
+            return int(self._process.stdout.readline())
+        except (OSError, ValueError):
+            raise RuntimeError("the process in which robots begin has ended; what it said is above") from None
+
+    def close(self) -> None:
+        """End all robots, and the process."""
+        if self._process.stdin is not None:
+            self._process.stdin.close()
+        self._process.wait()
+
+
+_NURSERY = _Nursery()
 
 _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # no proxy of the user's for this machine
 

@@ -12,6 +12,8 @@ import numpy as np
 from app.files.bad_input import ABSENT, BadInput
 from app.log.events_file import EventsFile
 from app.log.recorder import Recorder
+from app.runs.network_run import NetworkRun
+from app.session.actions import OfClient
 from app.session.expectation_watch import Verdict
 from app.session.measures import watch
 from app.session.prepare import Prepared
@@ -173,14 +175,23 @@ def run(
     """
     joints = prepared.arm.chain.joints
     timeline = Timeline(session.timeline, joints, prepared.program)
+    clients = None
+    if any(isinstance(action, OfClient) for action in session.timeline):
+        assert isinstance(simulation, Simulation)
+        clients = NetworkRun(session, simulation)
     watches = [watch(expectation, joints) for expectation in session.expectations]
     outcome = RunOutcome(seconds=session.duration)
     begun = time.perf_counter()
     with EventsFile(out / "events.jsonl") as file:
         last, tenth = ticks(session.duration), ticks(0.1)
         for tick in range(1, last + 1):
-            decision = _tick(simulation, prepared, timeline.wishes(tick, simulation.snapshot))
+            wishes = timeline.wishes(tick, simulation.snapshot)
+            if clients is not None:
+                wishes = wishes.joined(clients.wishes(tick, simulation.snapshot, timeline.of_clients))
+            decision = _tick(simulation, prepared, wishes)
             timeline.see(tick, decision)
+            if clients is not None:
+                clients.see(tick, decision)
             quiet = not decision.events
             for each in watches:
                 if each.needs(tick, quiet) or tick == last:
@@ -195,7 +206,7 @@ def run(
             if realtime:
                 time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
     outcome.took = time.perf_counter() - begun
-    outcome.verdicts = [each.verdict() for each in watches]
+    outcome.verdicts = [each.verdict() for each in watches] + ([] if clients is None else clients.verdicts)
     for place, action in timeline.unstarted():
         seen = f'"{action.after}" never came (time {action.nth}), or too late'
         outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))

@@ -10,7 +10,7 @@ from app.session.triggers import When
 from pendant.equipment.load import Angles
 from pendant.inputs import Button, Command
 from pendant.limits.axis_locks import PRESETS, freeing
-from pendant.settings.bounds import Span
+from pendant.settings.bounds import Span, Text
 from sim.arm.scenario import Load, Vector
 from sim.plant.changes import AnyChange
 from sim.plant.touch import ZERO, Push, Triple
@@ -206,6 +206,31 @@ class Laboratory(Action, tag="change", frozen=True, kw_only=True):
     change: AnyChange
 
 
+class DashboardLine(Action, tag="dashboard", frozen=True, kw_only=True):
+    """A client says a line to the dashboard of the robot, which is in remote control from the start (app/robot_interface)."""
+
+    send: Text
+    reply: Text = ""  # how the answer must begin
+
+
+class ReadField(Action, tag="rtde", frozen=True, kw_only=True):
+    """A client reads an output field of RTDE; a value of a vector by its `index`."""
+
+    field: Text
+    index: Annotated[int, Meta(ge=0, le=5)] = 0
+    min: float | None = None
+    max: float | None = None
+
+
+class AskForFreeDrive(Action, tag="remote_free_drive", frozen=True, kw_only=True):
+    """A client asks for free-drive for a while, as it does by its register."""
+
+    length: Span = msgspec.field(name="for")  # [s]
+
+
+OfClient = DashboardLine | ReadField | AskForFreeDrive
+"""What clients of the network interfaces do, in a session without a network."""
+
 AnyAction = (
     Press
     | Release
@@ -222,6 +247,7 @@ AnyAction = (
     | SetPayload
     | Axes
     | Laboratory
+    | OfClient
 )
 
 COMMAND_OF_PROGRAM = {

@@ -12,6 +12,7 @@ from app.session.actions import (
     Hold,
     Laboratory,
     LoadProgram,
+    OfClient,
     Press,
     Release,
     SelectTool,
@@ -84,6 +85,7 @@ class Timeline:
         self._entries = [Entry(action, Trigger(action.after, action.nth)) for action in actions]
         self._joints = joints
         self._program = program
+        self.of_clients: list[tuple[int, OfClient]] = []  # what clients do in this tick, with its place in the time line
         self._held: set[Button] = set()
         self._high: set[int] = set()  # digital inputs
         self._waiting = [entry for entry in self._entries if entry.trigger.happened is None]
@@ -99,6 +101,7 @@ class Timeline:
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
         """The wishes for `tick`; `snapshot` copies the tick before, and is called only where a hand grabs the arm."""
+        self.of_clients = []
         if tick < self._next:
             return self._quiet
         now = _Tick()
@@ -156,7 +159,10 @@ class Timeline:
                 self._held.add(button)
             return
         entry.done = True
-        self._at_once(action, now)
+        if isinstance(action, OfClient):
+            self.of_clients.append((self._entries.index(entry), action))
+        else:
+            self._at_once(action, now)
 
     def _at_once(self, action: Action, now: _Tick) -> None:
         """Do what takes no time."""

@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from app.robot_interface.controller.controller_state import ControllerState
 from app.robot_interface.controller.field_record import BEGIN, FieldRecord
@@ -53,6 +53,13 @@ class Ask:
     done: "Future[tuple[Event, ...]]" = field(default_factory=Future)  # the events of that tick
 
 
+class Act(NamedTuple):
+    """Actions that wait for the next tick."""
+
+    actions: Sequence[Action]
+    begun: "Future[int]"  # the tick from which their times count
+
+
 class Cabinet:
     """Acts in the loop beside whoever else does, and stays through resets (sim.run.loop.Script).
 
@@ -79,7 +86,7 @@ class Cabinet:
         self._asks: list[Ask] = []
         self._asked: list[Ask] = []  # of the tick that runs
         self._listeners: tuple[Listener, ...] = ()
-        self._acts: list[Sequence[Action]] = []  # to begin with the next tick
+        self._acts: list[Act] = []  # to begin with the next tick
         self._timeline = Timeline([], joints)
         self.ticks = 0  # done so far, through resets too
         self.events: list[Event] = []  # of the running simulation
@@ -98,14 +105,15 @@ class Cabinet:
             self._asks.append(ask)
         return ask.done
 
-    def act(self, actions: Sequence[Action]) -> int:
-        """Play actions from the next tick on, times counted from it; returns the number of that tick.
+    def act(self, actions: Sequence[Action]) -> "Future[int]":
+        """Play actions from the next tick on; the result is the tick before it, from which their times count.
 
-        Actions are checked already.
+        Actions are checked already. While nothing is simulated, there is no result yet.
         """
+        act = Act(actions, Future())
         with self._lock:
-            self._acts.append(actions)
-            return self.state.tick + 1
+            self._acts.append(act)
+        return act.begun
 
     def listen(self, listener: Listener) -> None:
         """Tell somebody of every tick."""
@@ -129,8 +137,9 @@ class Cabinet:
             self._asked = [ask for ask in self._asks if ask.done.set_running_or_notify_cancel()]
             self._asks = []
             acts, self._acts = self._acts, []
-        for actions in acts:
-            self._timeline.add(actions, tick - 1)
+        for act in acts:
+            self._timeline.add(act.actions, tick - 1)
+            act.begun.set_result(tick - 1)
         commands = [command for ask in self._asked for command in ask.commands]
         if self.state.remote and not self._settled:
             commands.append(Command.REMOTE)

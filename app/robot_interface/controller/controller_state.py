@@ -12,6 +12,7 @@ from app.robot_interface.controller.robot_words import (
     SafetyMode,
 )
 from pendant.decision import Decision
+from pendant.events.event import Kind
 from pendant.program.steps import ApplyForce, ProgramState
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
 
@@ -33,8 +34,8 @@ RUNTIME = {
     ProgramState.PAUSED: RuntimeState.PAUSED,
 }
 
-ON_HOLD = frozenset({Safety.PROTECTIVE_STOP, Safety.SAFEGUARD_STOP})
-"""Stops after which a UR keeps its drives' mode: the safety mode says that it stands."""
+SWITCHING_OFF = frozenset({Kind.POWERED_OFF, Kind.EMERGENCY_STOP})
+"""After these the drives are off, and are switched on again by a client."""
 
 
 @dataclass(slots=True)
@@ -55,13 +56,18 @@ class ControllerState:
     popup: str = ""  # that is shown
     operational: OperationalMode = OperationalMode.NONE
     failure: str = ""  # why nothing is simulated
+    switched_off: bool = False  # it stands because its drives were switched off, or are after an emergency stop
     refusal: str = ""  # why free-drive was refused last; "" once it was entered
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in a tick."""
-        if decision.safety is Safety.PROTECTIVE_STOP and self.safety is not Safety.PROTECTIVE_STOP:
-            self.stopped_at = tick
+        before = self.stopped
         self.tick, self.mode, self.safety = tick, decision.mode, decision.safety
+        if any(event.kind in SWITCHING_OFF for event in decision.events):
+            self.switched_off = True
+        self.switched_off = self.switched_off and decision.mode is Mode.STOP
+        if self.stopped and not before:
+            self.stopped_at = tick
         self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
         self.forcing = isinstance(decision.move, ApplyForce)
         self.idle = self.idle and self.off
@@ -71,9 +77,16 @@ class ControllerState:
             self.remote = True
 
     @property
+    def stopped(self) -> bool:
+        """A protective stop in a UR's sense: also the pendant's STOP without one, which a UR does not know."""
+        if self.safety is Safety.PROTECTIVE_STOP:
+            return True
+        return self.mode is Mode.STOP and self.safety <= Safety.REDUCED and not self.switched_off
+
+    @property
     def off(self) -> bool:
         """The drives have no power, and no stop is there that has to be unlocked first."""
-        return self.law is Law.OFF and self.safety not in ON_HOLD
+        return self.law is Law.OFF and self.safety is not Safety.SAFEGUARD_STOP and not self.stopped
 
     @property
     def robot_mode(self) -> RobotMode:
@@ -85,7 +98,9 @@ class ControllerState:
     @property
     def safety_mode(self) -> SafetyMode:
         """Of the safety system."""
-        return SafetyMode.FAULT if self.failure else SAFETY[self.safety]
+        if self.failure:
+            return SafetyMode.FAULT
+        return SafetyMode.PROTECTIVE_STOP if self.stopped else SAFETY[self.safety]
 
     @property
     def runtime(self) -> RuntimeState:

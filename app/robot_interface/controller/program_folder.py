@@ -13,7 +13,7 @@ BUNDLED = ASSETS / "programs"
 
 
 class ProgramFolder:
-    """Names end in .urp, as clients write them; P.urp is the file P.yaml.
+    """Names end in .urp, as clients write them; what a client calls P.urp is the YAML file of that name.
 
     Args:
         folder: the user's, looked at first; None for the bundled ones alone.

@@ -82,7 +82,7 @@ class ControlChannel:
         routes = [Route(f"/{name}", self._guarded(handler), methods=["GET"]) for name, handler in get.items()]
         routes += [Route(f"/{name}", self._guarded(handler), methods=["POST"]) for name, handler in post.items()]
         routes.append(Route("/field/{name}", self._guarded(self._field), methods=["GET"]))
-        self.app = Starlette(routes=routes)
+        self.app = Starlette(routes=routes, exception_handlers={404: _nothing, 405: _nothing})
 
     def _guarded(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
         async def answer(request: Request) -> Response:
@@ -169,7 +169,10 @@ class ControlChannel:
         wanted = await _body(request, Timed)
         loop = self._loop
         check_actions(wanted.actions, Prepared(loop.simulation.arm, loop.scenario, loop.settings, None, WHERE))
-        return {"tick": await asyncio.to_thread(self._cabinet.act, wanted.actions)}
+        begun = self._cabinet.act(wanted.actions)
+        if loop.paused or loop.failure:  # no tick comes before somebody asks for one
+            return {"after": self._cabinet.state.tick}
+        return {"after": await asyncio.wrap_future(begun)}
 
     async def _network(self, request: Request) -> object:
         wanted = await _body(request, CableFault)
@@ -234,6 +237,10 @@ class ControlChannel:
         else:
             await asyncio.to_thread(recording.close)
         return {"path": None if recording.path is None else str(recording.path), "failure": recording.failure}
+
+
+async def _nothing(_: Request, __: Exception) -> Response:
+    return _json({"error": f"{WHERE}: no such request; docs/reference/control-channel.md lists all"}, HTTPStatus.NOT_FOUND)
 
 
 def _json(value: object, status: HTTPStatus = HTTPStatus.OK) -> Response:

@@ -6,15 +6,12 @@ from app.robot_interface.controller.cabinet import Ask
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.transport.peers import Said
 from app.web.widgets import svg
-from app.web.widgets.html import Html, enable
+from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 from pendant.inputs import Command
-from pendant.tick.modes import Mode
 
 LENGTH = 40
 """Messages shown."""
-
-RESTING = frozenset({Mode.NORMAL, Mode.TEACH, Mode.REMOTE})
 
 
 class NetworkTab:
@@ -26,7 +23,7 @@ class NetworkTab:
         cabinet = interfaces.cabinet
         self.control = gui.add_button_group("Control", ("Local", "Remote"), hint="Who starts programs and free-drive.")
         self.status = Html(gui)
-        self.peers = Html(gui, svg.table(()))
+        self.peers = Html(gui)
         self.messages = Html(gui, svg.table(()))
 
         @self.control.on_click
@@ -47,13 +44,11 @@ class NetworkTab:
         ]
         if state.popup:
             facts.append(("Popup", state.popup))
+        there = [(peer.interface, f"{peer.address} {peer.about}".strip()) for peer in interfaces.peers.all()]
         return any(
             [
-                enable(self.control, state.mode in RESTING),
                 self.status.show(svg.facts(facts)),
-                self.peers.show(
-                    svg.table((p.interface, f"{p.address} {p.about}".strip(), Colour.BLUE) for p in interfaces.peers.all())
-                ),
-                self.messages.show(svg.table((s.interface, s.text, Colour.GREY) for s in reversed(self._said))),
+                self.peers.show(svg.facts(there or [("Connected", "nobody")])),
+                self.messages.show(svg.table((said.interface, said.text, Colour.GREY) for said in reversed(self._said))),
             ]
         )

@@ -51,10 +51,10 @@ class Teach:
         self.record = gui.add_checkbox("Record a path", False)
         with gui.add_folder("Program"):
             self.list = Html(gui)
-            self.step = gui.add_dropdown("TaughtStep", (*MOVABLE, *WAITING))
+            self.step = gui.add_dropdown("Step", (*MOVABLE, *WAITING))
             self.change = gui.add_button_group("Steps", ("Add", "Undo", "Clear"))
             self.speed = gui.add_slider("Speed [%]", min=10, max=100, step=5, initial_value=50)
-            self.run = gui.add_button_group("Run", ("Run", "Pause", "TaughtStep", "Stop"))
+            self.run = gui.add_button_group("Run", ("Run", "Pause", "Step", "Stop"))
         self.save = gui.add_button("Save as file", color="gray")
         self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
         self.message = Html(gui)

@@ -24,7 +24,7 @@ from tests.app.robot_interface.robot_bench import RobotBench
 @pytest.mark.parametrize("idle", [False, True])
 def test_the_drives_are_off_where_no_safety_stop_has_to_be_unlocked(safety: Safety, law: Law, idle: bool) -> None:
     """Client interfaces: after a protective or a safeguard stop a robot stays RUNNING, and its safety mode tells."""
-    state = ControllerState(mode=Mode.STOP, safety=safety, law=law, idle=idle)
+    state = ControllerState(mode=Mode.STOP, safety=safety, law=law, idle=idle, switched_off=True)
     off = law is Law.OFF and safety in (Safety.NORMAL, Safety.REDUCED, Safety.EMERGENCY_STOP)
     wanted = RobotMode.RUNNING if not off else RobotMode.IDLE if idle else RobotMode.POWER_OFF
     assert state.robot_mode is wanted
@@ -101,3 +101,14 @@ def test_idle_ends_when_the_drives_work_again() -> None:
     bench.step()
     assert not state.idle
     assert state.robot_mode is RobotMode.RUNNING
+
+
+@pytest.mark.parametrize("safety", list(Safety))
+@pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.parametrize("switched_off", [False, True])
+def test_a_stop_of_the_pendants_is_a_protective_stop_to_clients(safety: Safety, mode: Mode, switched_off: bool) -> None:
+    """STOP alone, after a dropped payload or a limit, is left by a reset only: what clients know as a protective stop."""
+    state = ControllerState(mode=mode, safety=safety, switched_off=switched_off)
+    alone = mode is Mode.STOP and safety in (Safety.NORMAL, Safety.REDUCED) and not switched_off
+    assert state.stopped is (alone or safety is Safety.PROTECTIVE_STOP)
+    assert (state.safety_mode is SafetyMode.PROTECTIVE_STOP) is state.stopped

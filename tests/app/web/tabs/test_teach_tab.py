@@ -78,7 +78,7 @@ def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop:
     for text in ("P1", "P2", "P1"):
         loop.program, loop.step = ProgramState.STOPPED, 0
         until(lambda: "pd-now" not in teach.list.shown, "nothing runs")
-        client.set(teach.run._impl.uuid, value="TaughtStep")
+        client.set(teach.run._impl.uuid, value="Step")
         until(lambda text=text: [step.to for step in teach._running] == [text], "handed over")
         loop.program, loop.step = ProgramState.RUNNING, 1
         until(lambda text=text: f'class="pd-now">Move to {text} ' in teach.list.shown, text)

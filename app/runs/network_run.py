@@ -1,0 +1,85 @@
+"""Clients of the network interfaces in a session: the same state, commands and fields, without a network and its time."""
+
+from collections.abc import Callable, Sequence
+
+from app.files.bad_input import BadInput
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.program_folder import ProgramFolder
+from app.robot_interface.controller.rtde_fields import OUTPUTS
+from app.robot_interface.dashboard.dashboard_commands import DashboardCommands, Pending
+from app.session.actions import AskForFreeDrive, DashboardLine, OfClient, ReadField
+from app.session.expectation_watch import Verdict
+from app.session.session_file import Session
+from pendant.decision import Decision
+from pendant.events.event import Event
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK
+from sim.exchange.desk import Wishes
+from sim.exchange.snapshot import Snapshot
+from sim.simulation import Simulation
+
+JOINTS = 6
+"""Of an arm that RTDE can tell."""
+
+
+class NetworkRun:
+    """Acts in a session as `Cabinet` does in the loop.
+
+    Args:
+        session: whose clients act.
+        simulation: of the session, at its start.
+
+    Raises:
+        BadInput: a field does not exist, or the arm has not six joints.
+    """
+
+    def __init__(self, session: Session, simulation: Simulation) -> None:
+        for i, action in enumerate(session.timeline):
+            if isinstance(action, ReadField) and action.field not in OUTPUTS:
+                raise BadInput(session.title, f"timeline[{i}].field", action.field, "an output field of RTDE, such as robot_mode")
+        if simulation.arm.n != JOINTS:
+            raise BadInput(session.title, "robot", simulation.arm.name, f"an arm of {JOINTS} joints for clients of the network")
+        self._cabinet = Cabinet(lambda: simulation, simulation.arm.chain.joints, ProgramFolder())
+        self._cabinet.listen(self)
+        self._commands = DashboardCommands(self._cabinet, simulation.arm.name.upper().removesuffix("E"))
+        self._asked: list[tuple[int, DashboardLine, str | Pending]] = []  # in this tick
+        self._reads: list[tuple[int, ReadField]] = []
+        self.verdicts: list[Verdict] = []
+
+    def tick(self, number: int) -> None:
+        """RTDE's fields are written for who listens."""
+
+    def told(self, event: Event) -> None:
+        """Events are in the session's own list."""
+
+    def repeat(self) -> None:
+        """A session does not stand still."""
+
+    def wishes(self, tick: int, snapshot: Callable[[], Snapshot], actions: Sequence[tuple[int, OfClient]]) -> Wishes:
+        """What the clients want of the tick; `actions` are those that begin in it, with their places in the time line."""
+        for place, action in actions:
+            if isinstance(action, DashboardLine):
+                answer = self._commands.answer(action.send, remote=self._cabinet.state.remote)
+                self._asked.append((place, action, answer))
+                if isinstance(answer, Pending):
+                    self._cabinet.ask(answer.ask)
+            elif isinstance(action, AskForFreeDrive):
+                self._cabinet.free_drive_until = self._cabinet.ticks + ticks(action.length)
+            else:
+                self._reads.append((place, action))
+        return self._cabinet.wishes(tick, snapshot)
+
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in what the robot decided, and judge what the clients were told."""
+        self._cabinet.see(tick, decision)
+        for place, line, answer in self._asked:
+            said = answer.answer(answer.ask.done.result(0.0)) if isinstance(answer, Pending) else answer
+            wanted = f'timeline[{place}] "{line.send}" is answered "{line.reply}"'
+            self.verdicts.append(Verdict(said.startswith(line.reply), wanted, f'"{said}" at {tick * TICK:.3f} s'))
+        for place, read in self._reads:
+            value = self._cabinet.record.get(read.field)
+            number = value[read.index] if isinstance(value, list) else value
+            low, high = (-float("inf") if read.min is None else read.min), (float("inf") if read.max is None else read.max)
+            wanted = f"timeline[{place}] {read.field} from {low:g} to {high:g}"
+            self.verdicts.append(Verdict(low <= number <= high, wanted, f"{number:g} at {tick * TICK:.3f} s"))
+        self._asked, self._reads = [], []
