@@ -18,7 +18,7 @@ INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
 WORKERS ?= 2
 SEED ?= 1000
-BENCHES := $(filter-out __init__ common postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
+BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
 .PHONY: run test bench bench-full soak soak-quick mutate fuzz clean lint types contracts kernels unit e2e wheel browser
@@ -66,9 +66,9 @@ types: $(VENV)/dev.stamp
 contracts: $(VENV)/dev.stamp
 	$(BIN)/lint-imports --no-logo
 
-# A fresh clone compiles its kernels once, and not in each worker of the tests.
+# A fresh clone compiles its kernels and modules once, and not in each worker and process of the tests.
 kernels: $(VENV)/dev.stamp
-	$(BIN)/python -c "from app.runs.warm_up import warm_up; warm_up()"
+	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
 
 unit: $(VENV)/dev.stamp
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10
