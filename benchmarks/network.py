@@ -7,6 +7,7 @@ their own, but the machine's processors are shared with them. Times are of `time
 import itertools
 import json
 import multiprocessing
+import multiprocessing.process
 import subprocess
 import sys
 import time

@@ -6,7 +6,9 @@ import msgspec
 import numpy as np
 import pytest
 
+from pendant.contact import contact_monitor
 from pendant.contact.contact_change import Change, Contact
+from pendant.contact.contact_limits import limits
 from pendant.contact.contact_monitor import SOURCES, ContactMonitor, Poses, for_links
 from pendant.contact.history import SIZE, SUMMED
 from pendant.contact.settings import ContactUse
@@ -232,3 +234,26 @@ def test_what_the_joints_feel_of_a_link_goes_on() -> None:
     stream: list[Signal | None] = [s._replace(fx=20.0 * s.fx, mass=0.0) for s in signals(400, mass=0.0, arm=50.0, push=push)]
     assert len(found(2, stream)) == 1
     assert found(2, stream, zeroed=START + 5) == found(2, stream)
+
+
+@pytest.mark.parametrize(("missed", "known"), [(0, 51), (1, 1), (20, 1)])
+def test_zeroing_while_nobody_looks_is_a_gap_for_the_joints_only_if_they_missed_something(missed: int, known: int) -> None:
+    """What was kept for them is gone, and the next sample does not follow on those that they have."""
+    monitor = ContactMonitor()
+    for now in estimates(2, [*signals(50 + missed + 1)]):
+        if now.tick == 50 + missed + 1:
+            monitor.restart()
+        monitor.step(now, USE, Mode.RUN, not 50 < now.tick <= 50 + missed)
+    assert monitor.detectors[2].history.count == known
+
+
+@pytest.mark.parametrize(("speed_share", "made"), [(0.0, 1), (1.0, 30)])
+def test_limits_are_made_when_what_they_come_from_changes(speed_share: float, made: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The arm's speed is one of that only where it counts. To make them takes as long as all the rules."""
+    asked = list[object]()
+    monkeypatch.setattr(contact_monitor, "limits", lambda *what, **how: asked.append(what) or limits(*what, **how))
+    use, monitor = msgspec.structs.replace(USE, speed_share=speed_share), ContactMonitor()
+    for now in estimates(0, [*signals(30)]):
+        now.v_tcp = 0.001 * now.tick
+        monitor.step(now, use, Mode.RUN, on=True)
+    assert len(asked) == made

@@ -272,3 +272,8 @@ def test_a_wrong_payload_may_explain_a_part_of_a_force() -> None:
     # F - m·A changes by 5 - 4 N along z and -3 N along y, A by 5 m/s².
     assert Detector()._size(now, before, limit()) == pytest.approx(math.sqrt(10.0) - 0.8 - 1.25)
     assert Detector()._size(before, before, limit()) == 0.0
+
+
+def test_a_detector_begins_free_of_contact_and_listening() -> None:
+    detector = Detector()
+    assert (detector.touching, detector.silent) == (False, False)

@@ -114,3 +114,17 @@ def test_sums_that_begin_anew_owe_nothing_to_what_was_before() -> None:
     mean = history.mean(0, 4)
     assert mean == (2.0,) * 6
     assert history.variances(0, 4, mean) == (1.0, 1.0)
+
+
+def test_what_was_before_the_samples_that_still_count_is_in_no_sum() -> None:
+    """Asked late: only the newest hundred count: sums begin with them, beside them 5e20 would hide 1 and 3."""
+    history = History()
+    for _ in range(SIZE):
+        history.push(Signal(*[1e18] * 6))
+        history.mean(0, 1)
+    for k in range(SUMMED + 1):
+        history.push(Signal(*[1.0 + k % 2 * 2.0] * 6))
+    history.shorten(100)
+    mean = history.mean(0, 100)
+    assert mean == (2.0,) * 6
+    assert history.variances(0, 100, mean) == (1.0, 1.0)

@@ -365,3 +365,10 @@ def test_hold_to_run_leaves_on_release() -> None:
     bench.run(100, HOLD)
     bench.step(LET_GO)
     assert (bench.last.mode, bench.last.events) == (Mode.TEACH, (Event(Kind.LEFT_RELEASE, bench.tick, {}),))
+
+
+@pytest.mark.parametrize("ticks", [1, 2, 500])
+def test_where_the_button_is_held_to_run_to_let_it_go_leaves(ticks: int) -> None:
+    """FD-8a: however long it was held."""
+    (left,) = pressed(Alone(held=True, button__hold_to_run=True), ticks)
+    assert (left.kind, left.tick) == (Kind.LEFT_RELEASE, ticks + 1)

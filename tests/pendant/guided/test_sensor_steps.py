@@ -226,3 +226,16 @@ def test_a_step_within_what_the_force_fluctuates_is_none(spread: float, told: bo
     steps = Steps()
     found = [steps.step(estimate(), touch(force, spread)) for force in stepping(5.0, LATER + 1)]
     assert (found[-1] is not None) is told
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize(("less", "told"), [(0.0, False), (1e-9, True)])
+def test_exactly_the_share_that_is_a_hands_is_a_hands(axis: int, less: float, told: bool) -> None:
+    """All six ticks' worth comes in one; with 4 N, a power of two, nothing is rounded."""
+    steps, found = Steps(), []
+    for tick, force in enumerate(stepping(4.0, LATER + 1)):
+        felt, along = [0.0] * 3, [0.0] * 3
+        felt[axis] = (ANSWER * LATER * 4.0 - less) * (tick == FIRST + 3)
+        along[axis] = force[2]
+        found.append(steps.step(estimate(felt=felt), touch((along[0], along[1], along[2]))))
+    assert (found[-1] is not None) is told

@@ -144,3 +144,28 @@ def test_a_stretch_begins_afresh() -> None:
     assert state_of(work) != fresh
     work.begin(value)
     assert state_of(work) == fresh
+
+
+def test_before_it_moves_nothing_is_owed() -> None:
+    work = Work(BEFORE)
+    assert work.unpaid == 0.0
+    assert not work.settled, "nor is it known what the motion costs"
+    work.begin(moving(energy=3.0))
+    assert work.unpaid == 0.0
+
+
+@pytest.mark.parametrize(("energy", "lasts"), [(0.0, True), (-1.0, False)])
+def test_an_arm_that_was_at_rest_in_the_beginning_had_no_speed_to_pay_with(energy: float, lasts: bool) -> None:
+    """One J less than at rest there cannot be; it would pay for all."""
+    work = Work(BEFORE)
+    for _ in range(101):
+        work.step(moving(energy=energy))
+    assert 101 * TICK * SPEED * PAYS < 1.0
+    assert work.lasts(100) is lasts
+
+
+def test_what_was_felt_at_entry_must_have_a_value_for_each_joint() -> None:
+    with pytest.raises(ValueError, match="zip"):
+        Work(BEFORE[:5]).step(moving())
+    with pytest.raises(ValueError, match="zip"):
+        Work((*BEFORE, 0.0)).step(moving())

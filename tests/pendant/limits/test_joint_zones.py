@@ -129,3 +129,12 @@ def test_the_supervisor_holds_each_joint_back_by_its_own_torque_before_its_own_r
     bench.entered(at_rest)
     assert bench.last.zones == ()
     assert bench.step(value=estimate(n=2, theta=[2.9, 1.9], theta_d=[2.0, 2.0])).zones == pytest.approx((-25.0, -5.0))
+
+
+def test_a_joint_that_left_its_zone_while_another_stays_enters_it_as_for_the_first_time() -> None:
+    """Joint 0 stays in its stiff zone; joint 1 starts in its own, leaves all zones, and is held where the stiff zone begins."""
+    module = zones()
+    assert at(module, (2.96, 0.0), (1.98, 0.0)) == (0.0, 0.0)
+    assert at(module, (2.96, 0.0), (1.5, 0.0)) == (0.0, 0.0)
+    assert at(module, (2.96, 0.0), (1.9, 0.0)) == (0.0, 0.0)
+    assert at(module, (2.96, 0.0), (1.97, 0.0)) == pytest.approx((0.0, -400.0 * 0.02))

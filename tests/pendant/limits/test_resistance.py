@@ -137,3 +137,13 @@ def test_a_part_that_is_pushed_comes_to_rest_where_the_spring_holds_the_push(mas
     assert x == pytest.approx(push / 4000.0, abs=1e-4)
     assert v == pytest.approx(0.0, abs=1e-3)
     assert outermost < push / 4000.0 + 0.025
+
+
+@pytest.mark.parametrize(("distance", "outside"), [(-0.01, False), (0.0, False), (0.01, True)])
+def test_who_started_outside_did_so_until_he_has_been_at_the_wall(distance: float, outside: bool) -> None:
+    guard = LimitGuard(distance)
+    assert guard.started_outside is outside
+    guard.step(0.001, 0.0)
+    assert guard.started_outside is outside
+    guard.step(0.0, 0.0)
+    assert guard.started_outside is False

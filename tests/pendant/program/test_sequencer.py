@@ -4,6 +4,7 @@ import pytest
 
 from pendant.program.sequencer import PATIENCE, Sequencer
 from pendant.program.steps import ApplyForce, JointMove, Program, ProgramState, Wait, ZeroSensor
+from pendant.tick.pose import UNTURNED
 
 STEPS = (Wait(duration=0.01), JointMove(q=(0.0,) * 6))
 
@@ -58,3 +59,20 @@ def test_a_force_counts_from_what_was_felt_before_as_the_new_zero_has_it() -> No
         sequencer.step(0)
     assert isinstance(sequencer.move, ApplyForce)
     assert sequencer.move.untouched == pytest.approx((0.5, 1.0, -0.5))
+
+
+def test_without_a_program_it_is_at_the_beginning_and_knows_the_tool_as_the_flange() -> None:
+    sequencer = Sequencer()
+    assert (sequencer.state, sequencer.index, sequencer.guided) == (ProgramState.NONE, 0, False)
+    assert (sequencer.guiding, sequencer.braked) == (False, False)
+    assert sequencer.R_FT == UNTURNED
+
+
+def test_the_sensor_may_be_zeroed_before_any_program_begins() -> None:
+    """Once started it counts from what is felt then."""
+    sequencer = Sequencer()
+    sequencer.shift((1.0, -2.0, 3.0))
+    sequencer.load(Program(steps=(ApplyForce(force=(0.0, 0.0, -10.0)),)))
+    sequencer.start((0.5, 0.0, 0.0))
+    assert isinstance(sequencer.move, ApplyForce)
+    assert sequencer.move.untouched == (0.5, 0.0, 0.0)

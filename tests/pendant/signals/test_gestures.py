@@ -167,3 +167,7 @@ def test_a_push_passes_its_place_within_the_radius() -> None:
             change = [*f.tolist(), *np.cross(point, f).tolist()]
             assert PushSignal().step(change, flat(R_BF), use) is passes
     assert PushSignal().step((20.0, 0.0, 0.0, 0.0, 0.0, 1.0), UNTURNED, PushSettings(radius=0.05)), "the radius itself is within"
+
+
+def test_before_the_first_tick_no_signal_is_present() -> None:
+    assert (StepSignal().present, TurnSignal().present) == (False, False)

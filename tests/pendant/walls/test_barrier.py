@@ -1,5 +1,6 @@
 """One wall or area alone: what a tick of it says, in every axis and on the border itself (VW-1 to VW-10)."""
 
+import msgspec
 import pytest
 
 from pendant.tick.pose import ORIGIN, Pose, Quaternion, Vector
@@ -120,3 +121,11 @@ def test_of_a_volume_and_a_part_that_both_move_only_the_parts_way_is_resisted() 
         reading = barrier.step(around((0.0, 0.0, height), references={"cart": Pose((0.0, 0.0, cart))}))
         assert reading.distance == pytest.approx(distance)
         assert reading.force == pytest.approx((0.0, 0.0, force))
+
+
+@pytest.mark.parametrize("led", [False, True])
+def test_who_pays_for_the_motion_takes_a_wall_along_without_any_force_at_the_flange(led: bool) -> None:
+    """VW-3: a hand on a link."""
+    wall = Wall(name="w", shape=BALL, policy=Policy.STEPWISE, safety_period=0.1)
+    barrier, seen = Barrier(wall, Stage.OPERATION), msgspec.structs.replace(around(), led=led)
+    assert [tick for tick in range(1, 121) if barrier.step(seen).anchored] == ([50, 100] if led else [])

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pendant.tick.pose import Vector
-from pendant.walls.polyhedron import MANY, _faces, polyhedron
+from pendant.walls.polyhedron import MANY, SKIN, _faces, _normal, polyhedron
 from pendant.walls.shapes import Box
 from tests.pendant.bodies import from_mesh, points
 
@@ -155,3 +155,56 @@ def test_triangles_side_by_side_in_a_plane_are_one_face() -> None:
     fine = from_mesh(trimesh.creation.box((0.2, 0.2, 0.2)).subdivide())
     assert len(fine.faces) == 48
     assert sorted(len(face.edges) for face in _faces(fine.vertices, fine.faces)) == [8] * 6
+
+
+CUBE: tuple[Vector, ...] = tuple((x, y, z) for z in (-1.0, 0.0) for y in (-1.0, 0.0) for x in (-1.0, 0.0))
+"""As SQUARES; three of its faces lie in the planes of the axes."""
+
+
+@pytest.mark.parametrize(("off", "skin"), [(SKIN, True), (1.01 * SKIN, False)])
+def test_up_to_its_skin_a_plane_tells_the_way_out_and_beyond_the_nearest_point(off: float, skin: bool) -> None:
+    """Beside an edge: just one of the two planes, or half way between them."""
+    distance, *gradient = polyhedron(CUBE, SQUARES)(off, off, -0.5)
+    assert distance == pytest.approx(off if skin else math.sqrt(2.0) * off)
+    assert sorted(gradient) == pytest.approx([0.0, 0.0, 1.0] if skin else [0.0, math.sqrt(0.5), math.sqrt(0.5)])
+
+
+def prism(corners: int) -> tuple[tuple[Vector, ...], tuple[tuple[int, ...], ...]]:
+    """Of a radius and a height of 1 m, its top at z = 0; with its top and bottom it has two faces more than corners."""
+    angles = [2.0 * math.pi * k / corners for k in range(corners)]
+    vertices = tuple((math.cos(a), math.sin(a), z) for z in (-1.0, 0.0) for a in angles)
+    sides = tuple((k, (k + 1) % corners, corners + (k + 1) % corners, corners + k) for k in range(corners))
+    return vertices, (tuple(range(corners))[::-1], tuple(range(corners, 2 * corners)), *sides)
+
+
+@pytest.mark.parametrize(("off", "skin"), [(SKIN, True), (1.01 * SKIN, False)])
+def test_a_skin_is_as_thick_with_many_faces(off: float, skin: bool) -> None:
+    """Above the top by it, and beyond a corner by half of it."""
+    distance, *gradient = polyhedron(*prism(MANY))(1.0 + 0.5 * off, 0.0, off)
+    if skin:
+        assert (distance, gradient) == (off, [0.0, 0.0, 1.0])
+    else:
+        assert distance == pytest.approx(off * math.sqrt(1.25), rel=1e-6)
+        assert gradient == pytest.approx([math.sqrt(0.2), 0.0, math.sqrt(0.8)], abs=1e-6)
+
+
+@pytest.mark.parametrize(("corners", "way"), [(MANY - 3, "by_loop"), (MANY - 2, "by_matrix")])
+def test_many_faces_are_reckoned_at_once(corners: int, way: str) -> None:
+    """It takes half the time; fewer are faster one by one."""
+    vertices, faces = prism(corners)
+    assert len(faces) == corners + 2
+    field = polyhedron(vertices, faces)
+    assert field.__name__ == way
+    assert field(0.0, 0.0, 0.5) == pytest.approx((0.5, 0.0, 0.0, 1.0))
+    assert field(0.0, 0.0, -0.1) == pytest.approx((-0.1, 0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(("height", "taken"), [(1e-9, False), (1.001e-9, True)])
+def test_exactly_a_billionth_of_a_long_face_is_no_area(height: float, taken: bool) -> None:
+    """A side of 1 m; twice the area is as much in square metres."""
+    flat = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, height, 0.0))
+    if taken:
+        assert _normal(flat, (0, 1, 2), 0) == (0.0, 0.0, 1.0)
+    else:
+        with pytest.raises(ValueError, match="its corners lie on a line"):
+            _normal(flat, (0, 1, 2), 0)
