@@ -28,6 +28,7 @@ from app.command_options import (
     example,
     setting,
 )
+from app.export_command import EXAMPLES, export_
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
@@ -187,6 +188,9 @@ def replay(
 
     with replay_until_interrupted(log, host=host, port=port, usual=PORT, open_browser=open_browser) as site:
         announce(f"Showing {log}", site.link, site.access.token is not None)
+
+
+app.command("export", epilog=EXAMPLES)(export_)
 
 
 @app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))

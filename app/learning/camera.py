@@ -49,7 +49,7 @@ class Marker(NamedTuple):
     radius: float  # [m]
 
 
-class Camera:
+class ArmCamera:
     """Takes pictures of snapshots, of a simulation or of a recording. Nothing is simulated: bodies are put where they were.
 
     Without MUJOCO_GL in the environment it draws by EGL, which needs neither a screen nor a graphics card.

@@ -14,7 +14,7 @@ LEAST = TICK_RATE // 2
 """A way of fewer ticks is a nudge and no demonstration: 0.5 s."""
 
 _FREE = WORDS["mode"].index(Mode.FREE_DRIVE.value)
-_GUIDED = WORDS["phase"].index(Phase.GUIDED.value)
+_GUIDED, _HELD = (WORDS["phase"].index(phase.value) for phase in (Phase.GUIDED, Phase.HELD))
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Demonstration:
 def demonstrations(log: Log, rate: int) -> list[Demonstration]:
     """The guided ways of a recording, in the order of time.
 
-    A way begins with the first tick in which somebody moves the freed arm, and ends with the last one before free-drive is left;
-    pauses in between belong to it.
+    A way begins with the first tick in which somebody moves the freed arm, and ends with the last one before free-drive is left,
+    whether the button is held or not; pauses in between belong to it.
 
     Args:
         log: the recording.
@@ -61,7 +61,7 @@ def demonstrations(log: Log, rate: int) -> list[Demonstration]:
 def _ways(log: Log) -> list[tuple[int, int]]:
     """First row of each way, and the row after its last."""
     free = log.state["mode"] == _FREE
-    guided = free & (log.state["phase"] == _GUIDED)
+    guided = free & ((log.state["phase"] == _GUIDED) | ((log.state["phase"] == _HELD) & _moving(log)))
     # A stay ends where the mode does, and where ticks are missing.
     borders = np.flatnonzero((np.diff(free.astype(np.int8)) != 0) | (np.diff(log.ticks) != 1)) + 1
     stays = zip([0, *borders.tolist()], [*borders.tolist(), free.size], strict=True)
@@ -71,6 +71,14 @@ def _ways(log: Log) -> list[tuple[int, int]]:
         if moved.size:
             ways.append((int(moved[0]), int(moved[-1]) + 1))
     return ways
+
+
+def _moving(log: Log) -> NDArray[np.bool_]:
+    """Where the arm is faster than what counts as moving it by hand (FD-13): while the button is held, no phase says so."""
+    settings = log.settings[0][1]
+    flange, joint = (float(settings[f"limits.maintain.{name}.max"]) for name in ("flange_speed", "joint_speed"))
+    fast = np.linalg.norm(log.state["v_F"][:, :3], axis=1) > flange
+    return fast | (np.abs(log.state["qd"]).max(axis=1) > joint)
 
 
 def _taken(log: Log, rows: NDArray[np.intp]) -> Demonstration:

@@ -96,13 +96,13 @@ def _filmed(log: Log, shown: Demonstration, path: Path, rate: int) -> NDArray[np
 
     A recording has poses 62.5 times a second: a picture is of the last of them, up to 16 ms old.
     """
-    from app.learning.camera import Camera
+    from app.learning.camera import ArmCamera
     from app.learning.video import Video
 
     at = np.array([each.tick for each in log.pictures])
     samples: list[NDArray[np.float64]] = []
     every = max(1, shown.rows.size // SAMPLES)
-    camera = Camera(log.arm, log.scenario, *PIXELS)
+    camera = ArmCamera(log.arm, log.scenario, *PIXELS)
     try:
         with Video(path, rate) as video:
             for k, row in enumerate(shown.rows.tolist()):

@@ -22,7 +22,7 @@ from sim.plant.touch import ZERO, Push
 from sim.simulation import Simulation
 
 if TYPE_CHECKING:
-    from app.learning.camera import Camera
+    from app.learning.camera import ArmCamera
 
 Array = NDArray[np.float64]
 
@@ -126,7 +126,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         )
         self.action_space = QuantityBox((even("hand_force", (FORCE,) * 3, "N", "of the hand on the flange, in W"),))
         self._simulation: Simulation | None = None
-        self._camera: Camera | None = None
+        self._camera: ArmCamera | None = None
         self._target = np.zeros(3)
         self._force = np.zeros(3)
         self._way = 0.0
@@ -192,11 +192,11 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         """The arm, the point and the hand's force, (480, 640, 3); None without `render_mode`."""
         if self.render_mode is None:
             return None
-        from app.learning.camera import Camera, Marker  # slow to import
+        from app.learning.camera import ArmCamera, Marker  # slow to import
 
         snapshot = self._running().snapshot()
         if self._camera is None:
-            self._camera = Camera(self._prepared.arm, self._prepared.scenario, *PIXELS)
+            self._camera = ArmCamera(self._prepared.arm, self._prepared.scenario, *PIXELS)
         return self._camera.picture(snapshot, [Marker(self._target, NEAR)], arrows=True)
 
     def close(self) -> None:

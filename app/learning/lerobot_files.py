@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from app.files.bad_input import ABSENT, BadInput
 from app.learning.demonstrations import Demonstration
+from app.learning.feature_statistics import Values, flat, joined, statistics
 
 VERSION = "v3.0"
 CHUNK = 1000
@@ -28,9 +29,6 @@ VIDEOS = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4"
 
 STATE, ACTION, PICTURES, EVENTS = "observation.state", "action", "observation.images.front", "events"
 COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
-QUANTILES = {"q01": 0.01, "q10": 0.10, "q50": 0.50, "q90": 0.90, "q99": 0.99}
-
-Values = dict[str, NDArray[Any]]
 
 
 def parquet():
@@ -112,11 +110,11 @@ class DataSet:
         rows, stats, tables, frames = [], [], [], 0
         for number, (shown, seen) in enumerate(self._shown):
             columns = _columns(shown, kinds, rate=self._rate, number=number, first=frames)
-            stats.append({name: _statistics(values) for name, values in columns.items()})
+            stats.append({name: statistics(values) for name, values in columns.items()})
             if seen is not None:
-                told = _statistics(seen)
+                told = statistics(seen)
                 stats[-1][PICTURES] = {name: each if name == "count" else each.reshape(3, 1, 1) for name, each in told.items()}
-            rows.append(self._row(shown, number, frames) | _flat(stats[-1]))
+            rows.append(self._row(shown, number, frames) | flat(stats[-1]))
             tables.append(self._pa.table({name: self._column(values) for name, values in columns.items()}))
             frames += shown.ticks.size
         features = _features(self._joints, kinds, self._rate, self._pictures)
@@ -124,7 +122,7 @@ class DataSet:
             self._write_rows(tables)
             self._pq.write_table(self._pa.Table.from_pylist(rows), self._part / EPISODES)
             self._write_tasks()
-            self._write_json("stats", {name: _joined([each[name] for each in stats]) for name in stats[0]})
+            self._write_json("stats", {name: joined([each[name] for each in stats]) for name in stats[0]})
             self._write_json("info", self._info(features, frames))
             if self._folder.exists():
                 self._folder.rmdir()
@@ -256,28 +254,3 @@ def _features(joints: list[str], kinds: list[str], rate: int, pictures: tuple[in
     for name in COUNTERS:
         found[name] = {"dtype": "float32" if name == "timestamp" else "int64", "shape": [1], "names": None}
     return found
-
-
-def _statistics(values: NDArray[Any]) -> Values:
-    """Of the columns of (k,) or (k, m): each kind (m,), and how many rows there were (1,)."""
-    table = values.reshape(len(values), -1).astype(np.float64)
-    found = {"min": table.min(axis=0), "max": table.max(axis=0), "mean": table.mean(axis=0), "std": table.std(axis=0)}
-    found |= {name: np.quantile(table, share, axis=0) for name, share in QUANTILES.items()}
-    return found | {"count": np.array([len(table)])}
-
-
-def _flat(stats: dict[str, Values]) -> dict[str, Any]:
-    """As columns of the table of demonstrations."""
-    return {f"stats/{name}/{kind}": value.tolist() for name, each in stats.items() for kind, value in each.items()}
-
-
-def _joined(parts: list[Values]) -> dict[str, Any]:
-    """Statistics of all demonstrations from those of each. Quantiles are means of theirs, as in LeRobot."""
-    counts = np.array([float(part["count"][0]) for part in parts])
-    weights = (counts / counts.sum()).reshape(-1, *[1] * parts[0]["mean"].ndim)
-    stacked = {name: np.array([part[name] for part in parts]) for name in parts[0]}
-    mean = (weights * stacked["mean"]).sum(axis=0)
-    variance = (weights * (stacked["std"] ** 2 + (stacked["mean"] - mean) ** 2)).sum(axis=0)
-    found = {"min": stacked["min"].min(axis=0), "max": stacked["max"].max(axis=0), "mean": mean, "std": np.sqrt(variance)}
-    found |= {name: (weights * stacked[name]).sum(axis=0) for name in QUANTILES}
-    return {name: value.tolist() for name, value in found.items()} | {"count": [int(counts.sum())]}

@@ -66,6 +66,7 @@ class Served(Site):
         """Stop serving; connections are closed, what they held is released, a recording is ended."""
         self.server.get_event_loop().call_soon_threadsafe(self.control.close)
         super().close()
+        self.docks.recording.close()
         self.recording.close()
 
     def draw(self) -> bool:

@@ -18,7 +18,7 @@ def pendant(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return code
 
 
-@pytest.mark.parametrize("command", ["serve", "run", "check", "claims", "replay", "schema", "robots"])
+@pytest.mark.parametrize("command", ["serve", "run", "export", "check", "claims", "replay", "schema", "robots"])
 def test_every_command_has_help_with_examples(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,10 +1,11 @@
-"""The switch that records what the page shows, and the name of the file."""
+"""The switch that records what the page shows, the name of the file, and the export of the demonstrations in it."""
 
 import viser
 
+from app.learning.exporting import Exporting
 from app.log.live import LiveRecording
 from app.web.widgets import svg
-from app.web.widgets.html import Html
+from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
 
 
@@ -15,6 +16,16 @@ class RecordingSwitch:
         self._recording = recording
         self.switch = gui.add_checkbox("Record", recording.on, hint="Into a file that pendant replay and Foxglove open.")
         self.status = Html(gui)
+        self.export = gui.add_button(
+            "Export demonstrations", disabled=True, hint="Of the last recording: each way that a hand led the arm, for LeRobot."
+        )
+        self.exported = Html(gui)
+        self._exporting = Exporting()
+
+        @self.export.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            if recording.path is not None and not recording.on:
+                self._exporting.start(recording.path)
 
         @self.switch.on_update
         async def _(_: viser.GuiEvent) -> None:
@@ -27,7 +38,21 @@ class RecordingSwitch:
         ended = self.switch.value and not recording.on  # by itself
         if ended:
             self.switch.value = False
-        return self.status.show(self._words()) or ended
+        possible = recording.path is not None and not recording.on and not self._exporting.on
+        words = self.status.show(self._words()), self.exported.show(self._export_words())
+        return any([*words, enable(self.export, possible), ended])
+
+    def close(self) -> None:
+        """End an export that runs."""
+        self._exporting.close()
+
+    def _export_words(self) -> str:
+        exporting = self._exporting
+        if exporting.on and exporting.folder is not None:
+            return svg.facts([("Exporting", exporting.folder.name)])
+        if exporting.failed:
+            return svg.note("Not exported", exporting.told, Colour.RED)
+        return "" if exporting.folder is None else svg.facts([("Exported", exporting.told)])
 
     def _words(self) -> str:
         recording = self._recording

@@ -43,6 +43,35 @@ def test_who_only_watches_cannot(served: Served, join: Join, loop: FakeLoop) -> 
     assert not served.recording.on
 
 
+def test_the_last_recording_is_exported_on_a_click(
+    served: Served, join: Join, loop: FakeLoop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.learning.exporting.COMMAND", "import sys; print('2 demonstrations of', sys.argv[2])")
+    client, tab = join(), served.docks.recording
+    assert tab.export.disabled
+    client.set(tab.switch._impl.uuid, value=True)
+    until(lambda: loop.watch is not None, "it is on")
+    simulation = loop.simulation
+    loop.watch(simulation, simulation.tick(loop.desk.take()))
+    until(lambda: served.recording.path is not None, "there is a file")
+    assert tab.export.disabled  # it is still written
+    client.set(tab.switch._impl.uuid, value=False)
+    until(lambda: not tab.export.disabled, "it can be exported")
+    client.set(tab.export._impl.uuid, value=True)
+    assert served.recording.path is not None
+    name = served.recording.path.name
+    until(lambda: f"2 demonstrations of {name}" in tab.exported.shown, "what became of it is told")
+
+
+def test_an_export_that_fails_says_why(served: Served, join: Join, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.learning.exporting.COMMAND", "import sys; sys.exit('pendant: export: nobody led the arm')")
+    client, tab = join(), served.docks.recording
+    served.recording.path = tmp_path / "recording-1.mcap"
+    until(lambda: not tab.export.disabled, "it can be exported")
+    client.set(tab.export._impl.uuid, value=True)
+    until(lambda: "Not exported" in tab.exported.shown and "nobody led the arm" in tab.exported.shown, "it says why")
+
+
 def test_a_recording_that_ends_by_itself_says_why_and_switches_off(served: Served, join: Join) -> None:
     client, switch = join(), served.docks.recording
     client.set(switch.switch._impl.uuid, value=True)
