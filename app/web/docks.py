@@ -87,6 +87,7 @@ class Docks:
             self.tools.editor.save,
             self.tools.editor.load,
             self.contacts.export,
+            self.recording.export,
             self.teach.save,
             self.teach.load,
         )
