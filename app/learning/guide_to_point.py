@@ -152,7 +152,7 @@ class GuideToPoint(gymnasium.Env[NDArray[Any], NDArray[Any]]):
             posture, self._target = self._draw(given)
             try:
                 reason = self._free(posture)
-            except BROKEN as error:
+            except (BadInput, *BROKEN) as error:  # it stands in an object, or is thrown away by one
                 reason = str(error)
             if not reason:
                 self._force = np.zeros(3)

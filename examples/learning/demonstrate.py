@@ -31,10 +31,10 @@ def demonstration(seed: int) -> Session:
 
 def main() -> None:
     """Record them into the folder that the command line names."""
-    if len(sys.argv) != 2:
-        sys.exit("python -m examples.learning.demonstrate FOLDER")
-    folder = Path(sys.argv[1])
-    for seed in range(COUNT):
+    if len(sys.argv) not in (2, 3):
+        sys.exit("python -m examples.learning.demonstrate FOLDER [COUNT]")
+    folder, count = Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else COUNT
+    for seed in range(count):
         outcome = run(demonstration(seed), folder / f"{seed:02d}")
         modes = ", ".join(mode.value for _, mode in outcome.modes)
         sys.stdout.write(f"{seed:2d}: {modes}\n")

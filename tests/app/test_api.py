@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from app.api import BadInput, Button, Push, read, run, run_many, session, step, stepped
+from app.learning.demonstrations import demonstrations
 
 ROOT = Path(__file__).parents[2]
 FIELDS = {"title": "t", "duration": 0.1, "expectations": [{"expect": "state", "mode": "TEACH", "at": 0.05}]}
@@ -80,3 +81,9 @@ def test_an_example_reads_a_log(tmp_path: Path) -> None:
     said = example("from_a_log", tmp_path)
     assert 30.0 < float(said.split()[0]) < 70.0  # it is pushed with 50 N
     assert np.isfinite(float(said.split()[3]))
+
+
+def test_an_example_demonstrates_by_hand(tmp_path: Path) -> None:
+    assert example("learning.demonstrate", tmp_path, "hands", "1") == " 0: TEACH, FREE_DRIVE\n"
+    log = read(tmp_path / "hands/00/log.mcap")
+    assert sum(len(way.ticks) for way in demonstrations(log, 25)) > 100  # rows: as long as policies look ahead

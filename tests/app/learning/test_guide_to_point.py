@@ -172,6 +172,18 @@ def test_a_set_up_that_the_pendant_refuses_is_told(monkeypatch: pytest.MonkeyPat
         wrong.reset(seed=0)
 
 
+def test_a_start_within_an_object_is_drawn_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = {"name": "table", "kind": "box", "position": [-0.6, -0.1, 0.15], "size": [0.6, 0.6, 0.3]}
+    blocked = GuideToPoint({"world": [table]})
+    monkeypatch.setattr(guide_to_point, "TRIES", 200)
+    _, info = blocked.reset(seed=0)
+    assert info["mode"] == "FREE_DRIVE"
+    monkeypatch.setattr(guide_to_point, "TRIES", 1)
+    inside = [0.0, -1.0, 1.9, -2.4, -1.57, 0.0]  # the flange is low in the table
+    with pytest.raises(RuntimeError, match="refused 1 starts"):
+        blocked.reset(seed=0, options={"posture": inside, "target": [-0.6, -0.1, 0.5]})
+
+
 def test_a_set_up_is_checked() -> None:
     with pytest.raises(BadInput, match="robot"):
         GuideToPoint({"robot": "none"})
