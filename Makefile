@@ -21,7 +21,7 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate fuzz clean lint types contracts kernels unit e2e wheel browser
+.PHONY: run test bench bench-full soak soak-quick mutate fuzz clean lint types contracts kernels unit e2e wheel browser pictures
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -70,7 +70,7 @@ contracts: $(VENV)/dev.stamp
 kernels: $(VENV)/dev.stamp
 	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
 
-unit: $(VENV)/dev.stamp
+unit: $(VENV)/dev.stamp | pictures
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10
 
 # Alone on the machine: these measure motion against the clock of a real browser.
@@ -85,6 +85,17 @@ browser:
 	else \
 		echo "The browser tests need Chromium, found none of: $(BROWSERS)." >&2; \
 		echo "Debian: sudo apt-get install chromium. Fedora: sudo dnf install chromium. macOS: brew install --cask chromium." >&2; \
+		exit 1; \
+	fi
+
+# MuJoCo draws the pictures of tests by EGL, without a screen.
+pictures: | $(BIN)/python
+	@$(BIN)/python -c 'import ctypes; ctypes.CDLL("libEGL.so.1")' 2>/dev/null && exit 0; \
+	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ]; then \
+		echo "Installing EGL for tests that draw pictures"; \
+		apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends libegl1 libgl1-mesa-dri; \
+	else \
+		echo "Tests that draw pictures need EGL. Debian: sudo apt-get install libegl1 libgl1-mesa-dri." >&2; \
 		exit 1; \
 	fi
 
