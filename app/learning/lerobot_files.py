@@ -5,6 +5,7 @@ The layout is that of https://huggingface.co/docs/lerobot/lerobot-dataset-v3; Le
 
 import json
 import shutil
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -71,11 +72,13 @@ class DataSet:
         pictures: tuple[int, int] | None = None,
     ) -> None:
         self._pa, self._pq = parquet()
-        self._folder, self._part = folder, folder.with_name(folder.name + ".part")
+        self._folder = folder
         try:
             if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
                 raise BadInput(str(folder), "", ABSENT, "is there already; expected a folder that is not, or that is empty")
-            shutil.rmtree(self._part, ignore_errors=True)
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            self._beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+            self._part = self._beside / "part"
             for path in (DATA.format(chunk_index=0, file_index=0), EPISODES):
                 (self._part / path).parent.mkdir(parents=True)
         except OSError as error:
@@ -127,6 +130,7 @@ class DataSet:
             if self._folder.exists():
                 self._folder.rmdir()
             self._part.rename(self._folder)
+            self._beside.rmdir()
         except OSError as error:
             raise BadInput(str(self._folder), "", ABSENT, f"cannot be written ({error.strerror})") from None
         return len(rows)
@@ -162,7 +166,7 @@ class DataSet:
 
     def discard(self) -> None:
         """Throw away what was written."""
-        shutil.rmtree(self._part, ignore_errors=True)
+        shutil.rmtree(self._beside, ignore_errors=True)
 
     def _column(self, values: NDArray[Any]) -> Any:
         """A column of the table: more than one number is a list of fixed length, as LeRobot has it."""
