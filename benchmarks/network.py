@@ -112,7 +112,7 @@ def streams(report: Report, interfaces: "RobotInterfaces", url: str, seconds: fl
     report.row("streams: frames twice or out of order", again, at_most=0)
 
 
-def beside(report: Report, loop: "Loop", name: str, seconds: float, work: Callable[..., None], *what: object) -> None:
+def beside(report: Report, loop: "Loop", name: str, work: Callable[..., None], *what: object, seconds: float) -> None:
     """An attack, while one reader reads: whether it loses a frame."""
     reader, back = started(read, 1, seconds + 4.0 * SETTLE)
     dropped, begun = loop.dropped, time.perf_counter()
@@ -167,14 +167,14 @@ def measure(report: Report) -> None:
     count = PACKETS if report.options.full else PACKETS // 10
     try:
         streams(report, interfaces, served.url, seconds)
-        beside(report, loop, "never reads", attack, never_reads, attack)
-        beside(report, loop, "dies", attack, dies, attack)
-        beside(report, loop, "floods", attack, floods, attack)
+        beside(report, loop, "never reads", never_reads, attack, seconds=attack)
+        beside(report, loop, "dies", dies, attack, seconds=attack)
+        beside(report, loop, "floods", floods, attack, seconds=attack)
         name, last = "damaged packets", 60.0 if report.options.full else 12.0
         before = resident()
-        beside(report, loop, name, last, send_damaged, count // 2, report.options.seed)
+        beside(report, loop, name, send_damaged, count // 2, report.options.seed, seconds=last)
         half = resident()
-        beside(report, loop, f"{name}, again", last, send_damaged, count // 2, report.options.seed + 1)
+        beside(report, loop, f"{name}, again", send_damaged, count // 2, report.options.seed + 1, seconds=last)
         time.sleep(SETTLE)
         report.row("damaged packets: memory kept of the first half", half - before, "MB")
         report.row("damaged packets: memory kept of the second half", resident() - half, "MB", at_most=2.0)

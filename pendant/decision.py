@@ -55,6 +55,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
     zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
     limits: str = ""  # checksum of all limits
+    static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
 
     @property

@@ -90,6 +90,7 @@ class Publisher:
             zero_due=taring.due,
             doubtful=doubtful,
             limits=self._checksum,
+            static=robot.static,
             speed=use.program.speed,
         )
 

@@ -14,7 +14,7 @@ from benchmarks import common, realtime, recording, tick
 from benchmarks.common import Options, Report
 
 FOLDER = Path(common.__file__).parent
-HELPERS = {"__init__", "common", "postures", "viewer"}
+HELPERS = {"__init__", "common", "network_clients", "postures", "viewer"}
 BENCHES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem not in HELPERS)
 
 

@@ -66,6 +66,13 @@ class Dynamics:
         placement = pin.updateFramePlacement(self.model, self.data, self._flange)
         return placement.translation.copy(), placement.rotation.copy(), self.data.oMi[self._elbow].translation.copy()
 
+    def flange_motion(self, q: Array, qd: Array) -> tuple[Array, Array, Array, Array]:
+        """Flange position (3,), orientation (3, 3), velocity (3,) [m/s] and angular velocity (3,) [rad/s], in B."""
+        pin.forwardKinematics(self.model, self.data, q, qd)
+        placement = pin.updateFramePlacement(self.model, self.data, self._flange)
+        velocity = pin.getFrameVelocity(self.model, self.data, self._flange, pin.LOCAL_WORLD_ALIGNED)
+        return placement.translation.copy(), placement.rotation.copy(), velocity.linear, velocity.angular
+
     def gravity(self, q: Array) -> Array:
         """Gravity torque (n,) [N·m]."""
         return pin.computeGeneralizedGravity(self.model, self.data, q)

@@ -76,9 +76,18 @@ class Cell:
         return box["x"] + box["width"] / 2 + focal * seen[0] / seen[2], box["y"] + box["height"] / 2 + focal * seen[1] / seen[2]
 
     def drag(self, page: Page, client: int, point: Array, by: tuple[float, float]) -> None:
-        """Press on a point of W and move the pointer by so many pixels, without letting go."""
+        """Press on a point of the arm in W and move the pointer by so many pixels, without letting go.
+
+        The page draws late what it is told: a press before it shows that the pointer is on the arm would turn the camera.
+        """
         x, y = self.pixel(page, client, point)
-        page.mouse.move(x, y)
+        self.wait(lambda: self._on_the_arm(page, x, y), "the pointer is on the arm")
         page.mouse.down()
         page.mouse.move(x + by[0] / 4, y + by[1] / 4)
         page.mouse.move(x + by[0], y + by[1], steps=6)
+
+    def _on_the_arm(self, page: Page, x: float, y: float) -> bool:
+        page.mouse.move(x + 1.0, y)
+        page.mouse.move(x, y)
+        page.wait_for_timeout(100)
+        return bool(page.evaluate("[...document.querySelectorAll('canvas')].some(canvas => canvas.style.cursor === 'pointer')"))

@@ -13,6 +13,7 @@ from pendant.events.event import Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
+from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from tests.pendant.estimates import estimate
 
@@ -59,45 +60,64 @@ tests/pendant/test_zeroing.py say when they come."""
 
 def drive(supervisor: Supervisor, stream: list[Step]) -> list[Seen]:
     """What the supervisor does with the stream."""
-    seen: list[Seen] = []
-    move_done = 0
-    current = 0
-    last: Step | None = None
-    value = estimate()
-    for tick, step in enumerate(stream):
-        if last is None or step is not last:
-            value = estimate(
-                joints_valid=step.joints,
-                wrench_valid=step.wrench,
-                qd=step.qd,
-                force=step.force,
-                felt=step.force,
-                tau_ext=step.tau,
-                move_refused="too far" if step.cannot else "",
-            )
-            button = frozenset({Button.FREE_DRIVE})
-            inputs = Inputs(
-                button if step.held else frozenset(),
-                button if step.released else frozenset(),
-                step.commands,
-                step.settings,
-                step.load,
-            )
-            last = step
-        if step.done:
-            move_done = current
-        value.tick = tick
-        value.move_done = move_done
-        decision = supervisor.step(value, inputs)
-        if decision.move is not None:
-            current = decision.move.id
-        for event in decision.events:
-            assert event.tick == tick
-            assert set(event.values) == set(TABLE[event.kind].keys)
-            assert render(event)[0]
-        kinds = tuple(event.kind for event in decision.events if event.kind not in TOOLING)
-        seen.append((decision.mode, decision.safety, decision.phase, decision.law, decision.program, decision.step, kinds))
-    return seen
+    return Driver(supervisor).go(stream)
+
+
+class Driver:
+    """Gives a supervisor streams, one after the other."""
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self.supervisor = supervisor
+        self._tick = self._move_done = self._current = 0
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """All that the next stream's outcome depends on besides the stream."""
+        return self._tick, self._move_done, self._current, self.supervisor.state
+
+    def go(self, stream: list[Step]) -> list[Seen]:
+        """What the supervisor does with the stream."""
+        seen: list[Seen] = []
+        last: Step | None = None
+        for tick, step in enumerate(stream, self._tick):
+            if last is None or step is not last:
+                value, inputs = _given(step)
+                last = step
+            if step.done:
+                self._move_done = self._current
+            value.tick = tick
+            value.move_done = self._move_done
+            decision = self.supervisor.step(value, inputs)
+            if decision.move is not None:
+                self._current = decision.move.id
+            for event in decision.events:
+                assert event.tick == tick
+                assert set(event.values) == set(TABLE[event.kind].keys)
+                assert render(event)[0]
+            kinds = tuple(event.kind for event in decision.events if event.kind not in TOOLING)
+            seen.append((decision.mode, decision.safety, decision.phase, decision.law, decision.program, decision.step, kinds))
+        self._tick += len(stream)
+        return seen
+
+
+def _given(step: Step) -> tuple[Estimate, Inputs]:
+    value = estimate(
+        joints_valid=step.joints,
+        wrench_valid=step.wrench,
+        qd=step.qd,
+        force=step.force,
+        felt=step.force,
+        tau_ext=step.tau,
+        move_refused="too far" if step.cannot else "",
+    )
+    button = frozenset({Button.FREE_DRIVE})
+    return value, Inputs(
+        button if step.held else frozenset(),
+        button if step.released else frozenset(),
+        step.commands,
+        step.settings,
+        step.load,
+    )
 
 
 @dataclass
@@ -528,7 +548,36 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
 
 def agree(stream: list[Step], settings: Settings) -> list[Seen]:
     """Run both, compare every tick, return what was seen."""
-    seen = drive(Supervisor(settings, 6), stream)
+    return _compare(stream, settings, drive(Supervisor(settings, 6), stream))
+
+
+class Agreement:
+    """The same of many streams that begin differently and go on alike.
+
+    A supervisor in a state in which one has gone on like that decides the same (`Supervisor.state`): it is not asked twice.
+
+    Args:
+        settings: of all of them.
+        after: how they go on.
+    """
+
+    def __init__(self, settings: Settings, after: list[Step]) -> None:
+        self._settings, self._after = settings, after
+        self._known: list[tuple[tuple[object, ...], list[Seen]]] = []
+
+    def agree(self, stream: list[Step]) -> None:
+        """Run both with `stream` and what comes after; compare every tick."""
+        driver = Driver(Supervisor(self._settings, 6))
+        seen = driver.go(stream)
+        state = driver.state
+        later = next((later for known, later in self._known if known == state), None)
+        if later is None:
+            later = driver.go(self._after)
+            self._known.append((state, later))
+        _compare([*stream, *self._after], self._settings, seen + later)
+
+
+def _compare(stream: list[Step], settings: Settings, seen: list[Seen]) -> list[Seen]:
     asked = follow(stream, settings)
     for tick, (has, should) in enumerate(zip(seen, asked, strict=True)):
         assert has == should, f"tick {tick}: {has}, should be {should}, after {stream[max(0, tick - 3) : tick + 1]}"

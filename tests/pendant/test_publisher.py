@@ -42,7 +42,12 @@ class Parts:
         )  # fmt: skip
         self.sequencer = SimpleNamespace(move=MOVE, state=ProgramState.PAUSED, index=2, tool_on=True)
         self.robot = SimpleNamespace(
-            free=self.free, sequencer=self.sequencer, mode=Mode.FREE_DRIVE, safety=Safety.REDUCED, grip="in the middle"
+            free=self.free,
+            sequencer=self.sequencer,
+            mode=Mode.FREE_DRIVE,
+            safety=Safety.REDUCED,
+            grip="in the middle",
+            static=False,
         )
         self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
         self.taring = SimpleNamespace(zero=(0.1,) * 6, due=False)
@@ -69,7 +74,7 @@ class Parts:
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
-            "limits": limits_checksum(self.settings), "speed": 0.4,
+            "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
         } | changes  # fmt: skip
 
 
@@ -128,7 +133,7 @@ LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
     "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other"), "zones": (), "move": None,
     "state": ProgramState.RUNNING,
-    "index": 3, "tool_on": False, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
+    "index": 3, "tool_on": False, "static": True, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
     "zero": (0.2,) * 6, "due": True,
 }  # fmt: skip
 

@@ -9,7 +9,7 @@ from pendant.all_settings import Settings, apply
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Law, Mode, Phase, Safety
-from tests.pendant.oracle import PROGRAM, WRONG, Step, agree, ticks_of
+from tests.pendant.oracle import PROGRAM, WRONG, Agreement, Step, agree, ticks_of
 
 SHORT = apply(
     Settings(),
@@ -163,16 +163,18 @@ def test_situations_cover_every_mode_phase_safety_and_law() -> None:
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_every_input_in_every_situation_does_what_the_spec_says(name: str, after: str) -> None:
     stream = SITUATIONS[name][0]
+    agreement = Agreement(SHORT, AFTER[after])
     for step in INPUTS.values():
-        agree([*stream, step, *AFTER[after]], SHORT)
+        agreement.agree([*stream, step])
 
 
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_options_do_what_the_spec_says(name: str) -> None:
     stream = SITUATIONS[name][0]
-    for step in FOR_OPTIONS.values():
-        for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE):
-            agree([*stream, step, *AFTER["hold on"]], option)
+    for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE):
+        agreement = Agreement(option, AFTER["hold on"])
+        for step in FOR_OPTIONS.values():
+            agreement.agree([*stream, step])
 
 
 @pytest.mark.parametrize("option", [CHECKED, STOPPING], ids=["checked", "stopping"])
@@ -181,10 +183,13 @@ def test_every_input_in_the_activation_sequence_does_what_the_spec_says(name: st
     stream = CHECKED_SITUATIONS[name]
     assert agree(stream, option)[-1][2] is Phase.SEQUENCE
     assert agree(stream, option)[-1][3] is Law.FREE
+    for after in (ticks_of(140), ticks_of(30, held=True) + ticks_of(160)):
+        agreement = Agreement(option, after)
+        for step in INPUTS.values():
+            agreement.agree([*stream, step])
+    agreement = Agreement(option, ticks_of(100))
     for step in INPUTS.values():
-        for after in (ticks_of(140), ticks_of(30, held=True) + ticks_of(160)):
-            agree([*stream, step, *after], option)
-        agree([*stream, *[step] * 40, *ticks_of(100)], option)
+        agreement.agree([*stream, *[step] * 40])
 
 
 STEPS = st.builds(

@@ -85,7 +85,9 @@ class RobotState:
         state = self._cabinet.state
         (high,), (out,) = self._get("actual_digital_input_bits"), self._get("actual_digital_output_bits")
         (a,), (b,) = self._get("standard_analog_output0"), self._get("standard_analog_output1")
-        first = struct.pack(">II2B2d2b2d", int(high), int(out), 1, 1, 0.0, 0.0, 1, 1, a, b)
+        (kinds,) = self._get("analog_io_types")
+        volts = [int(kinds) >> bit & 1 for bit in range(4)]
+        first = struct.pack(">II2B2d2b2d", int(high), int(out), *volts[:2], 0.0, 0.0, *volts[2:], a, b)
         reduced = state.safety_mode is SafetyMode.REDUCED
         safety = (state.safety_mode, reduced, 0, 0, state.operational, 0, 0)
         return first + struct.pack(">4f3BI3B", 30.0, 48.0, 0.5, 0.0, *safety)

@@ -19,6 +19,7 @@ from pendant.events.event import Event, Kind
 from pendant.events.event_row import Effect
 from pendant.inputs import Command, Inputs
 from pendant.program.steps import Program
+from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.arm.scenario import Load
 from sim.exchange.desk import Wishes
@@ -42,14 +43,20 @@ class Listener(Protocol):
         ...
 
 
+AT_MOST = ticks(1.5)
+"""Ticks that a wish waits for the arm to stand still; then the robot says itself that it moves."""
+
+
 @dataclass(slots=True)
 class Ask:
-    """What a client asks the robot for, for one tick."""
+    """What a client asks the robot for, for one tick: the next, or the first in which the arm stands still."""
 
     commands: tuple[Command, ...] = ()
     settings: dict[str, float | bool | str] = field(default_factory=dict)
     program: Program | None = None
     load: Load | None = None
+    standing: bool = False  # a robot takes it only where the arm stands
+    waited: int = 0  # ticks for that
     done: "Future[tuple[Event, ...]]" = field(default_factory=Future)  # the events of that tick
 
 
@@ -88,6 +95,7 @@ class Cabinet:
         self._listeners: tuple[Listener, ...] = ()
         self._acts: list[Act] = []  # to begin with the next tick
         self._timeline = Timeline([], joints)
+        self._static = False  # the arm stood still in the last tick
         self.ticks = 0  # done so far, through resets too
         self.events: list[Event] = []  # of the running simulation
         self._settled = False  # the robot has been brought into remote control
@@ -134,8 +142,11 @@ class Cabinet:
         if tick == 1:
             self._begin()
         with self._lock:
-            self._asked = [ask for ask in self._asks if ask.done.set_running_or_notify_cancel()]
-            self._asks = []
+            ready = [ask for ask in self._asks if self._static or not ask.standing or ask.waited >= AT_MOST]
+            self._asks = [ask for ask in self._asks if not any(ask is each for each in ready)]
+            for ask in self._asks:
+                ask.waited += 1
+            self._asked = [ask for ask in ready if ask.done.set_running_or_notify_cancel()]
             acts, self._acts = self._acts, []
         for act in acts:
             self._timeline.add(act.actions, tick - 1)
@@ -162,6 +173,7 @@ class Cabinet:
     def see(self, tick: int, decision: Decision) -> None:
         """Take in what the robot decided, and tell everybody."""
         self.ticks += 1
+        self._static = decision.static
         listeners = self._listeners
         self._timeline.see(tick, decision)
         self._understand(tick, decision)
@@ -191,7 +203,7 @@ class Cabinet:
         self._timeline = Timeline([], self._joints)
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
         self.events = []
-        self._settled = False
+        self._settled = self._static = False
         self.free_drive_until, self._wanted = 0, False
 
     def _understand(self, tick: int, decision: Decision) -> None:

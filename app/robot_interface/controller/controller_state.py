@@ -51,7 +51,7 @@ class ControllerState:
     forcing: bool = False  # a step pushes with a force
     stopped_at: int = 0  # tick in which the protective stop began
     tick: int = 0
-    idle: bool = False  # drives on, brakes still closed
+    idle: bool = False  # drives on, brakes still closed, or will be once the drives were off
     remote: bool = True  # in remote control
     popup: str = ""  # that is shown
     operational: OperationalMode = OperationalMode.NONE
@@ -64,13 +64,13 @@ class ControllerState:
         before = self.stopped
         self.tick, self.mode, self.safety = tick, decision.mode, decision.safety
         if any(event.kind in SWITCHING_OFF for event in decision.events):
-            self.switched_off = True
+            self.switched_off, self.idle = True, False
         self.switched_off = self.switched_off and decision.mode is Mode.STOP
         if self.stopped and not before:
             self.stopped_at = tick
         self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
         self.forcing = isinstance(decision.move, ApplyForce)
-        self.idle = self.idle and self.off
+        self.idle = self.idle and self.powerless
         if decision.mode in (Mode.TEACH, Mode.NORMAL):
             self.remote = False
         elif decision.mode is Mode.REMOTE:
@@ -87,6 +87,11 @@ class ControllerState:
     def off(self) -> bool:
         """The drives have no power, and no stop is there that has to be unlocked first."""
         return self.law is Law.OFF and self.safety is not Safety.SAFEGUARD_STOP and not self.stopped
+
+    @property
+    def powerless(self) -> bool:
+        """The drives are off, or will be once the arm stands."""
+        return self.off or self.switched_off
 
     @property
     def robot_mode(self) -> RobotMode:

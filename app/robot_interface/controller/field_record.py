@@ -12,6 +12,9 @@ Array = NDArray[np.float64]
 BEGIN = 100.0
 """What the controller's clock shows at the start [s]: clients take one of less than 40 s for a robot that still boots."""
 
+VOLTS = 0b1111
+"""Of `analog_io_types`: inputs 0 and 1, outputs 0 and 1 are volts; a bit that is 0 means amperes."""
+
 
 class FieldRecord:
     """A value for each output field. `put` may be called from any thread; a field is a few bytes and never half old for long."""
@@ -32,6 +35,7 @@ class FieldRecord:
         for name, value in CONSTANTS.items():
             self.put(name, value)
         self.put("timestamp", BEGIN)
+        self.put("analog_io_types", VOLTS)
 
     def put(self, name: str, value: float | Sequence[float] | Array) -> None:
         """Set an output field; KeyError: there is none of this name."""

@@ -10,6 +10,7 @@ from pendant.decision import Decision
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from pendant.tooling.tool_in_use import Fitting
+from sim.arm.chain import load_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.motion.line import rotation_vector
 from sim.simulation import Simulation
@@ -48,7 +49,6 @@ class MeasuredFields:
         put("tcp_force_scalar", math.sqrt(float(force @ force)))
         put("ft_raw_wrench", -estimate.w_sensor)
         put("wrench_calc_from_currents", np.concatenate((estimate.F_joints, (0.0, 0.0, 0.0))))
-        put("speed_scaling", decision.speed)
         put("target_speed_fraction", decision.speed)
 
     def _fill_joints(self, simulation: Simulation, estimate: Estimate, decision: Decision) -> None:
@@ -68,15 +68,15 @@ class MeasuredFields:
         put("actual_current_as_torque", estimate.tau_m)
         put("actual_moment", estimate.tau_J)
         put("joint_temperatures", simulation.plant.temperature)
-        p, R, _ = simulation.dynamics.places(target[0])
-        put("target_TCP_pose", np.concatenate((p + R @ self._tcp, rotation_vector(R @ self._R_FT))))
+        p, R, v, w = simulation.dynamics.flange_motion(target[0], target[1])
+        arm = R @ self._tcp
+        put("target_TCP_pose", np.concatenate((p + arm, rotation_vector(R @ self._R_FT))))
+        put("target_TCP_speed", np.concatenate((v + _cross(w, arm), w)))
 
     def _fill_tool(self, estimate: Estimate, R_BT: Array) -> None:
         put = self._record.put
-        speed = np.concatenate((estimate.tcp[3:], estimate.v_F[3:]))
         put("actual_TCP_pose", np.concatenate((estimate.tcp[:3], rotation_vector(R_BT))))
-        put("actual_TCP_speed", speed)
-        put("target_TCP_speed", speed)
+        put("actual_TCP_speed", np.concatenate((estimate.tcp[3:], estimate.v_F[3:])))
         put("actual_TCP_acceleration", np.concatenate((estimate.a_felt, (0.0, 0.0, 0.0))))
         put("actual_tool_accelerometer", estimate.a_F)
         put("elbow_position", estimate.elbow[:3])
@@ -88,11 +88,11 @@ class MeasuredFields:
         self._tcp, self._R_FT = np.array(tool.tcp), rotation_from_rpy(tool.rpy)
         put = self._record.put
         put("tcp_offset", np.concatenate((self._tcp, rotation_vector(self._R_FT))))
-        mass = tool.mass + fitting.load.mass
-        first = tool.mass * np.array(tool.com) + fitting.load.mass * np.array(fitting.load.com)
-        put("payload", mass)
-        put("payload_cog", first / mass if mass else first)
-        put("payload_inertia", fitting.load.inertia or (0.0,) * 6)
+        body = tool_body(tool) + load_body(fitting.load)
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = body.inertia.tolist()
+        put("payload", body.mass)
+        put("payload_cog", body.com)
+        put("payload_inertia", (xx, yy, zz, xy, xz, yz))
 
 
 def _cross(a: Array, b: Array) -> Array:

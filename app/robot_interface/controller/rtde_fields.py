@@ -92,6 +92,7 @@ INPUTS: dict[str, str] = {
 """What a client may set. Registers that are read back have the same name in both tables."""
 
 CONSTANTS: dict[str, float | tuple[float, ...]] = {
+    "speed_scaling": 1.0,  # of a UR's trajectory limiter; the slider is target_speed_fraction
     "actual_execution_time": 0.3,  # [ms]
     "target_execution_time": 0.3,
     "actual_current_window": (0.0,) * 6,
@@ -123,7 +124,6 @@ CONSTANTS: dict[str, float | tuple[float, ...]] = {
     "encoder1_raw": 0,
     "tool_output_voltage": 0,
     "time_scale_source": 0,
-    "analog_io_types": 0b1111,  # all of them volts
     "tool_analog_input_types": 0b11,
     "tool_mode": 253,  # running
     "tool_output_mode": 0,

@@ -14,8 +14,7 @@ REMAINING = "output_double_register_24"
 
 PHASES = list(Phase)
 PHASE = "output_int_register_24"
-"""The phase of free-drive, by its place in docs/reference/clients.md."""
-
+"""The phase of free-drive, by its place in docs/guide/robot-on-the-network.md."""
 
 TOOL_OUTPUT = 1 << 16
 """The tool's first digital output, which a program switches (CD-15)."""
@@ -84,3 +83,12 @@ def set_outputs(record: FieldRecord, mask: int, bits: int) -> None:
     now = (before & ~mask) | (bits & mask)
     record.put("actual_digital_output_bits", now)
     record.put("actual_configurable_digital_output_bits", now >> 8 & 0xFF)
+
+
+def set_analog_output(record: FieldRecord, number: int, share: float, *, volts: bool) -> None:
+    """Set analog output 0 or 1 to a share of its span, 0 to 10 V or 4 to 20 mA, which is told in volts or amperes."""
+    kinds, bit = record.get("analog_io_types"), 1 << number + 2
+    assert isinstance(kinds, int)
+    share = min(max(share, 0.0), 1.0)
+    record.put("analog_io_types", kinds | bit if volts else kinds & ~bit)
+    record.put(f"standard_analog_output{number}", 10.0 * share if volts else 0.004 + 0.016 * share)

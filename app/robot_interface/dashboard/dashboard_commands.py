@@ -139,7 +139,7 @@ class DashboardCommands:
         kind = Kind.PROGRAM_RESUMED if paused else Kind.PROGRAM_STARTED
         if state.robot_mode is not RobotMode.RUNNING:
             return "Failed to execute: play"
-        return _when(Ask((command,)), kind, "Starting program", "Failed to execute: play")
+        return _when(Ask((command,), standing=True), kind, "Starting program", "Failed to execute: play")
 
     def _stop(self) -> Answer:
         if self._cabinet.state.runtime is RuntimeState.STOPPED:
@@ -151,7 +151,7 @@ class DashboardCommands:
 
     def _power_on(self) -> Answer:
         state = self._cabinet.state
-        if state.off and state.safety_mode in READY:
+        if state.powerless and state.safety_mode in READY:
             state.idle = True
         return "Powering on"
 
@@ -161,8 +161,8 @@ class DashboardCommands:
 
     def _release_brakes(self) -> Answer:
         state = self._cabinet.state
-        if state.off and state.safety_mode in READY:
-            return Pending(Ask((Command.RESET,)), lambda events: "Brake releasing")
+        if state.powerless and state.safety_mode in READY:
+            return Pending(Ask((Command.RESET,), standing=True), lambda events: "Brake releasing")
         return "Brake releasing"
 
     def _unlock(self) -> Answer:
@@ -171,7 +171,7 @@ class DashboardCommands:
             return "Protective stop releasing"
         if state.locked_for > 0.0:
             return LOCKED
-        return Pending(Ask((Command.RESET,)), lambda events: "Protective stop releasing")
+        return Pending(Ask((Command.RESET,), standing=True), lambda events: "Protective stop releasing")
 
     def _restart_safety(self) -> Answer:
         self._cabinet.state.idle = False

@@ -6,8 +6,9 @@ import threading
 from collections.abc import Sequence
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.field_record import VOLTS
 from app.robot_interface.controller.rtde_fields import INPUTS, OUTPUTS
-from app.robot_interface.controller.status_fields import set_outputs
+from app.robot_interface.controller.status_fields import set_analog_output, set_outputs
 from app.robot_interface.rtde.rtde_messages import Malformed
 from pendant.settings.schema import ticks
 
@@ -98,10 +99,12 @@ class RtdeInputs:
             mask = int(_one(values, f"{name}_mask")) & ((1 << count) - 1)
             if mask:
                 set_outputs(self._cabinet.record, mask << first, int(_one(values, name)) << first)
-        mask = int(_one(values, "standard_analog_output_mask"))
+        mask, kinds = int(_one(values, "standard_analog_output_mask")), "standard_analog_output_type"
+        volts = int(_one(values, kinds)) if kinds in values else VOLTS
         for i in (0, 1):
             if mask >> i & 1:
-                put(f"standard_analog_output{i}", min(max(_one(values, f"standard_analog_output_{i}"), 0.0), 1.0))
+                share = _one(values, f"standard_analog_output_{i}")
+                set_analog_output(self._cabinet.record, i, share, volts=bool(volts >> i & 1))
         if _one(values, "speed_slider_mask"):
             share = min(max(_one(values, "speed_slider_fraction"), 0.0), 1.0)
             self._cabinet.ask(Ask(settings={"program.speed": share}))

@@ -204,13 +204,14 @@ def test_outputs_change_where_the_mask_says(cell: Cell, name: str, mask: int, va
     assert cell.robot.cabinet.record.get("actual_digital_output_bits") == 0
 
 
-def test_analog_outputs_are_ratios_and_stay_in_their_range(cell: Cell) -> None:
+def test_analog_outputs_are_set_as_ratios_stay_in_their_range_and_are_told_in_volts_or_amperes(cell: Cell) -> None:
     client, get = cell.client(), cell.robot.cabinet.record.get
     client.say("I", b"standard_analog_output_mask,standard_analog_output_type,standard_analog_output_0,standard_analog_output_1")
     client.say("U", struct.pack(">BBBdd", 1, 1, 3, 0.25, 0.75))
-    assert (get("standard_analog_output0"), get("standard_analog_output1")) == (0.25, 0.0)
-    client.say("U", struct.pack(">BBBdd", 1, 2, 3, 0.5, 7.0))
-    assert (get("standard_analog_output0"), get("standard_analog_output1")) == (0.25, 1.0)
+    assert (get("standard_analog_output0"), get("standard_analog_output1")) == (2.5, 0.0)
+    client.say("U", struct.pack(">BBBdd", 1, 2, 1, 0.5, 7.0))
+    assert (get("standard_analog_output0"), get("standard_analog_output1")) == (2.5, 0.020)
+    assert get("analog_io_types") == 0b0111
 
 
 @pytest.mark.parametrize(("mask", "share", "speed"), [(1, 0.5, 0.5), (1, 7.0, 1.0), (1, -3.0, 0.0), (0, 0.5, 1.0)])
