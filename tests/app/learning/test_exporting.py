@@ -10,7 +10,7 @@ def test_a_process_of_its_own_exports_beside_the_recording(tmp_path: Path, monke
     exporting = Exporting()
     assert not exporting.on
     exporting.start(tmp_path / "recording-1.mcap")
-    until(lambda: not exporting.on, "it has ended")
+    until(lambda: not exporting.on, "it has ended", seconds=60.0)
     folder = tmp_path / "recording-1-demonstrations"
     assert exporting.folder == folder
     assert not exporting.failed
@@ -24,7 +24,7 @@ def test_a_process_of_its_own_exports_beside_the_recording(tmp_path: Path, monke
 def test_what_cannot_be_exported_is_told(tmp_path: Path) -> None:
     exporting = Exporting()
     exporting.start(tmp_path / "gone.mcap")
-    until(lambda: not exporting.on, "it has ended")
+    until(lambda: not exporting.on, "it has ended", seconds=60.0)
     assert exporting.failed
     assert exporting.told.endswith("gone.mcap: cannot be read (No such file or directory)")
 

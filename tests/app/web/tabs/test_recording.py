@@ -60,7 +60,7 @@ def test_the_last_recording_is_exported_on_a_click(
     client.set(tab.export._impl.uuid, value=True)
     assert served.recording.path is not None
     name = served.recording.path.name
-    until(lambda: f"2 demonstrations of {name}" in tab.exported.shown, "what became of it is told")
+    until(lambda: f"2 demonstrations of {name}" in tab.exported.shown, "what became of it is told", seconds=60.0)
 
 
 def test_an_export_that_fails_says_why(served: Served, join: Join, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -69,7 +69,9 @@ def test_an_export_that_fails_says_why(served: Served, join: Join, tmp_path: Pat
     served.recording.path = tmp_path / "recording-1.mcap"
     until(lambda: not tab.export.disabled, "it can be exported")
     client.set(tab.export._impl.uuid, value=True)
-    until(lambda: "Not exported" in tab.exported.shown and "nobody led the arm" in tab.exported.shown, "it says why")
+    until(
+        lambda: "Not exported" in tab.exported.shown and "nobody led the arm" in tab.exported.shown, "it says why", seconds=60.0
+    )
 
 
 def test_a_recording_that_ends_by_itself_says_why_and_switches_off(served: Served, join: Join) -> None:
