@@ -131,7 +131,7 @@ def run(
     any_file: AnyFile = False,
 ) -> None:
     """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
-    from app.runs.batch import Job, run_all, work
+    from app.runs.jobs import Job, run_all, work
     from app.runs.junit import write as write_junit
     from app.runs.progress import counting, progress, show, show_all
 
@@ -145,7 +145,8 @@ def run(
         )
         prepare(content, path.name)
         jobs.append(Job(path.name, content, out if len(paths) == 1 else out / path.stem, realtime))
-    if len({job.out for job in jobs}) < len(jobs):
+    folders = [out if len(paths) == 1 else out / path.stem for path in paths]
+    if len(set(folders)) < len(folders):
         raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
     if len(jobs) == 1:
         with progress(jobs[0].session) as advance:
@@ -158,7 +159,7 @@ def run(
                 found[place] = outcome
                 told(len(found), len(jobs))
         outcomes = [found[place] for place in range(len(jobs))]
-        show_all([job.out.name for job in jobs], outcomes, out)
+        show_all([folder.name for folder in folders], outcomes, out)
     if junit is not None:
         write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
     if not all(outcome.passed for outcome in outcomes):

@@ -9,7 +9,7 @@ import pytest
 
 from app import cli
 from app.files.checked import BadInput, convert, load
-from app.runs.batch import Job, run_all
+from app.runs.jobs import Job, run_all
 from app.runs.junit import junit, write
 from app.runs.runner import RunOutcome
 from app.session.expectation_watch import Verdict
