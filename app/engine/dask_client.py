@@ -85,7 +85,9 @@ def check(client: Any) -> None:
     for address, found in client.run(identity, on_error="return").items():
         if isinstance(found, Exception):
             client.close()
-            raise BadInput(f"worker {address}", "", ABSENT, f"cannot import this version of pendant ({type(found).__name__}: {found})")
+            raise BadInput(
+                f"worker {address}", "", ABSENT, f"cannot import this version of pendant ({type(found).__name__}: {found})"
+            )
         compare(found, f"worker {address}")
 
 
