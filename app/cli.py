@@ -33,6 +33,7 @@ from app.files.library import load_arm, robots
 from app.session.prepare import prepare
 from app.session.session_file import Session, Setup, find, find_all, opened
 from app.session.timeline_checks import Prepared
+from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
 
 # Usage errors, whichever click typer was built on: the base of the one that typer exports.
@@ -164,6 +165,9 @@ def run(
         write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
     if not all(outcome.passed for outcome in outcomes):
         raise typer.Exit(1)
+
+
+app.command("sweep", epilog=example(*SWEEP_EXAMPLES))(sweep_)
 
 
 @app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))

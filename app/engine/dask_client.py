@@ -39,11 +39,11 @@ def connect(workers: int, scheduler: str | None) -> Any:
     Raises:
         BadInput: nobody answers there, or a worker runs something else.
     """
-    import dask
+    from dask import config
     from distributed import Client, LocalCluster
 
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    dask.config.set(CONFIG)
+    config.set(CONFIG)
     if scheduler is not None:
         client = _remote(scheduler)
         check(client)

@@ -1,4 +1,4 @@
-"""Which source runs: versions, commit and a digest over all files of the product, by which machines know that they compute the same."""
+"""Which source runs: versions, commit, and a digest over all files of the product, by which machines know it."""
 
 import functools
 import hashlib

@@ -79,63 +79,59 @@ class _Spreading:
         self._said_dashboard()
 
     def run(self, items: Iterator[tuple[int, T]], lost: Callable[[T], R] | None) -> Iterator[tuple[int, R]]:
+        under_way: dict[int, T] = {}
+        lives: dict[int, int] = {}
+        self._begin(under_way)
+        while True:
+            self._fill(items, under_way)
+            if not under_way:
+                return
+            future = next(self._ready)
+            place = self._places.pop(future)
+            if future.status in ("cancelled", "lost"):  # with the scheduler
+                self._reconnect()
+                self._begin(under_way)
+                continue
+            try:
+                result = self._result(future, under_way[place], lost, lives.setdefault(place, LIVES))
+            except Lost:
+                lives[place] -= 1
+                self._give(place, under_way[place])
+                continue
+            del under_way[place]
+            lives.pop(place)
+            yield place, result
+
+    def _begin(self, under_way: dict[int, T]) -> None:
         from distributed import as_completed
 
-        under_way: dict[int, T] = {}
-        again: dict[int, int] = {}
-        while True:
-            futures: dict[Any, int] = {}
-            ready = as_completed(loop=self._client.loop)
+        self._places: dict[Any, int] = {}
+        self._ready = as_completed(loop=self._client.loop)
+        for place, item in under_way.items():
+            self._give(place, item)
 
-            def give(place: int, item: T) -> None:
-                future = self._client.submit(guarded, self._ours, self._work, item, pure=False, retries=0)
-                futures[future] = place
-                ready.add(future)
+    def _give(self, place: int, item: T) -> None:
+        future = self._client.submit(guarded, self._ours, self._work, item, pure=False)
+        self._places[future] = place
+        self._ready.add(future)
 
-            for place, item in under_way.items():
-                give(place, item)
-            self._fill(items, under_way, give)
-            gone = False
-            while under_way:
-                future = next(ready)
-                place = futures.pop(future)
-                if future.status in ("cancelled", "lost"):
-                    gone = True
-                    break
-                try:
-                    result = self._result(future, under_way[place], lost, place, again)
-                except Lost:
-                    give(place, under_way[place])
-                    continue
-                future.release()
-                del under_way[place]
-                self._fill(items, under_way, give)
-                yield place, result
-            if not gone:
-                return
-            self._reconnect()
+    def _fill(self, items: Iterator[tuple[int, T]], under_way: dict[int, T]) -> None:
+        room = AHEAD * self._threads() - len(under_way)
+        for place, item in islice(items, max(0, room)):
+            under_way[place] = item
+            self._give(place, item)
 
-    def _result(self, future: Any, item: T, lost: Callable[[T], R] | None, place: int, again: dict[int, int]) -> R:
+    def _result(self, future: Any, item: T, lost: Callable[[T], R] | None, lives: int) -> R:
         from distributed import KilledWorker
 
         try:
             return future.result(timeout=PATIENCE)
         except KilledWorker:
-            again[place] = again.get(place, 0) + 1
-            if again[place] < LIVES:
+            if lives > 1:
                 raise Lost from None
             if lost is None:
-                raise BadInput("workers", "", ABSENT, f"died each time that they did piece {place}") from None
+                raise BadInput("workers", "", ABSENT, "died each time that they did a piece of the work") from None
             return lost(item)
-
-    def _fill(self, items: Iterator[tuple[int, T]], under_way: dict[int, T], give: Callable[[int, T], None]) -> None:
-        room = AHEAD * self._threads()
-        while len(under_way) < room:
-            found = next(items, None)
-            if found is None:
-                return
-            under_way[found[0]] = found[1]
-            give(*found)
 
     def _threads(self) -> int:
         if self._scheduler is None:

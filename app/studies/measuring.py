@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 
 from app.log.reader import Log
-from app.session.measures import ValueWatch
 from app.session.expectations import Value
+from app.session.measures import ValueWatch
 from app.session.parts import point_of
 from app.session.triggers import Trigger
 from app.studies.study_measures import (

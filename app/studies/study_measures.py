@@ -3,7 +3,6 @@
 import fnmatch
 from typing import Annotated, Literal
 
-import msgspec
 from msgspec import Meta
 
 from app.log.layout import STATE, TRUTH
@@ -17,7 +16,7 @@ Statistic = Literal["largest", "smallest", "mean", "rms", "last"]
 
 
 class Measure(During, frozen=True, kw_only=True):
-    """Base of all measures: a number, or true or false, or nothing where a run has none. `after`, `from` and `to` as in expectations."""
+    """Base of all measures: a number, true or false, or nothing where a run has none. Its interval is as in expectations."""
 
     name: Name
     unit: Text = ""

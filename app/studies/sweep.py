@@ -13,10 +13,11 @@ from app.engine.spreading import spread
 from app.files.bad_input import ABSENT, BadInput
 from app.session.session_file import Session
 from app.studies.data_set import done, whole_file, write_data_set
-from app.studies.row_journal import RowJournal, rows
 from app.studies.one_run import Common, Outcome, Task, died, run_case
 from app.studies.plan import Case, Plan, changed_field, described
+from app.studies.row_journal import RowJournal, rows
 from app.studies.study_file import Study
+from app.studies.study_report import write_study_report
 
 Told = Callable[[int, int], None]
 
@@ -24,8 +25,11 @@ Told = Callable[[int, int], None]
 class Workers(NamedTuple):
     """Who does the runs."""
 
-    count: int | None = None  # processes of this machine; None: one a core
+    processes: int | None = None  # processes of this machine; None: one a core
     scheduler: str | None = None  # address of a Dask scheduler in their place
+
+
+EVERY_CORE = Workers()
 
 
 class Swept(NamedTuple):
@@ -34,6 +38,7 @@ class Swept(NamedTuple):
     runs: int  # of the study
     kept: int  # rows that were there before
     made: int  # rows made now
+    failed: int  # rows with an error
 
 
 def sweep(
@@ -41,7 +46,7 @@ def sweep(
     base: Session,
     out: Path,
     where: str,
-    workers: Workers = Workers(),
+    workers: Workers = EVERY_CORE,
     told: Told = lambda done, of: None,
     said: Callable[[str], None] = lambda line: None,
 ) -> Swept:
@@ -71,7 +76,7 @@ def sweep(
                 common = msgspec.json.encode(Common(msgspec.to_builtins(base), study.measures))
                 tasks = (Task(case, common) for case in plan.cases() if not there[case.number])
                 for _, outcome in spread(
-                    run_case, tasks, workers=workers.count, scheduler=workers.scheduler, lost=died, told=said
+                    run_case, tasks, workers=workers.processes, scheduler=workers.scheduler, lost=died, told=said
                 ):
                     journal.append(row_of(study, outcome))
                     made += 1
@@ -81,7 +86,8 @@ def sweep(
                 settle(study, out)
             raise
         settle(study, out)
-    return Swept(plan.size, kept, made)
+        failed = write_study_report(plan, out, out / "rows")
+    return Swept(plan.size, kept, made, failed)
 
 
 def begun(plan: Plan, out: Path) -> bytearray:
