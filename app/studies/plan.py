@@ -44,7 +44,7 @@ class Plan:
 
     def __init__(self, study: Study, base: Session, where: str) -> None:
         self.study, self.base = study, base
-        self._raw: dict[str, Any] = msgspec.to_builtins(base)
+        self.raw = plain(base)  # of the base session
         self._points = [(each.points(), each.shown()) if isinstance(each, Gridded) else None for each in study.factors]
         self._grid = math.prod(len(each[0]) for each in self._points if each is not None)
         self._samples = self._drawn()
@@ -72,7 +72,7 @@ class Plan:
 
     def _key(self) -> str:
         """What every row of the study depends on besides its factors and its seed."""
-        content = [msgspec.to_builtins(self.study.factors), msgspec.to_builtins(self.study.measures), self._raw]
+        content = [self.study.factors, self.study.measures, self.raw]
         content += [self.study.samples, self.study.sampling, self.study.seeds, source_digest()]
         return hashlib.sha256(msgspec.json.encode(content, order="sorted")).hexdigest()
 
@@ -114,7 +114,12 @@ class Plan:
             else:
                 tried = points[0][:CHECKED]
             for value in tried:
-                session_of(self._raw, [(field, value) for field in factor.fields], self.base.seed, f"{where}: factors[{i}]")
+                session_of(self.raw, [(field, value) for field in factor.fields], self.base.seed, f"{where}: factors[{i}]")
+
+
+def plain(value: Any) -> Any:
+    """As a file has it: dicts, lists, numbers, texts."""
+    return msgspec.json.decode(msgspec.json.encode(value))
 
 
 def session_of(raw: dict[str, Any], values: Any, seed: int, where: str) -> Session:
@@ -138,8 +143,7 @@ def session_of(raw: dict[str, Any], values: Any, seed: int, where: str) -> Sessi
 
 def described(plan: Plan) -> dict[str, Any]:
     """What study.json says, by which a study is known again."""
-    content = msgspec.to_builtins(plan.study)
-    content["session"] = msgspec.to_builtins(plan.base)
+    content = plain(plan.study) | {"session": plan.raw}
     return {"runs": plan.size, "digest": source_digest(), "study": content}
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -16,7 +17,10 @@ from app.studies.study_statistics import Index, Point, RocPoint, area
 COLOURS = ("#1971c2", "#e8590c", "#2f9e44", "#9c36b5", "#c92a2a", "#0c8599", "#f08c00", "#495057")
 MARKS = "osD^vP*X"
 SPREAD = 20.0
-"""A factor whose values span more than this is drawn on a logarithmic scale."""
+"""What spans more than this is drawn on a logarithmic scale."""
+
+NAMED = 0.2
+"""Room left of a chart for names, as a share of its width."""
 
 
 def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool, by: str = "") -> Figure:
@@ -38,7 +42,7 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
         mean, low, high = (factor * np.array([getattr(point, each) for point in seen]) for each in ("mean", "low", "high"))
         colour = COLOURS[k % len(COLOURS)]
         axes.plot(at, mean, color=colour, marker=MARKS[k % len(MARKS)], markersize=3.5, linewidth=1.2, label=name or None)
-        axes.fill_between(at, low, high, color=colour, alpha=0.16, linewidth=0)
+        axes.fill_between(at, low, high, color=colour, alpha=0.16 if len(lines) < 4 else 0.07, linewidth=0)
     axes.set_xlabel(x, fontsize=7.5)
     axes.set_ylabel(f"{y} [% of runs]" if share else y, fontsize=7.5)
     if share:
@@ -54,20 +58,26 @@ def heat_map(
     """Means over two factors; `names` of the row's factor, the column's, and the measure."""
     figure, axes = empty_axes(max(2.2, 1.1 + 0.24 * len(down)))
     values = 100.0 * table if share else table
-    picture = axes.imshow(
-        values, aspect="auto", origin="lower", cmap="viridis", vmin=0.0 if share else None, vmax=100.0 if share else None
+    low, high = (float(np.nanmin(values)), float(np.nanmax(values))) if np.isfinite(values).any() else (0.0, 1.0)
+    scale = (
+        LogNorm(low, high)
+        if not share and low > 0.0 and high / low > SPREAD
+        else Normalize(*((0.0, 100.0) if share else (low, high)))
     )
+    picture = axes.imshow(values, aspect="auto", origin="lower", cmap="viridis", norm=scale)
     axes.grid(False)
     axes.set_xticks(range(len(across)), [_short(value) for value in across], fontsize=7)
     axes.set_yticks(range(len(down)), [_short(value) for value in down], fontsize=7)
     axes.set_ylabel(names[0], fontsize=7.5)
     axes.set_xlabel(names[1], fontsize=7.5)
     if values.size <= 150:
-        middle = (np.nanmin(values) + np.nanmax(values)) / 2 if np.isfinite(values).any() else 0.0
         for (i, k), value in np.ndenumerate(values):
             text = "-" if math.isnan(value) else f"{value:.3g}"
-            axes.text(k, i, text, ha="center", va="center", fontsize=6.5, color="white" if not value > middle else INK)
-    bar = figure.colorbar(picture, ax=axes, pad=0.02, fraction=0.04)
+            axes.text(k, i, text, ha="center", va="center", fontsize=6.5, color=INK if scale(value) > 0.5 else "white")
+    left, bottom, width, top = axes.get_position().bounds
+    beside = left if not isinstance(down[0], str) else NAMED
+    axes.set_position((beside, bottom, left + width - beside - 0.1, top))
+    bar = figure.colorbar(picture, cax=figure.add_axes((0.915, bottom, 0.018, top)))
     bar.ax.tick_params(labelsize=6.5)
     bar.set_label(f"{names[2]} [% of runs]" if share else names[2], fontsize=7)
     return figure
@@ -114,8 +124,9 @@ def sensitivity(found: Mapping[str, Sequence[Index]]) -> Figure:
     axes.set_xlim(left=min(0.0, axes.get_xlim()[0]))
     axes.invert_yaxis()
     if len(found) > 1:
-        axes.legend(fontsize=7, frameon=False)
-    figure.subplots_adjust(left=0.16)
+        axes.legend(fontsize=7, frameon=False, loc="lower right")
+    _, bottom, _, top = axes.get_position().bounds
+    axes.set_position((NAMED, bottom, 0.98 - NAMED, top))
     return figure
 
 

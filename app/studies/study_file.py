@@ -51,7 +51,7 @@ class HeatMap(Shown, tag="heat_map", frozen=True, kw_only=True):
 class Roc(Shown, tag="roc", frozen=True, kw_only=True):
     """True refusals against false ones: a point for each value of `over`, the limit.
 
-    A run ought to be refused when the size of `right` less `zero`, a factor, is at least `at_least`; up to `at_most` it ought not.
+    A run ought to be refused when the size of factor `right` less `zero` is at least `at_least`; up to `at_most` not.
     """
 
     over: Name

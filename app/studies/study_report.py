@@ -15,7 +15,7 @@ from app.engine.source import identity, source_commit
 from app.report.document import Raw, document, mark, table
 from app.report.drawing import svg_of
 from app.studies.data_set import read_data_set, whole_file
-from app.studies.plan import Plan, session_of
+from app.studies.plan import Plan, plain, session_of
 from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity
 from app.studies.study_file import AnyShown, Curve, HeatMap, Roc, Sensitivity, Study
 from app.studies.study_statistics import Index, curve, first_order, levels, pivot, roc, worst
@@ -143,9 +143,9 @@ def _as_session(plan: Plan, values: Any, seed: int) -> bytes:
     """The run as a session file; one that cannot be made is written as far as it goes, for `pendant run` says what is wrong."""
     from app.files.bad_input import BadInput
 
-    raw: dict[str, Any] = msgspec.to_builtins(plan.base)
+    raw = plain(plan.base)
     try:
-        raw = msgspec.to_builtins(session_of(raw, values, seed, "session"))
+        raw = plain(session_of(raw, values, seed, "session"))
     except BadInput:
         from app.studies.factors import put
 

@@ -19,7 +19,7 @@ LEAST_RUNS = 64
 """Runs below which first-order indices are noise."""
 
 HARMONICS = 10
-"""Of RBD-FAST: M in SALib; its index needs more than 2 M + 1 runs."""
+"""Of RBD-FAST at most, M in SALib: M of them need more than 4 M^2 runs (Saltelli, Tarantola and Chan 1999)."""
 
 
 class Point(NamedTuple):
@@ -131,6 +131,8 @@ def first_order(columns: dict[str, NDArray[Any]], y: Array) -> list[Index] | Non
         return None
     from SALib.analyze import rbd_fast
 
+    harmonics = min(HARMONICS, math.isqrt((len(y) - 1) // 4))
+
     order = np.random.default_rng(0).permutation(len(y))  # runs of one value come in the order of the plan, which is no chance
     x = np.column_stack([values[order] for values in numbers.values()])
     problem = {
@@ -138,7 +140,7 @@ def first_order(columns: dict[str, NDArray[Any]], y: Array) -> list[Index] | Non
         "names": list(numbers),
         "bounds": [[0.0, float(each.max())] for each in numbers.values()],
     }
-    found = rbd_fast.analyze(problem, x, y[order], M=HARMONICS, num_resamples=30, seed=1)
+    found = rbd_fast.analyze(problem, x, y[order], M=harmonics, num_resamples=30, seed=1)
     values = zip(found["names"], found["S1"], found["S1_conf"], strict=True)
     return sorted((Index(name, float(s), float(c)) for name, s, c in values), key=lambda each: -each.first_order)
 

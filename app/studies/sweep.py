@@ -73,7 +73,7 @@ def sweep(
         made = 0
         try:
             with RowJournal(out / "journal") as journal:
-                common = msgspec.json.encode(Common(msgspec.to_builtins(base), study.measures))
+                common = msgspec.json.encode(Common(plan.raw, study.measures))
                 tasks = (Task(case, common) for case in plan.cases() if not there[case.number])
                 for _, outcome in spread(
                     run_case, tasks, workers=workers.processes, scheduler=workers.scheduler, lost=died, told=said
@@ -97,7 +97,6 @@ def begun(plan: Plan, out: Path) -> bytearray:
         BadInput: the folder holds another study.
     """
     path, ours = out / "study.json", described(plan)
-    ours = msgspec.json.decode(msgspec.json.encode(ours))
     if path.is_file():
         theirs = msgspec.json.decode(path.read_bytes())
         field = changed_field(theirs, ours)
