@@ -146,8 +146,7 @@ def run(
         )
         prepare(content, path.name)
         jobs.append(Job(path.name, content, out if len(paths) == 1 else out / path.stem, realtime))
-    folders = [out if len(paths) == 1 else out / path.stem for path in paths]
-    if len(set(folders)) < len(folders):
+    if len({job.out for job in jobs}) < len(jobs):
         raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
     if len(jobs) == 1:
         with progress(jobs[0].session) as advance:
@@ -160,7 +159,7 @@ def run(
                 found[place] = outcome
                 told(len(found), len(jobs))
         outcomes = [found[place] for place in range(len(jobs))]
-        show_all([folder.name for folder in folders], outcomes, out)
+        show_all([path.stem for path in paths], outcomes, out)
     if junit is not None:
         write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
     if not all(outcome.passed for outcome in outcomes):

@@ -47,10 +47,10 @@ def sweep_(
                 content,
                 base,
                 folder,
-                Path(study).name,
-                Workers(workers, scheduler),
-                told,
-                lambda line: console.print(escape(line)),
+                where=Path(study).name,
+                workers=Workers(workers, scheduler),
+                told=told,
+                said=lambda line: console.print(escape(line)),
             )
     except KeyboardInterrupt:
         console.print("Stopped. What is done is kept; the same command goes on.")

@@ -24,7 +24,7 @@ from app.runs.runner import run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
 from app.studies.data_set import parts, read_data_set, write_data_set
-from app.studies.one_run import Outcome
+from app.studies.one_run import CaseOutcome
 from app.studies.plan import Plan
 from app.studies.row_journal import rows, sealed
 from app.studies.study_file import Study, open_study
@@ -338,7 +338,7 @@ def large(report: Report, folder: Path) -> None:
     report.row("100 000 rows: plan", planned := time.perf_counter() - start, "s")
     with (out / "journal").open("wb") as file:
         for case in plan.cases():
-            outcome = Outcome(case, (float(rng.uniform()), bool(rng.uniform() < 0.5)), "ok")
+            outcome = CaseOutcome(case, (float(rng.uniform()), bool(rng.uniform() < 0.5)), "ok")
             file.write(sealed(msgspec.json.encode(row_of(study, outcome))))
     start = time.perf_counter()
     there = begun(plan, out)

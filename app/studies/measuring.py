@@ -2,12 +2,10 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import mujoco
 import numpy as np
 
-from app.log.reader import Log
 from app.session.expectations import Value
 from app.session.measures import ValueWatch
 from app.session.parts import point_of
@@ -19,14 +17,14 @@ from app.studies.study_measures import (
     EventCount,
     EventTime,
     HasHappened,
-    Measure,
     OfKinds,
     OfLog,
     Passed,
     PeriodLength,
     QuantityStatistic,
     Statistic,
-    Way,
+    StudyMeasure,
+    WayMeasure,
 )
 from pendant.decision import Decision
 from pendant.settings.schema import ticks
@@ -71,7 +69,7 @@ class Total:
 class Taker:
     """Base: one measure, followed through a run."""
 
-    def __init__(self, measure: Measure) -> None:
+    def __init__(self, measure: StudyMeasure) -> None:
         self._trigger = Trigger(measure.after, measure.nth)
         self._begin = ticks(measure.begin)
         self._end = None if measure.end is None else ticks(measure.end)
@@ -152,7 +150,7 @@ class _Passing(ValueWatch):
 class WayTaker(Taker):
     """Takes a displacement."""
 
-    def __init__(self, measure: Way, simulation: Simulation) -> None:
+    def __init__(self, measure: WayMeasure, simulation: Simulation) -> None:
         super().__init__(measure)
         self._measure, self._glance, self._joints = measure, simulation.glance, list(simulation.arm.chain.joints)
         self._place: np.ndarray | None = None
@@ -245,7 +243,7 @@ def taker(measure: AnyMeasure, simulation: Simulation) -> Taker | None:
             return EventsTaker(measure)
         case QuantityStatistic():
             return QuantityTaker(measure, simulation)
-        case Way():
+        case WayMeasure():
             return WayTaker(measure, simulation)
         case PeriodLength():
             return PeriodTaker(measure)
@@ -253,39 +251,3 @@ def taker(measure: AnyMeasure, simulation: Simulation) -> Taker | None:
             return ContactTaker(measure, simulation)
         case Passed() | OfLog():
             return None
-
-
-def of_log(measure: OfLog, log: Log) -> float | None:
-    """A statistic of a recorded array."""
-    trigger = Trigger(measure.after, measure.nth)
-    start = 0 if measure.after is None else _moment(trigger, log)
-    if start is None:
-        return None
-    kind, _, name = measure.of.partition(".")
-    values: np.ndarray[Any, Any] = (log.state if kind == "state" else log.truth)[name]
-    if values.ndim > 1:
-        if measure.index is None:
-            values = np.linalg.norm(values, axis=1)
-        elif measure.index < values.shape[1]:
-            values = values[:, measure.index]
-        else:
-            return None
-    begin, end = start + ticks(measure.begin), math.inf if measure.end is None else start + ticks(measure.end)
-    total = Total(measure.statistic)
-    for value in values[(log.ticks >= begin) & (log.ticks <= end)].tolist():
-        if math.isfinite(value):
-            total.add(value)
-    return total.value()
-
-
-def _moment(trigger: Trigger, log: Log) -> int | None:
-    """The tick of what `after` names, from a recording's codes and events."""
-    from app.log.layout import WORDS
-
-    word, _, name = str(trigger.after).partition(" ")
-    if word == "event":
-        found = [round(event.t / TICK) for event in log.events if event.kind == name]
-    else:
-        now = np.array(log.state[word]) == WORDS[word].index(name)
-        found = log.ticks[now & ~np.concatenate([[False], now[:-1]])].tolist()
-    return int(found[trigger.nth - 1]) if len(found) >= trigger.nth else None

@@ -53,7 +53,7 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
 
 
 def heat_map(
-    down: Sequence[float | str], across: Sequence[float | str], table: NDArray[np.float64], names: Sequence[str], share: bool
+    down: Sequence[float | str], across: Sequence[float | str], table: NDArray[np.float64], names: Sequence[str], *, share: bool
 ) -> Figure:
     """Means over two factors; `names` of the row's factor, the column's, and the measure."""
     figure, axes = empty_axes(max(2.2, 1.1 + 0.24 * len(down)))

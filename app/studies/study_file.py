@@ -27,7 +27,7 @@ class Shown(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         return []
 
 
-class Curve(Shown, tag="curve", frozen=True, kw_only=True):
+class ResponseCurve(Shown, tag="curve", frozen=True, kw_only=True):
     """A measure's mean over a factor, with a confidence band; a line for each value of `by`."""
 
     over: Name
@@ -74,7 +74,7 @@ class Sensitivity(Shown, tag="sensitivity", frozen=True, kw_only=True):
     """How much of a measure's variance each factor explains by itself (first-order index, RBD-FAST)."""
 
 
-AnyShown = Curve | HeatMap | Roc | Sensitivity
+AnyShown = ResponseCurve | HeatMap | Roc | Sensitivity
 
 
 class Worst(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

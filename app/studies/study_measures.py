@@ -15,7 +15,7 @@ from sim.arm.scenario import Vector
 Statistic = Literal["largest", "smallest", "mean", "rms", "last"]
 
 
-class Measure(During, frozen=True, kw_only=True):
+class StudyMeasure(During, frozen=True, kw_only=True):
     """Base of all measures: a number, true or false, or nothing where a run has none. Its interval is as in expectations."""
 
     name: Name
@@ -27,7 +27,7 @@ class Measure(During, frozen=True, kw_only=True):
         return False
 
 
-class OfKinds(Measure, frozen=True, kw_only=True):
+class OfKinds(StudyMeasure, frozen=True, kw_only=True):
     """Base of measures of events: of some kinds, by name or by pattern (`refused_*`)."""
 
     kinds: Annotated[list[Text], Meta(min_length=1, max_length=50)]
@@ -49,7 +49,7 @@ class HasHappened(OfKinds, tag="happens", tag_field="measure", frozen=True, kw_o
 
     @property
     def shares(self) -> bool:
-        """See `Measure.shares`."""
+        """See `StudyMeasure.shares`."""
         return True
 
 
@@ -61,7 +61,7 @@ class EventTime(OfKinds, tag="time", tag_field="measure", frozen=True, kw_only=T
     """When the first such event happens [s], counted from `after`."""
 
 
-class QuantityStatistic(Measure, tag="value", tag_field="measure", frozen=True, kw_only=True):
+class QuantityStatistic(StudyMeasure, tag="value", tag_field="measure", frozen=True, kw_only=True):
     """A quantity as expectations know it, the truth's among them, over the interval."""
 
     of: Quantity
@@ -75,7 +75,7 @@ class QuantityStatistic(Measure, tag="value", tag_field="measure", frozen=True, 
             raise ValueError(f"joint goes with {' and '.join(OF_A_JOINT)}, and only with these; of = {self.of}")
 
 
-class Way(Measure, tag="displacement", tag_field="measure", frozen=True, kw_only=True):
+class WayMeasure(StudyMeasure, tag="displacement", tag_field="measure", frozen=True, kw_only=True):
     """How far a part truly is from its place at the interval's begin [m]: the largest in the interval, or that at its end."""
 
     part: str = "flange"
@@ -83,33 +83,33 @@ class Way(Measure, tag="displacement", tag_field="measure", frozen=True, kw_only
     along: Vector | None = None  # direction in W to count along, with its sign; None: the distance
 
 
-class PeriodLength(Measure, tag="period", tag_field="measure", frozen=True, kw_only=True):
+class PeriodLength(StudyMeasure, tag="period", tag_field="measure", frozen=True, kw_only=True):
     """How long the `run`-th run of a period lasts [s]."""
 
     period: Text
     run: Annotated[int, Meta(ge=1)] = 1
 
 
-class ContactDelay(Measure, tag="contact_delay", tag_field="measure", frozen=True, kw_only=True):
+class ContactDelay(StudyMeasure, tag="contact_delay", tag_field="measure", frozen=True, kw_only=True):
     """Time from the true beginning of the first contact until the robot acts on it [ms]; nothing where it does not."""
 
     kinds: tuple[Kind, ...] = (Kind.CONTACT_GAINED, Kind.CONTACT_RESISTANCE, Kind.CONTACT_CLAMPING)
 
 
-class ContactForce(Measure, tag="contact_force", tag_field="measure", frozen=True, kw_only=True):
+class ContactForce(StudyMeasure, tag="contact_force", tag_field="measure", frozen=True, kw_only=True):
     """Largest true normal force between the arm and what it touches [N]."""
 
 
-class Passed(Measure, tag="passed", tag_field="measure", frozen=True, kw_only=True):
+class Passed(StudyMeasure, tag="passed", tag_field="measure", frozen=True, kw_only=True):
     """Whether the session's expectations are met."""
 
     @property
     def shares(self) -> bool:
-        """See `Measure.shares`."""
+        """See `StudyMeasure.shares`."""
         return True
 
 
-class OfLog(Measure, tag="log", tag_field="measure", frozen=True, kw_only=True):
+class OfLog(StudyMeasure, tag="log", tag_field="measure", frozen=True, kw_only=True):
     """A statistic of a recorded array, `state.NAME` or `truth.NAME`; the run is recorded for it."""
 
     of: Text
@@ -127,5 +127,14 @@ class OfLog(Measure, tag="log", tag_field="measure", frozen=True, kw_only=True):
 
 
 AnyMeasure = (
-    HasHappened | EventCount | EventTime | QuantityStatistic | Way | PeriodLength | ContactDelay | ContactForce | Passed | OfLog
+    HasHappened
+    | EventCount
+    | EventTime
+    | QuantityStatistic
+    | WayMeasure
+    | PeriodLength
+    | ContactDelay
+    | ContactForce
+    | Passed
+    | OfLog
 )

@@ -17,7 +17,7 @@ from app.report.drawing import svg_of
 from app.studies.data_set import read_data_set, whole_file
 from app.studies.plan import Plan, plain, session_of
 from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity
-from app.studies.study_file import AnyShown, Curve, HeatMap, Roc, Sensitivity, Study
+from app.studies.study_file import AnyShown, HeatMap, ResponseCurve, Roc, Sensitivity, Study
 from app.studies.study_statistics import Index, curve, first_order, levels, pivot, roc, worst
 
 
@@ -68,11 +68,11 @@ def _figure(shown: AnyShown, study: Study, rows: Rows) -> Figure | None:
     if not np.isfinite(y).any():
         return None
     match shown:
-        case Curve(by=None):
+        case ResponseCurve(by=None):
             return curves(
                 {"": curve(rows.column(shown.over), y, share)}, _axis(study, shown.over), _axis(study, shown.of), share=share
             )
-        case Curve():
+        case ResponseCurve():
             x = rows.column(shown.over)
             lines = {
                 value if isinstance(value, str) else f"{value:.3g}": curve(x[mine], y[mine], share)
@@ -83,7 +83,7 @@ def _figure(shown: AnyShown, study: Study, rows: Rows) -> Figure | None:
         case HeatMap():
             a, b = shown.over
             found = pivot(rows.column(a), rows.column(b), y)
-            return heat_map(*found, [_axis(study, name) for name in (a, b, shown.of)], share)
+            return heat_map(*found, [_axis(study, name) for name in (a, b, shown.of)], share=share)
         case Roc():
             points = roc(shown, rows.column(shown.over), rows.column(shown.right).astype(float), y)
             return roc_chart(points, _axis(study, shown.over)) if any(each.true.n and each.false.n for each in points) else None
@@ -106,7 +106,7 @@ def _caption(shown: AnyShown) -> str:
         return f"{of.capitalize()}: true against false, for each {shown.over.replace('_', ' ')}, with 95 % intervals"
     return (
         f"{of.capitalize()} over {factors}: mean, with its 95 % interval"
-        if isinstance(shown, Curve)
+        if isinstance(shown, ResponseCurve)
         else f"{of.capitalize()} over {factors}: mean"
     )
 

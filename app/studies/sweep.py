@@ -13,7 +13,7 @@ from app.engine.spreading import spread
 from app.files.bad_input import ABSENT, BadInput
 from app.session.session_file import Session
 from app.studies.data_set import done, whole_file, write_data_set
-from app.studies.one_run import Common, Outcome, Task, died, run_case
+from app.studies.one_run import CaseOutcome, Common, Task, died, run_case
 from app.studies.plan import Case, Plan, changed_field, described
 from app.studies.row_journal import RowJournal, rows
 from app.studies.study_file import Study
@@ -45,6 +45,7 @@ def sweep(
     study: Study,
     base: Session,
     out: Path,
+    *,
     where: str,
     workers: Workers = EVERY_CORE,
     told: Told = lambda done, of: None,
@@ -115,7 +116,7 @@ def begun(plan: Plan, out: Path) -> bytearray:
     return there
 
 
-def row_of(study: Study, outcome: Outcome) -> dict[str, Any]:
+def row_of(study: Study, outcome: CaseOutcome) -> dict[str, Any]:
     """The row of a run."""
     case: Case = outcome.case
     row: dict[str, Any] = {"run": case.number, "id": case.id, "seed": case.seed}
