@@ -66,8 +66,8 @@ def heat_map(
     )
     picture = axes.imshow(values, aspect="auto", origin="lower", cmap="viridis", norm=scale)
     axes.grid(False)
-    axes.set_xticks(range(len(across)), [_short(value) for value in across], fontsize=7)
-    axes.set_yticks(range(len(down)), [_short(value) for value in down], fontsize=7)
+    axes.set_xticks(range(len(across)), [short(value) for value in across], fontsize=7)
+    axes.set_yticks(range(len(down)), [short(value) for value in down], fontsize=7)
     axes.set_ylabel(names[0], fontsize=7.5)
     axes.set_xlabel(names[1], fontsize=7.5)
     if values.size <= 150:
@@ -75,7 +75,7 @@ def heat_map(
             text = "-" if math.isnan(value) else f"{value:.3g}"
             axes.text(k, i, text, ha="center", va="center", fontsize=6.5, color=INK if scale(value) > 0.5 else "white")
     left, bottom, width, top = axes.get_position().bounds
-    beside = left if not isinstance(down[0], str) else NAMED
+    beside = 0.12 if not isinstance(down[0], str) else NAMED
     axes.set_position((beside, bottom, left + width - beside - 0.1, top))
     bar = figure.colorbar(picture, cax=figure.add_axes((0.915, bottom, 0.018, top)))
     bar.ax.tick_params(labelsize=6.5)
@@ -142,5 +142,6 @@ def _places(axes: Axes, values: Sequence[float | str]) -> Any:
     return lambda value: value
 
 
-def _short(value: float | str) -> str:
-    return value if isinstance(value, str) else f"{value:.3g}"
+def short(value: float | str) -> str:
+    """A value on an axis: four digits, and no power of ten below a million."""
+    return value if isinstance(value, str) else f"{float(f'{value:.4g}'):g}"

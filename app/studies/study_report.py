@@ -16,7 +16,7 @@ from app.report.document import Raw, document, mark, table
 from app.report.drawing import svg_of
 from app.studies.data_set import read_data_set, whole_file
 from app.studies.plan import Plan, plain, session_of
-from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity
+from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity, short
 from app.studies.study_file import AnyShown, HeatMap, ResponseCurve, Roc, Sensitivity, Study
 from app.studies.study_statistics import Index, curve, first_order, levels, pivot, roc, worst
 
@@ -74,10 +74,7 @@ def _figure(shown: AnyShown, study: Study, rows: Rows) -> Figure | None:
             )
         case ResponseCurve():
             x = rows.column(shown.over)
-            lines = {
-                value if isinstance(value, str) else f"{value:.3g}": curve(x[mine], y[mine], share)
-                for value, mine in levels(rows.column(shown.by or ""))
-            }
+            lines = {short(value): curve(x[mine], y[mine], share) for value, mine in levels(rows.column(shown.by or ""))}
             names = _axis(study, shown.over), _axis(study, shown.of)
             return curves(lines, *names, share=share, by=_axis(study, shown.by or ""))
         case HeatMap():
