@@ -49,13 +49,12 @@ def connect(workers: int, scheduler: str | None) -> Any:
         check(client)
         return client
     if workers not in _embedded:
-        address = "127.0.0.1:0" if importlib.util.find_spec("bokeh") else None
         _embedded[workers] = cluster = LocalCluster(
             n_workers=workers,
             threads_per_worker=1,  # a session holds the interpreter's lock
             processes=True,
             host="127.0.0.1",
-            dashboard_address=address,  # type: ignore[arg-type] None is none
+            dashboard_address="127.0.0.1:0",  # the default listens to the network
             silence_logs=logging.CRITICAL,
         )
         atexit.register(cluster.close)

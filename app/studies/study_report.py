@@ -33,6 +33,8 @@ class Rows:
     def column(self, name: str) -> NDArray[Any]:
         """Of a factor, or another column that every row has."""
         values = self._table[name].to_numpy()
+        if values.dtype.kind == "b":
+            return np.where(values, "true", "false")
         return values if values.dtype.kind in "fi" else values.astype(str)
 
     def measure(self, name: str) -> NDArray[np.float64]:
@@ -79,6 +81,8 @@ def _figure(shown: AnyShown, study: Study, rows: Rows) -> Figure | None:
             return curves(lines, *names, share=share, by=_axis(study, shown.by or ""))
         case HeatMap():
             a, b = shown.over
+            if min(len(levels(rows.column(name))) for name in (a, b)) < 2:  # of a quick size
+                return None
             found = pivot(rows.column(a), rows.column(b), y)
             return heat_map(*found, [_axis(study, name) for name in (a, b, shown.of)], share=share)
         case Roc():

@@ -61,6 +61,7 @@ class Timed(NamedTuple):
     ticks: float  # time in its ticks [s]
     pid: int
     memory: int  # of the process, after it [B]
+    processor: float  # time of the process so far [s]
 
 
 def timed(work: tuple[Session, int]) -> Timed:
@@ -68,7 +69,7 @@ def timed(work: tuple[Session, int]) -> Timed:
     made = msgspec.structs.replace(work[0], seed=work[1])
     prepared = prepare(made, "bench")
     outcome = run(made, prepared, simulate(prepared), None)
-    return Timed(outcome.took, os.getpid(), psutil.Process().memory_info().rss)
+    return Timed(outcome.took, os.getpid(), psutil.Process().memory_info().rss, time.process_time())
 
 
 PLAIN = """
@@ -80,14 +81,15 @@ base, count = session(BASE, duration=float(sys.argv[1])), int(sys.argv[2])
 timed((base, 0))
 print("ready", flush=True)
 sys.stdin.readline()
+before = time.process_time()
 for seed in range(count):
     timed((base, seed))
-print("done", flush=True)
+print(time.process_time() - before, flush=True)
 """
 
 
-def plain(duration: float, count: int) -> float:
-    """Time of two plain loops at once, started up before [s]."""
+def plain(duration: float, count: int) -> tuple[float, float]:
+    """Time of two plain loops at once, started up before, and the processor time of both [s]."""
     arguments = [sys.executable, "-c", PLAIN, str(duration), str(count)]
     loops = [
         subprocess.Popen(arguments, cwd=ROOT, env=environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -101,9 +103,8 @@ def plain(duration: float, count: int) -> float:
         assert loop.stdin is not None
         loop.stdin.write("go\n")
         loop.stdin.flush()
-    for loop in loops:
-        loop.communicate()
-    return time.perf_counter() - start
+    processor = sum(float(loop.communicate()[0]) for loop in loops)
+    return time.perf_counter() - start, processor
 
 
 def cost(report: Report) -> None:
@@ -111,21 +112,27 @@ def cost(report: Report) -> None:
     rounds, count, duration = (5, 50, 5.0) if report.options.full else (3, 8, 5.0)
     base = session(BASE, duration=duration)
     start = time.perf_counter()
-    list(spreading.spread(timed, [(base, 0)] * 4, workers=2))
+    spent = {each.pid: each.processor for _, each in spreading.spread(timed, [(base, 0)] * 6, workers=2)}
     report.row("workers and kernels ready, once", time.perf_counter() - start, "s")
-    engine = loops = in_ticks = own = 0.0
+    engine = loops = in_ticks = own = theirs = plainly = 0.0
     for k in range(rounds):
         for turn in ((0, 1), (1, 0))[k % 2]:
             if turn:
-                loops += plain(duration, count)
+                took, processor = plain(duration, count)
+                loops, plainly = loops + took, plainly + processor
                 continue
             start, cpu = time.perf_counter(), time.process_time()
             found = list(spreading.spread(timed, ((base, seed) for seed in range(2 * count)), workers=2))
             engine += time.perf_counter() - start
             own += time.process_time() - cpu
             in_ticks += sum(each.ticks for _, each in found)
+            for pid in {each.pid for _, each in found}:
+                now = max(each.processor for _, each in found if each.pid == pid)
+                theirs += now - spent.get(pid, 0.0)
+                spent[pid] = now
     n = 2 * rounds * count
     report.row("time over that of two plain loops", engine / loops, "", at_most=1.1, n=n)
+    report.row("processor time over that of two plain loops", (theirs + own) / plainly, "", at_most=1.1, n=n)
     report.row("worker time beside ticks", 100.0 * (1.0 - in_ticks / (2.0 * engine)), "%", at_most=5.0, n=n)
     report.row("processor time of scheduler and sender", 100.0 * own / (2.0 * engine), "%", at_most=5.0, n=n)
 

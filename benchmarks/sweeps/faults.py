@@ -14,7 +14,7 @@ from benchmarks.common import Report
 from benchmarks.sweeps.processes import PATIENCE, cluster, command, end, finished, free_port
 
 KILLS, SCHEDULERS = 10, 2
-SMALL = "48k"
+SMALL = "16k"
 """Size of a disk that becomes full before the study is done."""
 
 
@@ -46,11 +46,12 @@ def _differing(a: bytes, b: bytes) -> int:
 def workers_killed(report: Report, folder: Path, study: Path, wanted: bytes) -> None:
     """A worker is killed, ten times, while the study runs."""
     process = command(study, folder / "killed", "--workers", "2")
-    rng, killed = np.random.default_rng(report.options.seed), 0
+    rng, killed, kept = np.random.default_rng(report.options.seed), 0, 0
     while killed < KILLS and process.poll() is None:
         time.sleep(float(rng.uniform(0.5, 1.5)))
         found = _workers_of(process.pid)
-        if found and _kept(folder / "killed") > killed:  # spread over the study
+        if found and (now := _kept(folder / "killed")) > kept:  # spread over the study
+            kept = now
             with suppress(psutil.NoSuchProcess):
                 found[int(rng.integers(len(found)))].kill()
                 killed += 1
@@ -64,9 +65,13 @@ def _kept(out: Path) -> int:
 
 
 def _workers_of(pid: int) -> list[psutil.Process]:
-    """The processes that do the runs: those that Dask's nannies spawned."""
+    """The processes that do the runs; Dask names them so when they are ready."""
     with suppress(psutil.NoSuchProcess):
-        return [each for each in psutil.Process(pid).children(recursive=True) if "spawn_main" in " ".join(each.cmdline())]
+        return [
+            each
+            for each in psutil.Process(pid).children(recursive=True)
+            if each.cmdline()[:1] and "dask worker" in each.cmdline()[0]
+        ]
     return []
 
 
