@@ -28,10 +28,11 @@ from app.command_options import (
     example,
     setting,
 )
-from app.files.checked import ABSENT, BadInput, load
+from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
+from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
-from app.session.session_file import Session, Setup, find, find_all, opened
+from app.session.session_file import Session, Setup, find_all, opened
 from app.session.timeline_checks import Prepared
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
@@ -166,17 +167,9 @@ def run(
         raise typer.Exit(1)
 
 
-app.command("sweep", epilog=example(*SWEEP_EXAMPLES))(sweep_)
-
-
-@app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))
-def schema(kind: Annotated[str, typer.Argument(help="session, configuration, robot or tool.")] = "session") -> None:
-    """Print the JSON schema of a kind of file, with which an editor completes and checks it."""
-    from app.session.session_file import KINDS, schema_of
-
-    if kind not in KINDS:
-        raise BadInput("schema", "KIND", kind, f"one of {', '.join(KINDS)}")
-    sys.stdout.write(schema_of(kind))
+app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
+app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
+app.command("check", epilog=CHECK_EXAMPLES)(check_)
 
 
 @app.command(epilog=example("pendant replay out/log.mcap --open"))
@@ -211,26 +204,6 @@ def claims(
     Console().print(f"{len(rows)} rows: {counts}; see {escape(str(out / 'claims.md'))}")
     if not all(row.shown for row in rows):
         raise typer.Exit(1)
-
-
-@app.command(epilog=example("pendant check my.yaml", "pendant check cell.yaml", "pendant check my-arm.yaml"))
-def check(
-    file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")], any_file: AnyFile = False
-) -> None:
-    """Check a file, and simulate what it describes for a moment: a session, a configuration or a robot."""
-    from app.runs.runner import try_out
-
-    path = find(file)
-    raw = load(path, dict[str, object])
-    if "chain" in raw:
-        load_arm(path)
-        what, setup = "robot", Setup(robot=str(path))
-    elif "duration" in raw or "timeline" in raw or "title" in raw:
-        what, setup = "session", opened(path, Session, any_file)
-    else:
-        what, setup = "configuration", opened(path, Setup, any_file)
-    try_out(prepare(setup, path.name))
-    Console().print(f"{escape(path.name)}: a valid {what}")
 
 
 @app.command("robots", epilog=example("pendant robots", "pendant serve --robot ur3e"))

@@ -7,9 +7,9 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from app.command_options import AnyFile, Seed
+from app.command_options import AnyFile, Seed, example
 
-SWEEP_EXAMPLES = (
+SWEEP_EXAMPLES = example(
     "pendant sweep sequence-limit --quick",
     "pendant sweep my-study.yaml --workers 8 --out results/mine",
     "pendant sweep my-study.yaml --scheduler tcp://10.0.0.1:8786",
