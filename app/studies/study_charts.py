@@ -19,6 +19,9 @@ MARKS = "osD^vP*X"
 SPREAD = 20.0
 """What spans more than this is drawn on a logarithmic scale."""
 
+NAMES_A_ROW = 6
+"""Lines that are named in a row above their chart."""
+
 NAMED = 0.2
 """Room left of a chart for names, as a share of its width."""
 
@@ -33,7 +36,8 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
         share: y is a share of runs.
         by: what the names of the lines are.
     """
-    figure, axes = empty_axes(2.9)
+    above = 0.25 + 0.17 * -(-len(lines) // NAMES_A_ROW) if len(lines) > 1 else 0.0
+    figure, axes = empty_axes(2.8 + above, 0.1 + above)
     places = _places(axes, [point.x for line in lines.values() for point in line])
     factor = 100.0 if share else 1.0
     for k, (name, line) in enumerate(lines.items()):
@@ -48,7 +52,8 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
     if share:
         axes.set_ylim(-3.0, 103.0)
     if len(lines) > 1:
-        axes.legend(title=by, fontsize=7, title_fontsize=7, frameon=False, ncols=min(4, len(lines)))
+        place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": min(NAMES_A_ROW, len(lines))}
+        axes.legend(title=by, fontsize=7, title_fontsize=7, frameon=False, **place)
     return figure
 
 
