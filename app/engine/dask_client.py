@@ -54,6 +54,7 @@ def connect(workers: int, scheduler: str | None) -> Any:
             threads_per_worker=1,  # a session holds the interpreter's lock
             processes=True,
             host="127.0.0.1",
+            preload=["app.engine.interrupts"],
             dashboard_address="127.0.0.1:0",  # the default listens to the network
             silence_logs=logging.CRITICAL,
         )
