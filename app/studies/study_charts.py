@@ -19,8 +19,8 @@ MARKS = "osD^vP*X"
 SPREAD = 20.0
 """What spans more than this is drawn on a logarithmic scale."""
 
-NAMES_A_ROW = 6
-"""Lines that are named in a row above their chart."""
+LETTERS_A_ROW, MARK = 110, 9
+"""What a row of names above a chart holds, and what of it goes with the mark of each name."""
 
 NAMED = 0.2
 """Room left of a chart for names, as a share of its width."""
@@ -36,7 +36,8 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
         share: y is a share of runs.
         by: what the names of the lines are.
     """
-    above = 0.25 + 0.17 * -(-len(lines) // NAMES_A_ROW) if len(lines) > 1 else 0.0
+    in_a_row = min(len(lines), max(1, LETTERS_A_ROW // (max(map(len, lines)) + MARK)))
+    above = 0.25 + 0.17 * -(-len(lines) // in_a_row) if len(lines) > 1 else 0.0
     figure, axes = empty_axes(2.8 + above, 0.1 + above)
     places = _places(axes, [point.x for line in lines.values() for point in line])
     factor = 100.0 if share else 1.0
@@ -52,7 +53,7 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
     if share:
         axes.set_ylim(-3.0, 103.0)
     if len(lines) > 1:
-        place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": min(NAMES_A_ROW, len(lines))}
+        place = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0), "ncols": in_a_row}
         axes.legend(title=by, fontsize=7, title_fontsize=7, frameon=False, **place)
     return figure
 
