@@ -102,7 +102,7 @@ class _Spreading:
             lives.pop(place)
             yield place, result
 
-    def _begin(self, under_way: dict[int, T]) -> None:
+    def _begin(self, under_way: dict[int, Any]) -> None:
         from distributed import as_completed
 
         self._places: dict[Any, int] = {}
@@ -110,12 +110,12 @@ class _Spreading:
         for place, item in under_way.items():
             self._give(place, item)
 
-    def _give(self, place: int, item: T) -> None:
+    def _give(self, place: int, item: object) -> None:
         future = self._client.submit(guarded, self._ours, self._work, item, pure=False)
         self._places[future] = place
         self._ready.add(future)
 
-    def _fill(self, items: Iterator[tuple[int, T]], under_way: dict[int, T]) -> None:
+    def _fill(self, items: Iterator[tuple[int, Any]], under_way: dict[int, Any]) -> None:
         room = AHEAD * self._threads() - len(under_way)
         for place, item in islice(items, max(0, room)):
             under_way[place] = item
