@@ -5,7 +5,6 @@
 `read(path)` gives an `app.log.reader.Log`. Errors are `BadInput`, whose text is one line: file, field, value, what is allowed.
 """
 
-import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ import msgspec
 from app.files.checked import BadInput, convert
 from app.log.reader import Log
 from app.log.reader import read as read_log
-from app.runs.batch import Job, run_all, work
+from app.runs.jobs import Job, run_all, work
 from app.runs.runner import RunOutcome, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session, find, opened
@@ -77,10 +76,7 @@ def run(what: Session, out: str | Path | None = None) -> RunOutcome:
     Raises:
         BadInput: the results cannot be written.
     """
-    if out is not None:
-        return work(Job("session", what, Path(out)))
-    with tempfile.TemporaryDirectory() as folder:
-        return work(Job("session", what, Path(folder), recorded=False))
+    return work(Job("session", what, None if out is None else Path(out)))
 
 
 def run_many(sessions: Iterable[Session]) -> list[RunOutcome]:
@@ -88,10 +84,8 @@ def run_many(sessions: Iterable[Session]) -> list[RunOutcome]:
 
     In a script, call it under `if __name__ == "__main__":`, since the other processes import the script.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        jobs = [Job("session", each, Path(folder) / str(k), recorded=False) for k, each in enumerate(sessions)]
-        found = dict(run_all(jobs))
-    return [found[k] for k in range(len(jobs))]
+    found = dict(run_all(Job("session", each, None) for each in sessions))
+    return [found[k] for k in range(len(found))]
 
 
 def stepped(what: Session) -> Simulation:

@@ -29,11 +29,13 @@ from app.command_options import (
     setting,
 )
 from app.export_command import EXAMPLES, export_
-from app.files.checked import ABSENT, BadInput, load
+from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
+from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
-from app.session.session_file import Session, Setup, find, find_all, opened
+from app.session.session_file import Session, Setup, find_all, opened
 from app.session.timeline_checks import Prepared
+from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
 
 # Usage errors, whichever click typer was built on: the base of the one that typer exports.
@@ -132,7 +134,7 @@ def run(
     any_file: AnyFile = False,
 ) -> None:
     """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
-    from app.runs.batch import Job, run_all, work
+    from app.runs.jobs import Job, run_all, work
     from app.runs.junit import write as write_junit
     from app.runs.progress import counting, progress, show, show_all
 
@@ -159,21 +161,16 @@ def run(
                 found[place] = outcome
                 told(len(found), len(jobs))
         outcomes = [found[place] for place in range(len(jobs))]
-        show_all([job.out.name for job in jobs], outcomes, out)
+        show_all([path.stem for path in paths], outcomes, out)
     if junit is not None:
         write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
     if not all(outcome.passed for outcome in outcomes):
         raise typer.Exit(1)
 
 
-@app.command(epilog=example("pendant schema > session.schema.json", "pendant schema configuration"))
-def schema(kind: Annotated[str, typer.Argument(help="session, configuration, robot or tool.")] = "session") -> None:
-    """Print the JSON schema of a kind of file, with which an editor completes and checks it."""
-    from app.session.session_file import KINDS, schema_of
-
-    if kind not in KINDS:
-        raise BadInput("schema", "KIND", kind, f"one of {', '.join(KINDS)}")
-    sys.stdout.write(schema_of(kind))
+app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
+app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
+app.command("check", epilog=CHECK_EXAMPLES)(check_)
 
 
 @app.command(epilog=example("pendant replay out/log.mcap --open"))
@@ -211,26 +208,6 @@ def claims(
     Console().print(f"{len(rows)} rows: {counts}; see {escape(str(out / 'claims.md'))}")
     if not all(row.shown for row in rows):
         raise typer.Exit(1)
-
-
-@app.command(epilog=example("pendant check my.yaml", "pendant check cell.yaml", "pendant check my-arm.yaml"))
-def check(
-    file: Annotated[str, typer.Argument(help="A session, a configuration, or a robot file.")], any_file: AnyFile = False
-) -> None:
-    """Check a file, and simulate what it describes for a moment: a session, a configuration or a robot."""
-    from app.runs.runner import try_out
-
-    path = find(file)
-    raw = load(path, dict[str, object])
-    if "chain" in raw:
-        load_arm(path)
-        what, setup = "robot", Setup(robot=str(path))
-    elif "duration" in raw or "timeline" in raw or "title" in raw:
-        what, setup = "session", opened(path, Session, any_file)
-    else:
-        what, setup = "configuration", opened(path, Setup, any_file)
-    try_out(prepare(setup, path.name))
-    Console().print(f"{escape(path.name)}: a valid {what}")
 
 
 @app.command("robots", epilog=example("pendant robots", "pendant serve --robot ur3e"))

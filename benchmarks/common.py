@@ -1,10 +1,7 @@
 """What all benches share: sizes, seeds, the code and the settings they ran with, a table, a JSON file, exit code."""
 
 import argparse
-import hashlib
 import json
-import multiprocessing
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -16,6 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from scipy.special import betaincinv
 
+from app.engine import spreading as engine
+from app.engine.source import commit_of, digest_of
 from pendant.all_settings import Settings, digest
 
 T = TypeVar("T")
@@ -36,29 +35,13 @@ BASES = (1000, 2000, 3000)
 
 
 def code_digest(root: Path = ROOT) -> str:
-    """12 hex digits over names and bytes of all files of `CODE`; not of what Python or an editor leaves there."""
-    files = [path for folder in CODE for path in (root / folder).rglob("*") if path.is_file()]
-    found = hashlib.sha256()
-    for name in sorted(path.relative_to(root).as_posix() for path in files):
-        if not any(part.startswith((".", "__pycache__")) for part in name.split("/")):
-            content = (root / name).read_bytes()
-            found.update(f"{name}\0{len(content)}\0".encode() + content)
-    return found.hexdigest()[:12]
+    """12 hex digits over names and bytes of all files of `CODE`."""
+    return digest_of(root, CODE)
 
 
 def commit(root: Path = ROOT) -> str:
     """The commit, with a `+` where files of `CODE` are not as they are in it; "unknown" without git."""
-    try:
-        name = _git(root, "rev-parse", "--short", "HEAD")
-        return name + "+" * bool(_git(root, "status", "--porcelain", "--", *CODE))
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-
-
-def _git(root: Path, *arguments: str) -> str:
-    # Given the folder, git does not take the repository that an unpacked archive happens to lie in.
-    command = ["git", "--git-dir", str(root / ".git"), "--work-tree", str(root), *arguments]
-    return subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout.strip()
+    return commit_of(root, CODE)
 
 
 def bound(hits: int, n: int, upper: bool) -> float:
@@ -171,5 +154,5 @@ def main(name: str, measure: Callable[[Report], None]) -> None:
 
 def spread(work: Callable[[T], R], cases: Iterable[T]) -> list[R]:
     """`work` over all cases on both cores, results in order."""
-    with multiprocessing.get_context("spawn").Pool(2) as pool:
-        return pool.map(work, list(cases), chunksize=1)
+    found = dict(engine.spread(work, cases, workers=2))
+    return [found[place] for place in range(len(found))]

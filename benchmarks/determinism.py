@@ -5,7 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from app.files.checked import load
-from app.runs.batch import Job, run_all
+from app.runs.jobs import Job, run_all
 from app.session.session_file import Session, bundled, find
 from benchmarks.common import Report, main
 

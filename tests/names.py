@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from app.session.session_file import KINDS, schema_of
+from app.studies.study_file import Study
 from pendant.all_settings import describe
 from pendant.event_table import TABLE
 from pendant.settings.renamed import RENAMED
@@ -27,8 +28,8 @@ def names() -> list[str]:
     found = {f"setting {row.name}" for row in describe()}
     found |= {f"event {kind.value}" for kind in TABLE}
     found |= {f"event {kind.value}.{key}" for kind, row in TABLE.items() for key in row.keys}
-    for kind in KINDS:
-        for definition in json.loads(schema_of(kind))["$defs"].values():
+    for kind, of in {**KINDS, "study": Study}.items():
+        for definition in json.loads(schema_of(kind, of))["$defs"].values():
             found |= {f"{kind} {name}" for name in _of(definition)}
     return sorted(found)
 

@@ -30,6 +30,9 @@ class _Absent:
     def __repr__(self) -> str:
         return "nothing"
 
+    def __reduce__(self) -> str:  # it is itself in other processes too
+        return "ABSENT"
+
 
 ABSENT = _Absent()
 """The value of a `BadInput` where there is none to show."""

@@ -1,25 +1,19 @@
 """The figures of a report, as SVG: drawn without a screen, with peaks that no thinning takes away."""
 
-import io
 from collections.abc import Sequence
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from app.log.reader import Log
+from app.report.drawing import INK, empty_axes, svg_of
 from app.report.summary import SLOW, Span, Summary
 from pendant.limits.parameters import PARAMETERS
 
 Array = NDArray[np.float64]
 POINTS = 1500
 """Most points of a line."""
-
-WIDTH = 7.2
-"""Of a figure [inch]."""
 
 COLOURS = {
     "NORMAL": "#2f9e44",
@@ -38,7 +32,6 @@ COLOURS = {
 DARK = frozenset({"NORMAL", "RUN", "REMOTE", "FREE_DRIVE", "STOP", "HELD", "GUIDED"})
 """Colours on which text is white."""
 
-INK = "#212529"
 BAD = "#c92a2a"
 NAMES_A_ROW = 6
 """Modes and phases in a row above their figure."""
@@ -82,7 +75,7 @@ def _shares(log: Log) -> list[tuple[str, Array]]:
 
 
 def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], *, bar: float = 0.0) -> str:
-    figure, axes = _axes(1.9)
+    figure, axes = empty_axes(1.9)
     for name, values in series:
         axes.plot(*thinned(t, values), linewidth=0.9, label=name)
     for mark in marks:
@@ -97,13 +90,13 @@ def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Seq
     axes.set_ylim(0.0, top * (1.06 + 0.13 * rows) or 1.0)  # room for the names above the lines
     if len(series) > 1:
         axes.legend(loc="upper right", ncols=min(len(series), 3), frameon=False, fontsize=7, borderaxespad=0.1)
-    return _svg(figure)
+    return svg_of(figure)
 
 
 def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> str:
     names = {span.name for span in (*modes, *phases)}
     rows = -(-len(names) // NAMES_A_ROW)
-    figure, axes = _axes(1.25 + 0.17 * rows, 0.04 + 0.17 * rows)
+    figure, axes = empty_axes(1.25 + 0.17 * rows, 0.04 + 0.17 * rows)
     seen: dict[str, str] = {}
     for row, spans in ((1.0, modes), (0.0, phases)):
         for span in spans:
@@ -118,7 +111,7 @@ def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> st
     axes.set_xlabel("time [s]", fontsize=7.5)
     handles = [Patch(color=colour, label=name) for name, colour in seen.items()]
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=NAMES_A_ROW, frameon=False, fontsize=6.5)
-    return _svg(figure)
+    return svg_of(figure)
 
 
 def thinned(t: Array, values: Array) -> tuple[Array, Array]:
@@ -130,24 +123,3 @@ def thinned(t: Array, values: Array) -> tuple[Array, Array]:
     blocks = np.nan_to_num(values[:whole], nan=0.0).reshape(-1, step)
     at = blocks.argmax(axis=1) + step * np.arange(len(blocks))
     return np.append(t[at], t[whole:]), np.append(values[at], values[whole:])
-
-
-def _axes(height: float, above: float = 0.1) -> tuple[Figure, Axes]:
-    """An empty figure of that height, with `above` [inch] for what stands above its axes."""
-    figure = Figure(figsize=(WIDTH, height))
-    # The same left and right for all figures: their times lie below each other.
-    axes = figure.add_axes((0.075, 0.4 / height, 0.915, 1.0 - (0.4 + above) / height))
-    axes.tick_params(labelsize=7)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(True, linewidth=0.3, alpha=0.6)
-    axes.set_axisbelow(True)
-    return figure, axes
-
-
-def _svg(figure: Figure) -> str:
-    """The figure as an <svg> element. Same numbers, same text: no date, no random names."""
-    out = io.StringIO()
-    with mpl.rc_context({"svg.hashsalt": "pendant", "svg.fonttype": "none", "font.family": "sans-serif"}):
-        figure.savefig(out, format="svg", metadata={"Date": None})
-    text = out.getvalue()
-    return text[text.index("<svg") :]

@@ -1,37 +1,11 @@
 """report.html: one file without anything from outside, to read in a browser and to print."""
 
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 
 from app.log.events_file import EventLine
+from app.report.document import Raw, document, mark, table
 from app.report.summary import NOT_A_VALIDATION, SLOW, Peak, Summary
-
-UNIT = re.compile(r"(?<=\d) (?=(?:s|ms|m|mm|m/s|N|N·m|rad|rad/s|kg)\b)")
-"""Between a number and its unit no line is broken."""
-
-STYLE = """
-:root { --ink: #212529; --soft: #495057; --line: #dee2e6; --bad: #c92a2a; --good: #2b8a3e; }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 19cm; padding: 1.2cm 0.6cm; color: var(--ink); background: white;
-  font: 10pt/1.45 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }
-h1 { font-size: 17pt; margin: 0 0 0.2em; line-height: 1.2; }
-h2 { font-size: 12pt; margin: 1.5em 0 0.4em; border-bottom: 1px solid var(--line); break-after: avoid; }
-p { margin: 0.4em 0; } h2 + p { break-after: avoid; }
-.note { border-left: 4px solid #f59f00; background: #fff9db; padding: 0.5em 0.8em; break-inside: avoid; }
-.verdict { font-size: 12pt; font-weight: 600; }
-.bad { color: var(--bad); font-weight: 600; } .good { color: var(--good); font-weight: 600; }
-table { border-collapse: collapse; width: 100%; font-size: 8.5pt; }
-th, td { text-align: left; vertical-align: top; padding: 0.22em 0.9em 0.22em 0; border-bottom: 1px solid var(--line); }
-th { color: var(--soft); font-weight: 600; } th.n { white-space: nowrap; }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; }
-tr { break-inside: avoid; } thead { display: table-header-group; }
-figure { margin: 0.6em 0 0.9em; break-inside: avoid; } figure svg { width: 100%; height: auto; display: block; }
-figcaption { font-size: 8.5pt; color: var(--soft); }
-@page { size: A4; margin: 1.4cm 1.2cm 1.6cm;
-  @bottom-right { content: counter(page) " / " counter(pages); font: 8pt Helvetica, Arial, sans-serif; color: #868e96; } }
-@media print { body { padding: 0; max-width: none; } .note { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
-"""
 
 
 def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
@@ -43,9 +17,9 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         _verdict(summary),
         f'<p class="note">{escape(NOT_A_VALIDATION)}</p>',
         "<h2>What ran</h2>",
-        _table((), [*_identity(summary)]),
+        table((), [*_identity(summary)]),
         *(
-            ["<h2>Expectations</h2>", _table(("", "expected", "seen"), [_expected(*each) for each in _verdicts(summary)])]
+            ["<h2>Expectations</h2>", table(("", "expected", "seen"), [_expected(*each) for each in _verdicts(summary)])]
             if summary.expectations
             else []
         ),
@@ -53,7 +27,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         *(["<p>Dotted: refusals, leavings, stops and changes in contact.</p>"] if summary.messages or summary.contacts else []),
         *(f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>" for caption, svg in charts),
         "<h2>Modes and periods</h2>",
-        _table(
+        table(
             ("state", "from [s]", "to [s]", "length [s]"),
             [
                 (span.name, f"{span.begin:.3f}", f"{span.end:.3f}", f"{span.end - span.begin:.3f}")
@@ -61,7 +35,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
             ],
         ),
         "<h2>Monitored values at their worst</h2>",
-        _table(
+        table(
             ("parameter", "at [s]", "value", "limit", "unit", "of limit", "margin"),
             [
                 (
@@ -78,9 +52,9 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
             "Nothing was monitored.",
         ),
         "<h2>Refusals, leavings and stops</h2>",
-        _table(("at [s]", "what", "guidance"), [_message(event) for event in summary.messages], "None."),
+        table(("at [s]", "what", "guidance"), [_message(event) for event in summary.messages], "None."),
         "<h2>Stopping</h2>",
-        _table(
+        table(
             ("at [s]", "cause", "time to rest [s]", "way of the flange [mm]"),
             [
                 (f"{s.t:.3f}", s.kind, "not at rest" if s.time is None else f"{s.time:.3f}", f"{1000 * s.distance:.1f}")
@@ -91,13 +65,13 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         "<h2>Contacts</h2>",
         "<p>Delays as the detector tells them: since the first tick in which it sees the change. `make bench` measures them from "
         "the true onset.</p>",
-        _table(
+        table(
             ("at [s]", "what", "rule", "delay [ms]", "action"),
             [_contact(event) for event in summary.contacts],
             "No change in contact was detected.",
         ),
         "<h2>Peaks</h2>",
-        _table(
+        table(
             ("quantity", "peak", "unit", "at [s]", "against"),
             [
                 ("speed of the tool centre point", *_peak(summary.tcp_speed, 1000), "mm/s", *_against(summary.tcp_speed)),
@@ -110,7 +84,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         "<h2>Force at the flange against body regions</h2>",
         "<p>Estimated force, that of hands included. Where no transient contact is allowed, the peak counts as quasi-static. "
         "The limits are data with a source each, in assets/limits/body-regions.yaml.</p>",
-        _table(
+        table(
             ("body region", "quasi-static [N]", "transient [N]", "of limit", "within", "source"),
             [
                 (
@@ -118,7 +92,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
                     f"{each.quasi_static:g}",
                     "none allowed" if each.transient is None else f"{each.transient:g}",
                     _share(each.share),
-                    _Raw(_mark(each.within, "yes", "NO")),
+                    Raw(mark(each.within, "yes", "NO")),
                     each.source,
                 )
                 for each in summary.forces
@@ -126,44 +100,7 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
         ),
         f'<p class="note">{escape(NOT_A_VALIDATION)}</p>',
     ]
-    head = (
-        f'<meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title><style>{STYLE}</style>'
-    )
-    return f'<!doctype html>\n<html lang="en"><head>{head}</head>\n<body>\n' + "\n".join(parts) + "\n</body></html>\n"
-
-
-class _Raw(str):
-    """HTML already."""
-
-    __slots__ = ()
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]], empty: str = "") -> str:
-    rows = list(rows)
-    if not rows:
-        return f"<p>{escape(empty)}</p>"
-    numeric = [all(_is_number(row[i]) for row in rows) for i in range(len(rows[0]))]
-    classes = [' class="n"' if each else "" for each in numeric]
-    top = "".join(f"<th{c}>{escape(name)}</th>" for c, name in zip(classes, head, strict=False))
-    lines = ["".join(f"<td{c}>{_cell(cell)}</td>" for c, cell in zip(classes, row, strict=True)) for row in rows]
-    header = f"<thead><tr>{top}</tr></thead>" if head else ""
-    return f"<table>{header}<tbody>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</tbody></table>"
-
-
-def _cell(text: str) -> str:
-    return text if isinstance(text, _Raw) else UNIT.sub("\u00a0", escape(text))
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text.removesuffix(" %"))
-    except ValueError:
-        return False
-    return True
-
-
-def _mark(good: bool, yes: str, no: str) -> str:
-    return f'<span class="{"good" if good else "bad"}">{yes if good else no}</span>'
+    return document(title, parts)
 
 
 def _verdict(summary: Summary) -> str:
@@ -179,7 +116,7 @@ def _verdicts(summary: Summary) -> list[tuple[bool, str, str]]:
 
 
 def _expected(passed: bool, expected: str, seen: str) -> tuple[str, str, str]:
-    return _Raw(_mark(passed, "met", "NOT MET")), expected, seen
+    return Raw(mark(passed, "met", "NOT MET")), expected, seen
 
 
 def _identity(summary: Summary) -> list[tuple[str, str]]:
@@ -211,8 +148,8 @@ def _peak(peak: Peak, factor: float = 1.0) -> tuple[str]:
     return (f"{factor * peak.value:.4g}",)
 
 
-def _against(peak: Peak) -> tuple[str, _Raw]:
-    return f"{peak.t:.3f}", _Raw(_mark(peak.value <= SLOW, "within 250 mm/s", "above 250 mm/s"))
+def _against(peak: Peak) -> tuple[str, Raw]:
+    return f"{peak.t:.3f}", Raw(mark(peak.value <= SLOW, "within 250 mm/s", "above 250 mm/s"))
 
 
 def _share(share: float) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from app.files.checked import ABSENT, BadInput, load
-from app.runs.batch import Job, run_all
+from app.runs.jobs import Job, run_all
 from app.runs.runner import RunOutcome
 from app.session.claims import CLAIMS, Claim
 from app.session.prepare import prepare, without

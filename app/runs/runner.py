@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -153,19 +154,19 @@ def run(
     session: Session,
     prepared: Prepared,
     simulation: Simulated,
-    out: Path,
+    out: Path | None,
     *,
     realtime: bool = False,
     progress: Progress = silent,
     see: Callable[[Decision], None] = lambda decision: None,
 ) -> RunOutcome:
-    """Run a session to its end and write `out`/events.jsonl.
+    """Run a session to its end.
 
     Args:
         session: what happens and what is expected.
         prepared: the same session, checked.
         simulation: of `prepared`, at its start.
-        out: folder for the results; made when missing.
+        out: folder for events.jsonl; made when missing. None: no file.
         realtime: keep the pace of the wall clock.
         progress: told the simulated seconds done, ten times a simulated second.
         see: shown the decision of every tick that was done; a recorder, for example.
@@ -182,7 +183,7 @@ def run(
     watches = [watch(expectation, joints) for expectation in session.expectations]
     outcome = RunOutcome(seconds=session.duration)
     begun = time.perf_counter()
-    with EventsFile(out / "events.jsonl") as file:
+    with nullcontext() if out is None else EventsFile(out / "events.jsonl") as file:
         last, tenth = ticks(session.duration), ticks(0.1)
         for tick in range(1, last + 1):
             wishes = timeline.wishes(tick, simulation.snapshot)
@@ -197,7 +198,8 @@ def run(
                 if each.needs(tick, quiet) or tick == last:
                     each.see(tick, decision, simulation.glance)
             see(decision)
-            file.write(tick, decision.events)
+            if file is not None:
+                file.write(tick, decision.events)
             outcome.events += decision.events
             if not outcome.modes or outcome.modes[-1][1] is not decision.mode:
                 outcome.modes.append((tick * TICK, decision.mode))

@@ -70,10 +70,10 @@ KINDS: dict[str, type[Any]] = {"session": Session, "configuration": Setup, "robo
 T = TypeVar("T", bound=Setup)
 
 
-def schema_of(kind: str) -> str:
-    """The JSON schema of a kind of file, one of KINDS, as text."""
+def schema_of(kind: str, of: type[Any]) -> str:
+    """The JSON schema of a kind of file, as text; `of` is its type, as in KINDS."""
     found = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": f"pendant {kind}"}
-    return msgspec.json.format(msgspec.json.encode(found | msgspec.json.schema(KINDS[kind])), indent=1).decode() + "\n"
+    return msgspec.json.format(msgspec.json.encode(found | msgspec.json.schema(of)), indent=1).decode() + "\n"
 
 
 def folder(kind: str) -> Path:

@@ -9,7 +9,7 @@ import pytest
 
 from app import cli
 from app.files.checked import BadInput, convert, load
-from app.runs.batch import Job, run_all
+from app.runs.jobs import Job, run_all
 from app.runs.junit import junit, write
 from app.runs.runner import RunOutcome
 from app.session.expectation_watch import Verdict
@@ -100,7 +100,7 @@ def test_junit_has_a_case_for_each_expectation(tmp_path: Path) -> None:
 
 
 def test_the_schema_accepts_every_bundled_session() -> None:
-    schema = jsonschema.Draft202012Validator(msgspec.json.decode(schema_of("session")))
+    schema = jsonschema.Draft202012Validator(msgspec.json.decode(schema_of("session", Session)))
     for name in bundled("sessions"):
         found = [error.message for error in schema.iter_errors(load(find(name), dict[str, object]))]
         assert (name, found) == (name, [])
@@ -111,7 +111,7 @@ def test_the_schema_accepts_every_bundled_session() -> None:
 )
 def test_the_schema_refuses_what_the_reader_refuses(spoil: dict[str, Any]) -> None:
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**SHORT, **spoil}, msgspec.json.decode(schema_of("session")))
+        jsonschema.validate({**SHORT, **spoil}, msgspec.json.decode(schema_of("session", Session)))
     with pytest.raises(BadInput):
         session(**spoil)
 

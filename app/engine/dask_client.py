@@ -1,0 +1,105 @@
+"""A Dask scheduler to give work to: an embedded one with processes of its own, or one that exists; its workers are checked."""
+
+import atexit
+import importlib.util
+import logging
+import os
+import warnings
+from typing import Any
+
+from app.engine.source import identity
+from app.files.bad_input import ABSENT, BadInput
+
+CONFIG = {
+    "distributed.worker.profile.enabled": False,  # samples every stack a hundred times a second
+    "distributed.scheduler.allowed-failures": 5,  # workers that may die under a task
+    "distributed.admin.low-level-log-length": 100,  # memory stays as it is, however many runs
+    "distributed.admin.log-length": 100,
+    "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
+    "distributed.comm.timeouts.connect": "10s",
+}
+PATIENCE = 60.0
+"""How long a scheduler or its first worker is waited for [s]."""
+
+_embedded: dict[int, Any] = {}
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def connect(workers: int, scheduler: str | None) -> Any:
+    """A Dask client whose workers run what this process runs.
+
+    Args:
+        workers: processes of the embedded cluster. It is started once, and kept until this process ends.
+        scheduler: address of one that exists; its workers are what they are.
+
+    Raises:
+        BadInput: nobody answers there, or a worker runs something else.
+    """
+    from dask import config
+    from distributed import Client, LocalCluster
+
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    config.set(CONFIG)
+    if scheduler is not None:
+        client = _remote(scheduler)
+        check(client)
+        return client
+    if workers not in _embedded:
+        _embedded[workers] = cluster = LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,  # a session holds the interpreter's lock
+            processes=True,
+            host="127.0.0.1",
+            preload=["app.engine.interrupts"],
+            dashboard_address="127.0.0.1:0",  # the default listens to the network
+            silence_logs=logging.CRITICAL,
+        )
+        atexit.register(cluster.close)
+    return Client(_embedded[workers], set_as_default=False)
+
+
+def _remote(scheduler: str) -> Any:
+    from distributed import Client
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of packages whose versions differ: `check` names those that matter
+            client = Client(scheduler, set_as_default=False, timeout=10)
+    except (OSError, ValueError, ImportError) as error:
+        reason = str(error).partition("\n")[0]
+        raise BadInput("--scheduler", "", scheduler, f"no Dask scheduler answers there ({reason})") from None
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+    except TimeoutError:
+        client.close()
+        allowed = f"has no worker; start one there with: dask worker {scheduler} --nthreads 1"
+        raise BadInput("--scheduler", "", scheduler, allowed) from None
+    return client
+
+
+def check(client: Any) -> None:
+    """Compare what the workers run with what this process runs. Raises BadInput: one runs something else."""
+    for address, found in client.run(identity, on_error="return").items():
+        if isinstance(found, Exception):
+            client.close()
+            raise BadInput(
+                f"worker {address}", "", ABSENT, f"cannot import this version of pendant ({type(found).__name__}: {found})"
+            )
+        compare(found, f"worker {address}")
+
+
+def compare(found: dict[str, str], where: str) -> None:
+    """Raise BadInput where `found` is not what this process runs."""
+    for name, value in identity().items():
+        if found.get(name) != value:
+            raise BadInput(where, name, found.get(name, ABSENT), f"this process has {value}; both must run the same")
+
+
+def dashboard(client: Any) -> str | None:
+    """Where Dask's own dashboard is; None without bokeh, which draws it."""
+    has = client.run_on_scheduler(importlib.util.find_spec, "bokeh") is not None
+    return client.dashboard_link if has and client.scheduler_info(n_workers=0)["services"].get("dashboard") else None

@@ -1,0 +1,168 @@
+"""Spreads work over the workers of a Dask cluster: each piece once, results as they come, whatever dies on the way."""
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain, islice
+from typing import Any, TypeVar
+
+from app.engine.dask_client import PATIENCE, compare, connect, cores, dashboard
+from app.engine.source import identity
+from app.files.bad_input import ABSENT, BadInput
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+AHEAD = 3
+"""Pieces in flight for each worker: one that it does, and some that wait there, so that it never waits for the next."""
+
+LIVES = 3
+"""Times that a piece is given out again after it was lost with all workers that tried it."""
+
+
+class Lost(Exception):
+    """A piece of work whose workers died each time."""
+
+
+def spread(
+    work: Callable[[T], R],
+    items: Iterable[T],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    lost: Callable[[T], R] | None = None,
+    told: Callable[[str], None] = lambda line: None,
+) -> Iterator[tuple[int, R]]:
+    """Do `work` on all items; gives the place of each among them with its result, in the order in which they end.
+
+    A single item, or one worker, is this process itself. `items` may be a generator: it is read as far as needed.
+
+    Args:
+        work: a function that a worker can import, or of the main module.
+        items: what to work on.
+        workers: processes of this machine; None: one a core.
+        scheduler: address of a Dask scheduler in place of processes of this machine.
+        lost: what stands for the result of an item whose workers died each time; None: that is an error.
+        told: told in a line what happens on the way, and where the dashboard is.
+
+    Raises:
+        BadInput: a worker runs another source; a scheduler stays away; or `work` raises it.
+    """
+    items = iter(items)
+    first = list(islice(items, 2))
+    if scheduler is None and (len(first) < 2 or workers == 1):
+        for place, item in enumerate(chain(first, items)):
+            yield place, work(item)
+        return
+    spreading = _Spreading(work, workers or cores(), scheduler, told)
+    try:
+        yield from spreading.run(enumerate(chain(first, items)), lost)
+    finally:
+        spreading.close()
+
+
+def guarded(ours: dict[str, str], work: Callable[[T], R], item: T) -> R:
+    """On a worker: do `work`, if the worker runs what the sender runs; one that came later was not checked before."""
+    try:
+        compare(ours, "the study")
+    except BadInput as error:
+        raise BadInput("a worker", error.field, identity().get(error.field, ABSENT), f"expected {error.value}") from None
+    return work(item)
+
+
+class _Spreading:
+    def __init__(self, work: Callable[[Any], Any], workers: int, scheduler: str | None, told: Callable[[str], None]) -> None:
+        self._work, self._workers, self._scheduler, self._told = work, workers, scheduler, told
+        self._client = connect(workers, scheduler)
+        self._ours = identity()
+        self._count, self._counted_at = workers, -math.inf
+        self._said_dashboard()
+
+    def run(self, items: Iterator[tuple[int, T]], lost: Callable[[T], R] | None) -> Iterator[tuple[int, R]]:
+        under_way: dict[int, T] = {}
+        lives: dict[int, int] = {}
+        self._begin(under_way)
+        while True:
+            self._fill(items, under_way)
+            if not under_way:
+                return
+            future = next(self._ready)
+            place = self._places.pop(future)
+            if future.status in ("cancelled", "lost"):  # with the scheduler
+                self._reconnect()
+                self._begin(under_way)
+                continue
+            try:
+                result = self._result(future, under_way[place], lost, lives.setdefault(place, LIVES))
+            except Lost:
+                lives[place] -= 1
+                self._give(place, under_way[place])
+                continue
+            del under_way[place]
+            lives.pop(place)
+            yield place, result
+
+    def _begin(self, under_way: dict[int, Any]) -> None:
+        from distributed import as_completed
+
+        self._places: dict[Any, int] = {}
+        self._ready = as_completed(loop=self._client.loop)
+        for place, item in under_way.items():
+            self._give(place, item)
+
+    def _give(self, place: int, item: object) -> None:
+        future = self._client.submit(guarded, self._ours, self._work, item, pure=False)
+        self._places[future] = place
+        self._ready.add(future)
+
+    def _fill(self, items: Iterator[tuple[int, Any]], under_way: dict[int, Any]) -> None:
+        room = AHEAD * self._threads() - len(under_way)
+        for place, item in islice(items, max(0, room)):
+            under_way[place] = item
+            self._give(place, item)
+
+    def _result(self, future: Any, item: T, lost: Callable[[T], R] | None, lives: int) -> R:
+        from distributed import KilledWorker
+
+        try:
+            return future.result(timeout=PATIENCE)
+        except KilledWorker:
+            if lives > 1:
+                raise Lost from None
+            if lost is None:
+                raise BadInput("workers", "", ABSENT, "died each time that they did a piece of the work") from None
+            return lost(item)
+
+    def _threads(self) -> int:
+        if self._scheduler is None:
+            return self._workers
+        now = time.monotonic()
+        if now > self._counted_at + 5.0:
+            self._counted_at = now
+            self._count = max(1, sum(self._client.nthreads().values()))
+        return self._count
+
+    def _reconnect(self) -> None:
+        """A scheduler that went may come again, at its address, with new workers."""
+        if self._scheduler is None:
+            raise BadInput("workers", "", ABSENT, "the scheduler of this process has ended")
+        self._told(f"The scheduler {self._scheduler} is gone; waiting for it.")
+        self._client.close(timeout=2)
+        until = time.monotonic() + PATIENCE
+        while True:
+            try:
+                self._client = connect(self._workers, self._scheduler)
+                break
+            except BadInput as error:
+                if time.monotonic() > until or error.where != "--scheduler":
+                    raise
+                time.sleep(1.0)
+        self._told("It is there again; what was under way begins anew.")
+
+    def _said_dashboard(self) -> None:
+        link = dashboard(self._client)
+        if link is not None:
+            self._told(f"Dask's dashboard: {link}")
+
+    def close(self) -> None:
+        self._client.close()

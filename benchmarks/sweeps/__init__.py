@@ -1,0 +1,1 @@
+"""What the bench of studies does: processes that die, times, memory."""

@@ -1,0 +1,54 @@
+import numpy as np
+import pytest
+
+from app.report.drawing import svg_of
+from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity, short
+from app.studies.study_statistics import Index, Point, RocPoint
+
+
+def points(*values: float | str) -> list[Point]:
+    return [Point(value, 4, 0.5, 0.25, 0.75) for value in values]
+
+
+def test_a_curve_has_its_axes_and_its_lines() -> None:
+    text = svg_of(curves({"a": points(1.0, 2.0), "b": points(1.0, 2.0)}, "mass [kg]", "refused", share=True, by="limit"))
+    for word in ("mass [kg]", "refused [% of runs]", "limit", ">a<", ">b<"):
+        assert word in text
+    assert text == svg_of(curves({"a": points(1.0, 2.0), "b": points(1.0, 2.0)}, "mass [kg]", "refused", share=True, by="limit"))
+
+
+def test_a_band_reaches_from_low_to_high() -> None:
+    axes = curves({"": points(1.0, 2.0)}, "x", "y", share=True).axes[0]
+    box = axes.collections[0].get_paths()[0].get_extents()
+    assert (box.ymin, box.ymax) == (25.0, 75.0)
+
+
+@pytest.mark.parametrize(("values", "scale"), [((1.0, 10.0), "linear"), ((1.0, 100.0), "log"), ((0.0, 100.0), "linear")])
+def test_a_wide_factor_has_a_logarithmic_scale(values: tuple[float, ...], scale: str) -> None:
+    assert curves({"": points(*values)}, "x", "y", share=False).axes[0].get_xscale() == scale
+
+
+def test_names_stand_beside_each_other() -> None:
+    text = svg_of(curves({"": points("slowly", "at once")}, "x", "y", share=False))
+    assert ">slowly<" in text
+    assert ">at once<" in text
+
+
+def test_a_map_says_its_numbers_and_what_is_missing() -> None:
+    text = svg_of(heat_map([1.0, 2.0], ["a", "b"], np.array([[0.1, 0.2], [np.nan, 0.4]]), ["r", "c", "m"], share=True))
+    assert all(f">{word}<" in text for word in ("10", "20", "40", "-", "r", "c", "m [% of runs]"))
+
+
+def test_a_limit_is_a_point_with_two_shares() -> None:
+    text = svg_of(roc_chart([RocPoint(5.8, *points(0.0, 0.0)), RocPoint(7.0, *points(0.0, 0.0))], "limit [N]"))
+    assert ">5.8<" in text
+    assert ">area 0.500<" in text
+
+
+def test_bars_name_their_factors() -> None:
+    text = svg_of(sensitivity({"way": [Index("mass", 0.5, 0.1)], "time": [Index("mass", 0.2, 0.1), Index("gap", 0.1, 0.1)]}))
+    assert all(f">{word}<" in text for word in ("mass", "gap", "way", "time"))
+
+
+def test_short_numbers() -> None:
+    assert [short(value) for value in (200000.0, 0.0747674, 2.0, "x")] == ["200000", "0.07477", "2", "x"]
