@@ -23,7 +23,7 @@ from pendant.events.event import Event
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
-LEFT = 264
+LEFT = 340
 """Width of the left docks [pixels]."""
 
 

@@ -63,6 +63,11 @@ def rings(pictures: Iterable[str]) -> str:
     return f'<div class="pd-rings">{inside}</div>'
 
 
+def beat(seconds: int) -> str:
+    """Nothing to see: while it changes, the page knows that the server is there."""
+    return f'<span hidden data-pd-beat="{seconds}"></span>'
+
+
 def note(headline: str, text: str, colour: Colour, reasons: Sequence[str] = ()) -> str:
     """A short message: a headline, what to do, and the numbers that led to it."""
     lines = "".join(f"<li>{escape(reason)}</li>" for reason in reasons)
