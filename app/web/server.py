@@ -97,6 +97,7 @@ class Served(Site):
 
     async def _farewell(self, client: viser.ClientHandle) -> None:
         self.control.farewell(client.client_id)
+        self.panel.holds.forget(client.client_id)
         self.preferences.farewell(client.client_id)
         self.keys.forget(client.client_id)
 

@@ -20,12 +20,15 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 [id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
 {plain}{{{QUIET};height:34px!important;border-radius:8px}} {plain.replace("]", "]:disabled")}{{opacity:.6}}
+:root:has([data-pd-watching]) :is(.mantine-Button-root,.mantine-Slider-root):not([id="{stop}"]){{opacity:.55}}
+[id="{stop}"],[id="{free_drive}"]{{min-height:56px}}
 </style>"""
 
 
 def beside(button: str) -> str:
     """Put the button with this id at the end of the line above it."""
     return (
-        f'<style>div:has(>[id="{button}"]){{margin:-40px 12px 6px auto!important;padding:0!important;width:88px}}'
-        f'[id="{button}"]{{height:36px!important;font-size:13px;padding:0;border-radius:6px;{QUIET}}}</style>'
+        f'<style>div:has(>[id="{button}"]){{margin:-46px 12px 8px auto!important;padding:0!important;width:88px}}'
+        f'[id="{button}"]{{height:36px!important;font-size:13px;padding:0;border-radius:6px;{QUIET}}}'
+        f':root [id="{button}"]:not(:disabled){{opacity:1!important}}</style>'
     )

@@ -44,23 +44,37 @@ def light(mode: str, word: str, safety: str, colour: Colour) -> str:
     )
 
 
-def ring(name: str, left: float, share: float, colour: Colour) -> str:
-    """A countdown ring: `left` seconds in the middle, `share` (0..1) of the circle, `name` below."""
-    arc = _AROUND * min(max(share, 0.0), 1.0)
-    return (
-        '<figure><svg viewBox="0 0 64 64" width="64" height="64" role="img">'
-        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-opacity=".12" stroke-width="6"/>'
-        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="{colour.value}" stroke-width="6" stroke-linecap="round" '
-        f'stroke-dasharray="{arc:.1f} {_AROUND:.1f}" transform="rotate(-90 32 32)"/>'
-        f'<text x="32" y="37" text-anchor="middle" font-size="15" font-weight="600" fill="currentColor">{left:.1f}</text></svg>'
-        f"<figcaption>{escape(name)}</figcaption></figure>"
+class Window(NamedTuple):
+    """A running period."""
+
+    name: str
+    left: float  # [s]
+    share: float  # of the whole, 0..1
+    colour: Colour
+
+
+def windows(running: Sequence[Window]) -> str:
+    """The first of the running periods as a ring at the button above it, all of them in a line; its room stays the same."""
+    ring = _ring(running[0]) if running else ""
+    words = "".join(
+        f'<span style="--c:{period.colour.value}"><i></i>{escape(period.name)} <b>{period.left:.1f} s</b></span>'
+        for period in running
     )
+    return f'<div class="pd-windows"><div class="pd-ring">{ring}</div><p>{words}</p></div>'
 
 
-def rings(pictures: Iterable[str]) -> str:
-    """Rings side by side, or a line that says there are none: the room they take stays the same."""
-    inside = "".join(pictures) or "<p>No period is running</p>"
-    return f'<div class="pd-rings">{inside}</div>'
+def _ring(period: Window) -> str:
+    """A countdown ring with the seconds in its middle."""
+    arc = _AROUND * min(max(period.share, 0.0), 1.0)
+    label = f"{escape(period.name)} {period.left:.1f} s"
+    return (
+        f'<svg viewBox="0 0 64 64" width="46" height="46" role="img" aria-label="{label}">'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-opacity=".3" stroke-width="7"/>'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-width="7" stroke-linecap="round" '
+        f'stroke-dasharray="{arc:.1f} {_AROUND:.1f}" transform="rotate(-90 32 32)"/>'
+        f'<text x="32" y="39" text-anchor="middle" font-size="19" font-weight="700" fill="currentColor">'
+        f"{period.left:.1f}</text></svg>"
+    )
 
 
 def beat(seconds: int) -> str:
@@ -94,9 +108,13 @@ def _bar(row: Bar) -> str:
     )
 
 
-def who(text: str, colour: Colour) -> str:
-    """Who has control, in a line."""
-    return f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
+def who(text: str, hint: str, colour: Colour, *, watching: bool = False) -> str:
+    """Who has control, and what a client can do about it; a page that is `watching` greys what it cannot use."""
+    mark = " data-pd-watching" if watching else ""
+    return (
+        f'<div class="pd-who" style="--c:{colour.value}"{mark}><i></i><span><b>{escape(text)}</b>'
+        f"{f'<em>{escape(hint)}</em>' if hint else ''}</span></div>"
+    )
 
 
 def facts(pairs: Iterable[tuple[str, str]]) -> str:
