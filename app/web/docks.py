@@ -80,6 +80,7 @@ class Docks:
             self.lab.drop,
             self.lab.setup.begin,
             self.settings.defaults,
+            self.settings.undo,
             self.tools.use,
             self.tools.enter,
             self.tools.apply,

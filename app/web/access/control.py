@@ -95,7 +95,7 @@ class Control:
         if holder == number:
             return "You have control", "", Colour.GREEN
         if holder is None:
-            return "Nobody has control", "Whatever you press takes it.", Colour.GREY
+            return "Nobody has control", "Any press takes it.", Colour.GREY
         name = f"Client {holder + 1}"
         text = f"You lost control: {name} has control" if number in self._robbed else f"Watching: {name} has control"
         if left is None:

@@ -33,7 +33,7 @@ ENDED = frozenset({Effect.ENTER, Effect.TRY})
 """Effects after which what refused or ended free-drive before is the past."""
 
 
-class Said(NamedTuple):
+class PanelText(NamedTuple):
     """What the panel says."""
 
     headline: str
@@ -44,15 +44,17 @@ class Said(NamedTuple):
 
 
 HINTS = {
-    Mode.TEACH: Said("Drag the arm", "It holds its place. Hold the button for free-drive, then drag it again.", Colour.GREY),
-    Mode.NORMAL: Said("The arm holds its place", "Choose TEACH to guide it by hand or to teach it.", Colour.GREY),
-    Mode.REMOTE: Said("A remote controller has the arm", "Choose TEACH to take it back to this pendant.", Colour.GREY),
-    Mode.RUN: Said("The program runs", "Keep out of its way. Pause and Stop are on the tab Teach.", Colour.GREEN),
-    Mode.FREE_DRIVE: Said("Guide the arm", "Drag it. A short press of the button, or Leave, ends free-drive.", Colour.BLUE),
-    Mode.STOP: Said("Stopped", "See what happened, then press Reset.", Colour.RED),
+    Mode.TEACH: PanelText("Drag the arm", "It holds its place. Hold the button for free-drive, then drag it again.", Colour.GREY),
+    Mode.NORMAL: PanelText("The arm holds its place", "Choose TEACH to guide it by hand or to teach it.", Colour.GREY),
+    Mode.REMOTE: PanelText("A remote controller has the arm", "Choose TEACH to take it back to this pendant.", Colour.GREY),
+    Mode.RUN: PanelText("The program runs", "Keep out of its way. Pause and Stop are on the tab Teach.", Colour.GREEN),
+    Mode.FREE_DRIVE: PanelText("Guide the arm", "Drag it. A short press of the button, or Leave, ends free-drive.", Colour.BLUE),
+    Mode.STOP: PanelText("Stopped", "See what happened, then press Reset.", Colour.RED),
 }
-PROGRAM_PAUSED = Said("The program is paused", "Run goes on with it, Stop ends it: both on the tab Teach.", Colour.AMBER)
-CLOCK_PAUSED = Said("The simulation is paused", "Nothing moves. Run, on the tab Lab, or the key P lets it go on.", Colour.AMBER)
+PROGRAM_PAUSED = PanelText("The program is paused", "Run goes on with it, Stop ends it: both on the tab Teach.", Colour.AMBER)
+CLOCK_PAUSED = PanelText(
+    "The simulation is paused", "Nothing moves. Run, on the tab Lab, or the key P lets it go on.", Colour.AMBER
+)
 
 
 @dataclass(slots=True)
@@ -109,7 +111,7 @@ class Remembered:
         return decision.mode is Mode.FREE_DRIVE and row.effect is not Effect.ENTER
 
 
-def said(remembered: Remembered, decision: Decision, *, paused: bool = False) -> Said:
+def said(remembered: Remembered, decision: Decision, *, paused: bool = False) -> PanelText:
     """What the panel says in a state; `paused` is that of the simulation's clock."""
     if decision.mode is Mode.STOP:
         return HINTS[Mode.STOP] if remembered.stop is None else _told(remembered.stop)
@@ -127,10 +129,10 @@ def said(remembered: Remembered, decision: Decision, *, paused: bool = False) ->
     return HINTS[decision.mode]
 
 
-def _told(event: Event, prevented: list[Event] | tuple[()] = ()) -> Said:
+def _told(event: Event, prevented: list[Event] | tuple[()] = ()) -> PanelText:
     headline, guidance = render(event)
     colour = SEVERITY_COLOURS[TABLE[event.kind].severity]
-    return Said(headline, guidance, colour, tuple(_reason(reason) for reason in prevented[:REASONS]), event)
+    return PanelText(headline, guidance, colour, tuple(_reason(reason) for reason in prevented[:REASONS]), event)
 
 
 def _reason(event: Event) -> str:

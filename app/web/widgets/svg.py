@@ -133,6 +133,14 @@ def loads(true: float, configured: float) -> str:
     )
 
 
+def differences(text: str, rows: Sequence[tuple[str, str, str]]) -> str:
+    """What would change: name, from, to."""
+    lines = "".join(f"<tr><td>{escape(name)}</td><td>{escape(old)}</td><td>{escape(new)}</td></tr>" for name, old, new in rows)
+    head = "<tr><th>Setting</th><th>now</th><th>then</th></tr>"
+    told = f"<table>{head}{lines}</table>" if rows else "<p>Nothing would change.</p>"
+    return f'<div class="pd-diff"><p>{escape(text)}</p>{told}</div>'
+
+
 def fine_print(text: str) -> str:
     """A line in small letters."""
     return f'<p class="pd-fine">{escape(text)}</p>'
