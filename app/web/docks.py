@@ -64,6 +64,7 @@ class Docks:
             self.contacts = Contacts(server, arm)
         with self._lower.add_tab("Plots"):
             self.plots = Plots(gui, loop, arm)
+        self.journal.look_at = self.plots.look_at
         with self._lower.add_tab("Record"):
             self.recording = RecordingSwitch(gui, recording)
         self.network: NetworkTab | None = None

@@ -93,6 +93,15 @@
   addEventListener("keydown", (event) => { const head = event.target;
     if ((event.key === "Enter" || event.key === " ") && head.getAttribute && head.tagName === "DIV" && head.getAttribute("role") === "button") { event.preventDefault(); head.click(); } }, true);
 
+  // A row of the event log is the choice of its moment; the pace says more when it is pressed.
+  const option = (text) => all("[role=option]").find((one) => one.textContent.trim() === text);
+  const picked = (target) => { const row = target.closest && target.closest("[data-pd-pick]"); if (!row) return;
+    const one = option(row.getAttribute("data-pd-pick").trim()); if (one) one.click();
+    const plots = all("[role=tab]").find((tab) => tab.textContent.trim() === "Plots"); if (plots) press(plots); };
+  addEventListener("click", (event) => { picked(event.target);
+    if (event.target.closest && event.target.closest(".pd-pace")) document.documentElement.classList.toggle("pd-explain"); });
+  addEventListener("keydown", (event) => { if (event.key === "Enter") picked(event.target); });
+
   // One live region: the mode light and the message, when they say something else.
   let last = "";
   const tell = () => { const live = at("#pd-live"), light = at(".pd-light"), note = at(".pd-note b"); if (!live || !light) return;

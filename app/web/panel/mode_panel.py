@@ -5,6 +5,7 @@ import viser
 from app.web.access.guard import Guard
 from app.web.panel.activation_switches import ActivationSwitches
 from app.web.panel.button_holds import ButtonHolds
+from app.web.panel.pace import pace
 from app.web.panel.panel_message import HINTS, Remembered, said
 from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS
 from app.web.panel.way_back import WayBack
@@ -83,7 +84,9 @@ class Panel:
         word, colour = ("Clock paused", Colour.AMBER) if self._loop.paused else _state(decision)
         bars = decision.monitored
         changed = [
-            self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
+            self.light.show(
+                svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour, pace(self._loop))
+            ),
             self.rings.show(svg.windows([self._window(p.name, p.ticks, p.total, colour) for p in decision.periods])),
             self.note.show(svg.note(self.said.headline, self.said.text, self.said.colour, self.said.reasons)),
             self.back.show(snapshot, fresh),

@@ -36,11 +36,26 @@ RADIUS = 26.0
 _AROUND = 2 * math.pi * RADIUS
 
 
-def light(mode: str, word: str, safety: str, colour: Colour) -> str:
-    """The mode light: mode in large letters, what it means in a word, safety mode beside it."""
+class Pace(NamedTuple):
+    """How the machine keeps up with the clock: a word, its colour, and a line for who asks."""
+
+    word: str
+    colour: Colour
+    line: str
+
+
+def light(mode: str, word: str, safety: str, colour: Colour, pace: Pace | None = None) -> str:
+    """The mode light: mode in large letters, what it means in a word, safety mode beside it, and the pace below that."""
+    told = ""
+    if pace is not None:
+        told = (
+            f'<button type="button" class="pd-pace" style="--c:{pace.colour.value}" title="{escape(pace.line)}"><i></i>'
+            f"{escape(pace.word)}</button>"
+        )
+    line = "" if pace is None else f'<p class="pd-pace-line">{escape(pace.line)}</p>'
     return (
         f'<div class="pd-light" style="--c:{colour.value}"><i></i><div><b>{escape(mode)}</b><span>{escape(word)}</span></div>'
-        f"<em>Safety<strong>{escape(safety)}</strong></em></div>"
+        f"<em>Safety<strong>{escape(safety)}</strong>{told}</em></div>{line}"
     )
 
 
@@ -146,16 +161,39 @@ def fine_print(text: str) -> str:
     return f'<p class="pd-fine">{escape(text)}</p>'
 
 
+class LogLine(NamedTuple):
+    """A row of the event log. `moment` is its name in the choice of the plots; without a time it divides."""
+
+    time: str
+    text: str
+    colour: Colour
+    moment: str
+    count: int
+
+
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
-    """The event log: time, text, colour of its mark."""
-    lines = "".join(
-        f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>'
-        for time, text, colour in rows
-    )
+    """A list of messages: time, text, colour of its mark."""
+    return event_log(LogLine(time, text, colour, "", 1) for time, text, colour in rows)
+
+
+def event_log(rows: Iterable[LogLine]) -> str:
+    """The event log: colour of its mark, time, text, and how often."""
+    lines = "".join(map(_log_line, rows))
     return (
         f'<div class="pd-events pd-log"><table>{lines}</table></div>'
         if lines
         else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
+    )
+
+
+def _log_line(row: LogLine) -> str:
+    if not row.time:
+        return f'<tr class="pd-divide"><td colspan="3">{escape(row.text)}</td></tr>'
+    often = f' <b class="pd-count">{row.count} ×</b>' if row.count > 1 else ""
+    leads = f' tabindex="0" data-pd-pick="{escape(row.moment)}"' if row.moment else ""
+    return (
+        f'<tr{leads}><td style="--c:{row.colour.value}"><i></i></td>'
+        f"<td>{escape(row.time)}</td><td>{escape(row.text)}{often}</td></tr>"
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.plots import SAMPLES, View
+from app.web.tabs.plots import KEPT, View
 from pendant.events.event import Kind
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -39,12 +39,12 @@ TOUCH = {
 def test_a_sample_is_taken_twenty_times_a_second_and_memory_is_fixed(loop: FakeLoop, still: Served) -> None:
     plots = still.docks.plots
     force = plots.history.force
-    for _ in range(3 * SAMPLES):
+    for _ in range(KEPT + 100):
         loop.advance(0.05)
         plots.show(loop.latest())
         assert not plots.show(loop.latest())
     assert plots.history.force is force
-    assert force.shape == (3, SAMPLES)
+    assert force.shape == (3, KEPT)
     assert np.isfinite(force).all()
 
 
@@ -53,7 +53,23 @@ def test_a_new_start_begins_empty(loop: FakeLoop, still: Served) -> None:
     still.docks.plots.show(loop.latest())
     loop.tick = 1
     still.docks.plots.show(loop.latest())
-    assert np.isnan(still.docks.plots.history.rate).sum() == SAMPLES - 1
+    assert np.isnan(still.docks.plots.history.rate).sum() == KEPT - 1
+
+
+def test_a_moment_that_is_looked_at_stays_in_the_picture(loop: FakeLoop, still: Served) -> None:
+    plots = still.docks.plots
+    for _ in range(300):
+        loop.advance(0.05)
+        plots.show(loop.latest())
+    plots.look_at(loop.tick - 2500)
+    before = plots.upper.shown
+    assert "stroke-dasharray" in before  # its mark
+    for _ in range(20):
+        loop.advance(0.05)
+        plots.show(loop.latest())
+    assert plots.upper.shown == before
+    plots.look_at(None)
+    assert "stroke-dasharray" not in plots.upper.shown
 
 
 @pytest.mark.parametrize("view", list(View))
