@@ -5,11 +5,13 @@ import viser
 from app.web.access.guard import Guard
 from app.web.panel.activation_switches import ActivationSwitches
 from app.web.panel.button_holds import ButtonHolds
-from app.web.panel.pace import pace
+from app.web.panel.clock_pace import pace
 from app.web.panel.panel_message import HINTS, Remembered, said
+from app.web.panel.reasons_at_the_arm import rgb, show_reasons
 from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
+from app.web.scene.arm_marks import ArmMarks
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Bar, Colour
@@ -55,6 +57,7 @@ class Panel:
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
         self.note = Html(gui, svg.note(*HINTS[Mode.TEACH][:3]))
         self.back = WayBack(server, arm)
+        self.marks = ArmMarks(server, arm)
         self.numbers = Html(gui)
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self.activation = ActivationSwitches(gui, guard, loop)
@@ -85,11 +88,13 @@ class Panel:
         bars = decision.monitored
         changed = [
             self.light.show(
-                svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour, pace(self._loop))
+                svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour, pace=pace(self._loop))
             ),
             self.rings.show(svg.windows([self._window(p.name, p.ticks, p.total, colour) for p in decision.periods])),
             self.note.show(svg.note(self.said.headline, self.said.text, self.said.colour, self.said.reasons)),
             self.back.show(snapshot, fresh),
+            self.marks.light(rgb(colour)),
+            show_reasons(self.marks, self.said, self._remembered, snapshot),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.free_drive, True),

@@ -36,7 +36,7 @@ RADIUS = 26.0
 _AROUND = 2 * math.pi * RADIUS
 
 
-class Pace(NamedTuple):
+class PaceWord(NamedTuple):
     """How the machine keeps up with the clock: a word, its colour, and a line for who asks."""
 
     word: str
@@ -44,7 +44,7 @@ class Pace(NamedTuple):
     line: str
 
 
-def light(mode: str, word: str, safety: str, colour: Colour, pace: Pace | None = None) -> str:
+def light(mode: str, word: str, safety: str, colour: Colour, *, pace: PaceWord | None = None) -> str:
     """The mode light: mode in large letters, what it means in a word, safety mode beside it, and the pace below that."""
     told = ""
     if pace is not None:

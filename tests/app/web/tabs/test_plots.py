@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.web.server import Served
+from app.web.tabs.contact_log import FADE
 from app.web.tabs.plots import KEPT, View
 from pendant.events.event import Kind
 from tests.app.web.fake_loop import FakeLoop
@@ -81,6 +82,21 @@ def test_every_view_is_drawn(served: Served, join: Join, loop: FakeLoop, view: V
     client.set(plots.view._impl.uuid, value=view.value)
     until(lambda: plots.view.value == view.value and "<svg" in plots.upper.shown, "drawn")
     until(lambda: plots.joint.visible == (view in (View.FRICTION, View.TORQUE)), "the joint's choice")
+
+
+def test_the_mark_of_the_newest_contact_fades_and_goes_with_a_new_start(loop: FakeLoop, still: Served) -> None:
+    contacts = still.docks.contacts
+    for restart in (False, True):
+        loop.tick = 1000
+        loop.note(Kind.CONTACT_GAINED, **TOUCH)
+        still.docks.show(loop.latest())
+        assert (contacts.ball.visible, contacts.ball.opacity) == (True, 1.0)
+        loop.tick += FADE // 2
+        still.docks.show(loop.latest())
+        assert contacts.ball.opacity == pytest.approx(0.5)
+        loop.tick = 5 if restart else loop.tick + FADE
+        still.docks.show(loop.latest())
+        assert not any(node.visible for node in (contacts.ball, contacts.force, contacts.acceleration, contacts.label))
 
 
 def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) -> None:
