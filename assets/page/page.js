@@ -45,8 +45,9 @@
       const told = beat && silent > STALE ? `No answer from the simulation for ${Math.floor(silent / 1000)} s. What you see is old; nothing that you press arrives.` : "";
       if (Boolean(told) !== lost.classList.contains("pd-on")) { lost.classList.toggle("pd-on", Boolean(told)); if (told) release(); }
       if (told) lost.textContent = told; }
-    if (beat && at("canvas") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
-  const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore(); };
+    if (beat && at(".pd-picture") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
+  const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore();
+    const place = at(".pd-picture"); if (place && !at("#pd-tour")) { const card = made("section", "pd-tour", "region"); card.setAttribute("aria-label", "Tour"); place.append(card); tour(); } };
 
   // What a reload keeps: dark or light, the tabs that were chosen, the width of the left side.
   const strips = () => all("[role=tablist]").filter((list) => list.getBoundingClientRect().left < innerWidth / 2);
@@ -97,6 +98,7 @@
   const option = (text) => all("[role=option]").find((one) => one.textContent.trim() === text);
   const picked = (target) => { const row = target.closest && target.closest("[data-pd-pick]"); if (!row) return;
     const one = option(row.getAttribute("data-pd-pick").trim()); if (one) one.click();
+    if (!row.closest(".pd-log")) return;
     const plots = all("[role=tab]").find((tab) => tab.textContent.trim() === "Plots"); if (plots) press(plots); };
   addEventListener("click", (event) => { picked(event.target);
     if (event.target.closest && event.target.closest(".pd-pace")) document.documentElement.classList.toggle("pd-explain"); });
@@ -108,10 +110,36 @@
     const text = [at("b", light), at("span", light), at("strong", light), note].filter(Boolean).map((part) => part.textContent).join(", ");
     if (text !== last) { last = text; live.textContent = text; } };
 
+  // A tour of five steps for who is new. A step is over when the page shows it, or by Next; it can be left at any time.
+  const mode = () => (at(".pd-light b") || { textContent: "" }).textContent;
+  const STEPS = [
+    { title: "Push the arm", text: "Drag its last link. The arrow is the force of your hand; the arm holds its place." },
+    { title: "Free it", text: "Hold the blue button for a second, then hands off until the check is over.", aim: freeDrive, over: () => mode() === "FREE-DRIVE" },
+    { title: "Guide it", text: "Drag the arm again: it follows. Register waypoint, on the tab Teach, keeps a posture." },
+    { title: "Let it be", text: "Wait, or press Leave free-drive. The ring at the button shows what is left.", aim: freeDrive, over: () => mode() === "TEACH" },
+    { title: "Stop it", text: "Press EMERGENCY STOP or the key X. The panel says why it stands; then press Reset.", aim: stop, over: () => mode() === "STOP" } ];
+  let step = -1;
+  const tour = () => { const card = at("#pd-tour"); if (!card) return;
+    for (const aimed of all(".pd-aim")) aimed.classList.remove("pd-aim");
+    if (kept.toured && step < 0) { card.remove(); return; }
+    card.replaceChildren();
+    const button = (text, act) => { const one = Object.assign(document.createElement("button"), { type: "button", textContent: text }); one.addEventListener("click", act); return one; };
+    const leave = () => { step = -1; keep("toured", true); tour(); };
+    if (step < 0) { card.append(button("New here? Five steps", () => { step = 0; tour(); }), button("No, thanks", leave)); return; }
+    const one = STEPS[step], last = step === STEPS.length - 1;
+    const title = Object.assign(document.createElement("b"), { textContent: `${step + 1} of ${STEPS.length}: ${one.title}` });
+    card.append(title, Object.assign(document.createElement("p"), { textContent: one.text }),
+      button(last ? "Done" : "Next", () => { if (last) leave(); else { step += 1; tour(); } }));
+    if (!last) card.append(button("Leave the tour", leave));
+    const aim = one.aim && one.aim(); if (aim) aim.classList.add("pd-aim"); };
+  let was = false;
+  const advance = () => { const one = STEPS[step]; if (!one || !one.over) { was = false; return; }
+    const over = one.over(); if (over && was === false && step < STEPS.length - 1) { step += 1; tour(); was = Boolean(STEPS[step].over && STEPS[step].over()); } };
+
   addEventListener("DOMContentLoaded", () => {
     const skip = Object.assign(made("a", "", "button"), { href: "#", className: "pd-skip", textContent: "To the emergency stop (key X from anywhere)" });
     skip.addEventListener("click", (event) => { event.preventDefault(); const button = stop(); if (button) button.focus(); });
     const live = Object.assign(made("div", "pd-live", "status"), { className: "pd-unseen" });
     document.body.prepend(skip, live, made("div", "pd-lost", "alert"));
-    setInterval(() => { listen(); nameAll(); }, BEAT); });
+    setInterval(() => { nameAll(); listen(); advance(); }, BEAT); });
 })();

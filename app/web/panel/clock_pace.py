@@ -1,7 +1,7 @@
 """Whether this machine keeps up with the clock, as a state and not as a row of events."""
 
 from app.web.running import Running
-from app.web.widgets.svg import PaceWord, Colour
+from app.web.widgets.svg import Colour, PaceWord
 
 KEPT_UP = 0.95
 """From this share of the wanted rate on, the machine keeps up."""

@@ -97,7 +97,7 @@ class ArmMarks:
         told: tuple[object, ...] = ()
         if snapshot is not None:
             face = snapshot.truth_links[-1]
-            force = matrix_from_quaternion(face[3:]) @ snapshot.estimate.F_user[:3]
+            force = matrix_from_quaternion(snapshot.truth_links[0, 3:]) @ snapshot.estimate.F_user[:3]  # from axes of B
             size = float(np.linalg.norm(force))
             if size >= LEAST_FORCE:
                 tip = face[:3] + force / size * min(max(size * METRES_PER_NEWTON, SHORTEST), LONGEST)

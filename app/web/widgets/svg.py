@@ -1,7 +1,7 @@
 """Small pictures for the pendant: mode light, countdown rings, tables. Every text that comes from elsewhere is escaped here."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from html import escape
 from typing import NamedTuple
@@ -154,6 +154,20 @@ def differences(text: str, rows: Sequence[tuple[str, str, str]]) -> str:
     head = "<tr><th>Setting</th><th>now</th><th>then</th></tr>"
     told = f"<table>{head}{lines}</table>" if rows else "<p>Nothing would change.</p>"
     return f'<div class="pd-diff"><p>{escape(text)}</p>{told}</div>'
+
+
+def cards(groups: Mapping[str, Sequence[str]], chosen: str) -> str:
+    """Titles to choose from, whole, under the heading of their group; a press chooses what the dropdown calls so."""
+    inside = "".join(
+        f"<h4>{escape(group)}</h4>"
+        + "".join(
+            f'<button type="button" data-pd-pick="{escape(title)}"{" aria-pressed=true" if title == chosen else ""}>'
+            f"{escape(title)}</button>"
+            for title in titles
+        )
+        for group, titles in groups.items()
+    )
+    return f'<div class="pd-cards">{inside or "<p>Nothing has these words.</p>"}</div>'
 
 
 def fine_print(text: str) -> str:
