@@ -1,7 +1,7 @@
 // What the page needs beyond viser's controls: a picture until they are there, what is told when the connection is lost, names
 // for screen readers, the keyboard, and what a reload must not forget. It sends nothing of its own: it presses viser's controls.
 (() => {
-  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000;
+  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 284;
   const at = (selector, within = document) => within.querySelector(selector);
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const read = () => { try { return JSON.parse(localStorage.getItem(KEPT)) || {}; } catch { return {}; } };
@@ -57,7 +57,7 @@
       document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "t", code: "KeyT", bubbles: true }));
     for (const list of strips()) for (const tab of all("[role=tab]", list))
       if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
-    if (kept.width && innerWidth > 1000) resize(kept.width); };
+    if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
   const press = (tab) => { for (const type of ["pointerdown", "mousedown", "pointerup", "mouseup", "click"])
     tab.dispatchEvent(type.startsWith("pointer") ? pointer(type) : new MouseEvent(type, { bubbles: true, button: 0 })); };
   const edge = () => at('[data-dock-region-resize="left"]');
@@ -102,7 +102,8 @@
     const plots = all("[role=tab]").find((tab) => tab.textContent.trim() === "Plots"); if (plots) press(plots); };
   addEventListener("click", (event) => { picked(event.target);
     if (event.target.closest && event.target.closest(".pd-pace")) document.documentElement.classList.toggle("pd-explain"); });
-  addEventListener("keydown", (event) => { if (event.key === "Enter") picked(event.target); });
+  addEventListener("keydown", (event) => { if ((event.key === "Enter" || event.key === " ") && event.target.matches && event.target.matches("[data-pd-pick]")) {
+    event.preventDefault(); picked(event.target); } });
 
   // One live region: the mode light and the message, when they say something else.
   let last = "";
@@ -137,7 +138,7 @@
     const over = one.over(); if (over && was === false && step < STEPS.length - 1) { step += 1; tour(); was = Boolean(STEPS[step].over && STEPS[step].over()); } };
 
   addEventListener("DOMContentLoaded", () => {
-    const skip = Object.assign(made("a", "", "button"), { href: "#", className: "pd-skip", textContent: "To the emergency stop (key X from anywhere)" });
+    const skip = Object.assign(document.createElement("a"), { href: "#", className: "pd-skip", textContent: "Skip to the stop (or key X)" });
     skip.addEventListener("click", (event) => { event.preventDefault(); const button = stop(); if (button) button.focus(); });
     const live = Object.assign(made("div", "pd-live", "status"), { className: "pd-unseen" });
     document.body.prepend(skip, live, made("div", "pd-lost", "alert"));

@@ -161,13 +161,13 @@ def cards(groups: Mapping[str, Sequence[str]], chosen: str) -> str:
     inside = "".join(
         f"<h4>{escape(group)}</h4>"
         + "".join(
-            f'<button type="button" data-pd-pick="{escape(title)}"{" aria-pressed=true" if title == chosen else ""}>'
-            f"{escape(title)}</button>"
+            f'<div role="radio" tabindex="0" data-pd-pick="{escape(title)}" aria-checked="{str(title == chosen).lower()}">'
+            f"{escape(title)}</div>"
             for title in titles
         )
         for group, titles in groups.items()
     )
-    return f'<div class="pd-cards">{inside or "<p>Nothing has these words.</p>"}</div>'
+    return f'<div class="pd-cards" role="radiogroup" aria-label="Scenarios">{inside or "<p>Nothing has these words.</p>"}</div>'
 
 
 def fine_print(text: str) -> str:
