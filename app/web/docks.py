@@ -93,7 +93,10 @@ class Docks:
             self.teach.load,
         )
         sheet.content = style.sheet(
-            self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
+            self.panel.stop._impl.uuid,
+            self.panel.free_drive._impl.uuid,
+            [button._impl.uuid for button in quiet],
+            large=(self.panel.leave._impl.uuid, self.panel.reset._impl.uuid),
         )
 
     def show(self, snapshot: Snapshot) -> bool:

@@ -6,22 +6,25 @@ QUIET = "background:rgba(134,142,150,.12);color:inherit;border:1px solid rgba(13
 """How a button looks that needs no eye."""
 
 
-def sheet(stop: str, free_drive: str, quiet: Iterable[str]) -> str:
-    """The style sheet of the page; the arguments are the ids of its controls, `quiet` those of the buttons that need no eye.
+def sheet(stop: str, free_drive: str, quiet: Iterable[str], *, large: Iterable[str] = ()) -> str:
+    """The style sheet of the page; the arguments are the ids of its controls.
+
+    `quiet` are the buttons that need no eye, `large` those among them that stop or free the arm: a finger finds them.
 
     The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
     gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
     """
     main, low = f':has([id="{free_drive}"])', f':has([id="{stop}"])'
     plain = ",".join(f'[id="{button}"]' for button in quiet)
+    easy = ",".join(f'[id="{button}"]' for button in large) or "[id=none]"
     return f"""<style data-pd-stop="{stop}" data-pd-free-drive="{free_drive}">
-{main}>{low}:not({main}){{flex:0 0 184px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
+{main}>{low}:not({main}){{flex:0 0 200px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
 [style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 [id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
 {plain}{{{QUIET};height:34px!important;border-radius:8px}} {plain.replace("]", "]:disabled")}{{opacity:.6}}
 :root:has([data-pd-watching]) :is(.mantine-Button-root,.mantine-Slider-root):not([id="{stop}"]){{opacity:.55}}
-[id="{stop}"],[id="{free_drive}"]{{min-height:56px}}
+{easy}{{height:44px!important}}
 </style>"""
 
 
