@@ -24,6 +24,9 @@ BETWEEN = 2
 NOW = "now"
 """The choice of the moment that the plots follow by themselves."""
 
+FIRST: tuple[str, ...] = (NOW,)
+"""What can be chosen before anything has happened."""
+
 
 @dataclass(slots=True)
 class LogRow:
@@ -57,7 +60,7 @@ class Journal:
         self._tick = 0
         self._moments: dict[str, int] = {}
         self.filter = gui.add_dropdown("Show", tuple(FILTERS))
-        self.moment: viser.GuiDropdownHandle[str] = gui.add_dropdown("Plots at", (NOW,), hint="Or press a row")
+        self.moment: viser.GuiDropdownHandle[str] = gui.add_dropdown("Plots at", FIRST, hint="Or press a row")
         self.table = Html(gui, svg.event_log(()))
 
         @self.filter.on_update

@@ -182,7 +182,7 @@ class LogLine(NamedTuple):
     text: str
     colour: Colour
     moment: str
-    count: int
+    often: int
 
 
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
@@ -203,7 +203,7 @@ def event_log(rows: Iterable[LogLine]) -> str:
 def _log_line(row: LogLine) -> str:
     if not row.time:
         return f'<tr class="pd-divide"><td colspan="3">{escape(row.text)}</td></tr>'
-    often = f' <b class="pd-count">{row.count} ×</b>' if row.count > 1 else ""
+    often = f' <b class="pd-count">{row.often} ×</b>' if row.often > 1 else ""
     leads = f' tabindex="0" data-pd-pick="{escape(row.moment)}"' if row.moment else ""
     return (
         f'<tr{leads}><td style="--c:{row.colour.value}"><i></i></td>'
