@@ -105,11 +105,9 @@
   addEventListener("keydown", (event) => { if ((event.key === "Enter" || event.key === " ") && event.target.matches && event.target.matches("[data-pd-pick]")) {
     event.preventDefault(); picked(event.target); } });
 
-  // One live region: the mode light and the message, when they say something else.
-  let last = "";
-  const tell = () => { const live = at("#pd-live"), light = at(".pd-light"), note = at(".pd-note b"); if (!live || !light) return;
-    const text = [at("b", light), at("span", light), at("strong", light), note].filter(Boolean).map((part) => part.textContent).join(", ");
-    if (text !== last) { last = text; live.textContent = text; } };
+  // One live region: what the panel says in words. The element stays when its content changes.
+  const tell = () => { let box = at(".pd-light"); while (box && !at(".pd-note", box)) box = box.parentElement;
+    const note = box && at(".pd-note", box); if (note) { set(note.parentElement, "aria-live", "polite"); set(note.parentElement, "role", "status"); } };
 
   // A tour of five steps for who is new. A step is over when the page shows it, or by Next; it can be left at any time.
   const mode = () => (at(".pd-light b") || { textContent: "" }).textContent;
@@ -140,7 +138,6 @@
   addEventListener("DOMContentLoaded", () => {
     const skip = Object.assign(document.createElement("a"), { href: "#", className: "pd-skip", textContent: "Skip to the stop (or key X)" });
     skip.addEventListener("click", (event) => { event.preventDefault(); const button = stop(); if (button) button.focus(); });
-    const live = Object.assign(made("div", "pd-live", "status"), { className: "pd-unseen" });
-    document.body.prepend(skip, live, made("div", "pd-lost", "alert"));
+    document.body.prepend(skip, made("div", "pd-lost", "alert"));
     setInterval(() => { nameAll(); listen(); advance(); }, BEAT); });
 })();
