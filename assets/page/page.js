@@ -86,7 +86,7 @@
     for (const group of all(".mantine-Button-root[data-size=compact-xs]")) { const text = group.textContent.trim();
       if (text.length < 2) set(group, "aria-label", `${labelled(group)}: ${{ "↑": "up", "↓": "down", "✕": "delete" }[text] || text}`); }
     for (const close of all(".mantine-Notification-closeButton")) set(close, "aria-label", "Close this message");
-    all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Server and display" : "Command palette"));
+    all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Connection and view" : "Command palette"));
     for (const head of all('[style*="cursor: pointer"]')) { const next = head.nextElementSibling; if (head.tagName !== "DIV" || !next || !at("svg", head) || head.querySelector("input,button") || !/^(button)?$/.test(head.getAttribute("role") || "") || head.closest("[role=tablist]")) continue;
       const hidden = next.getBoundingClientRect().height < 2; set(head, "role", "button"); set(head, "tabindex", "0"); set(head, "aria-expanded", String(!hidden)); }
     for (const list of all("label[for]")) { const target = document.getElementById(list.htmlFor); if (target && target.getAttribute("role") === "presentation") target.removeAttribute("role"); }
