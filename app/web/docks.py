@@ -23,7 +23,7 @@ from pendant.events.event import Event
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
-LEFT = 264
+LEFT = 340
 """Width of the left docks [pixels]."""
 
 
@@ -64,6 +64,7 @@ class Docks:
             self.contacts = Contacts(server, arm)
         with self._lower.add_tab("Plots"):
             self.plots = Plots(gui, loop, arm)
+        self.journal.look_at = self.plots.look_at
         with self._lower.add_tab("Record"):
             self.recording = RecordingSwitch(gui, recording)
         self.network: NetworkTab | None = None
@@ -80,6 +81,7 @@ class Docks:
             self.lab.drop,
             self.lab.setup.begin,
             self.settings.defaults,
+            self.settings.undo,
             self.tools.use,
             self.tools.enter,
             self.tools.apply,
@@ -92,7 +94,10 @@ class Docks:
             self.teach.load,
         )
         sheet.content = style.sheet(
-            self.panel.stop._impl.uuid, self.panel.free_drive._impl.uuid, [button._impl.uuid for button in quiet]
+            self.panel.stop._impl.uuid,
+            self.panel.free_drive._impl.uuid,
+            [button._impl.uuid for button in quiet],
+            large=(self.panel.leave._impl.uuid, self.panel.reset._impl.uuid),
         )
 
     def show(self, snapshot: Snapshot) -> bool:

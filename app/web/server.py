@@ -1,6 +1,7 @@
 """The web app as a whole: the page of a running loop."""
 
 import functools
+import time
 import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
@@ -19,6 +20,8 @@ from app.web.panel.preferences import Preferences
 from app.web.running import Running
 from app.web.scene.arm_picture import TOOL, Scene, frames_of
 from app.web.scene.virtual_hand import VirtualHand
+from app.web.widgets import svg
+from app.web.widgets.html import Html
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 
@@ -45,6 +48,7 @@ class Served(Site):
         self._loop = loop
         self._shown = -1  # tick of the last picture
         self._frame = 0
+        self.beat = Html(self.server.gui, svg.beat(0))
         self.scene = Scene(self.server, arm, scenario, meshes=meshes, first=loop.latest())
         self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
         self.recording = recording
@@ -80,6 +84,7 @@ class Served(Site):
             self.docks.show(snapshot)
             self.control.show()
             self.preferences.show(snapshot.decision)
+            self.beat.show(svg.beat(int(time.monotonic())))
         self._frame += 1
         return True
 
@@ -93,6 +98,7 @@ class Served(Site):
 
     async def _farewell(self, client: viser.ClientHandle) -> None:
         self.control.farewell(client.client_id)
+        self.panel.holds.forget(client.client_id)
         self.preferences.farewell(client.client_id)
         self.keys.forget(client.client_id)
 

@@ -134,11 +134,11 @@ ENTRY: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.WARNING,
         "The force stays: check the payload",
-        "{force:.0f} N: {mass:+.1f} kg more than configured. Hands off? Correct the payload.",
+        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Correct the payload, with hands off.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
-            "{force:.0f} N: {mass:+.1f} kg, or the sensor's zero. Hands off? Zero it, or correct the payload.",
+            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or correct the payload.",
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)

@@ -74,8 +74,8 @@ def visit(browser: Browser, cell: Cell) -> Iterator[Callable[..., Page]]:
     """
     pages: list[Page] = []
 
-    def open_page(width: int = 1280, height: int = 800) -> Page:
-        page = browser.new_context(viewport=ViewportSize(width=width, height=height)).new_page()
+    def open_page(width: int = 1280, height: int = 800, touch: bool = False) -> Page:
+        page = browser.new_context(viewport=ViewportSize(width=width, height=height), has_touch=touch).new_page()
         pages.append(page)
         page.goto(f"{cell.served.url}/{COARSE}")
         page.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)

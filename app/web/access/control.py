@@ -4,6 +4,7 @@ Two, of which one is shown: a single one could be drawn anew between a press and
 opposite of what was pressed.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -32,6 +33,8 @@ class Control:
         self._guard = guard
         self._let_go = let_go
         self._strips: dict[int, Strip] = {}
+        self._had: int | None = None  # who had control when it was last shown
+        self._robbed: set[int] = set()  # those from whom the holder has taken it
 
     def welcome(self, client: viser.ClientHandle) -> None:
         """Give a new client its strip."""
@@ -69,20 +72,34 @@ class Control:
 
     def show(self) -> None:
         """Bring every strip up to date."""
-        holder = self._guard.operator.holder
-        free = self._guard.operator.free(self._guard.now())
+        holder, left = self._guard.operator.holder, self._guard.operator.free_in(self._guard.now())
+        if holder != self._had:
+            self._robbed = set() if holder is None or self._had is None else {*self._robbed, self._had} - {holder}
+            self._had = holder
         here = self._server.get_clients()
         for number, strip in self._strips.items():
             if number not in here:
                 continue
-            if holder == number:
-                text, colour = "You have control", Colour.GREEN
-            elif holder is None:
-                text, colour = "Nobody has control", Colour.GREY
-            else:
-                text, colour = f"Client {holder + 1} has control", Colour.AMBER
-            strip.text.show(svg.who(text, colour) + style.beside(strip.take._impl.uuid) + style.beside(strip.release._impl.uuid))
+            text, hint, colour = self._words(number, holder, left)
+            watching = holder not in (None, number)
+            shown = svg.who(text, hint, colour, watching=watching)
+            strip.text.show(shown + style.beside(strip.take._impl.uuid) + style.beside(strip.release._impl.uuid))
+            free = left == 0.0
             enable(strip.take, free)
             for button, shown in ((strip.take, holder != number), (strip.release, holder == number)):
                 if button.visible is not shown:
                     button.visible = shown
+
+    def _words(self, number: int, holder: int | None, left: float | None) -> tuple[str, str, Colour]:
+        """What a client is told, a second line, and the colour."""
+        if holder == number:
+            return "You have control", "", Colour.GREEN
+        if holder is None:
+            return "Nobody has control", "Any press takes it.", Colour.GREY
+        name = f"Client {holder + 1}"
+        text = f"You lost control: {name} has control" if number in self._robbed else f"Watching: {name} has control"
+        if left is None:
+            return text, "It holds the arm.", Colour.AMBER
+        if left > 0.0:
+            return text, f"Free in {math.ceil(left)} s, or when released.", Colour.AMBER
+        return text, "It is silent: whatever you press takes control.", Colour.AMBER

@@ -38,6 +38,12 @@ class Operator:
         self._engaged = False
         return True
 
+    def free_in(self, now: float) -> float | None:
+        """Time until somebody else could take control [s]; None while the holder holds the arm."""
+        if self.holder is None:
+            return 0.0
+        return None if self._engaged else max(0.0, SILENCE - (now - self._last_act))
+
     def free(self, now: float) -> bool:
         """Whether somebody else could take control now."""
         return self.holder is None or (not self._engaged and now - self._last_act >= SILENCE)

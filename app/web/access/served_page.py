@@ -1,12 +1,17 @@
-"""The one page that viser serves: its security headers and its name."""
+"""The one page that viser serves: its security headers, its name, and what assets/page adds to it."""
 
+import base64
 import functools
 import gzip
 
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
+from app.files.library import ASSETS
+
 TITLE = "pendant"
+THEIRS = b"<title>Viser</title>"
+"""In its place stands what we add: before the client's script, so that it is seen while that is still being read."""
 
 
 def dress(response: Response, host: str) -> Response:
@@ -34,6 +39,19 @@ def dress(response: Response, host: str) -> Response:
 @functools.lru_cache(maxsize=4)
 def _named(body: bytes, packed: bool) -> bytes:
     page = gzip.decompress(body) if packed else body
-    page = page.replace(b"<title>Viser</title>", f"<title>{TITLE}</title>".encode(), 1)
     page = page.replace(b'content="Viser client"', b'content="A teach pendant and its arm, simulated"', 1)
+    page = page.replace(THEIRS, _added(), 1)
     return gzip.compress(page, mtime=0) if packed else page
+
+
+@functools.cache
+def _added() -> bytes:
+    """Style, script, and the picture that is shown until the client draws."""
+    style, script = ((ASSETS / "page" / name).read_text(encoding="utf-8") for name in ("page.css", "page.js"))
+    picture = base64.b64encode((ASSETS / "page" / "arm.webp").read_bytes()).decode()
+    opening = (
+        '<div id="pd-opening" role="status"><i></i><figure>'
+        f'<img alt="A collaborative robot arm" src="data:image/webp;base64,{picture}" />'
+        "<figcaption>The simulation is opening</figcaption></figure><i></i></div>"
+    )
+    return f"<title>{TITLE}</title><style>{style}</style><script>{script}</script>{opening}".encode()

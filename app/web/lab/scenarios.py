@@ -1,4 +1,7 @@
-"""Ready-made scenarios: bundled sessions that say what to watch, set up with one click, or shown by their own time line."""
+"""Ready-made scenarios: bundled sessions that say what to watch, set up with one click, or shown by their own time line.
+
+They are grouped by what they teach, and found by words of their titles and texts.
+"""
 
 import functools
 
@@ -14,6 +17,20 @@ from app.web.widgets import svg
 from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 from sim.arm.arm_file import Arm
+
+EVERY = "All topics"
+TOPICS = {
+    "Free-drive begins": (
+        *("free-drive", "push-to-activate", "confirmed-by-push", "let-go-too-early", "right-payload"),
+        *("enabling-device", "bump-ignored"),
+    ),
+    "Free-drive is refused": ("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison"),
+    "Free-drive ends": ("left-alone", "short-press", "too-fast", "sensor-fails", "way-back"),
+    "Limits, walls, locked axes": (*("soft-limits", "dynamic-limits", "joint-limits", "wall-walked-down", "axis-locks"),),
+    "Payload, tool, sensor": ("payload-wizard", "zeroed", "hanging", "friction-warm-up"),
+    "Programs and contact": ("hold", "program", "touch-the-table", "network"),
+}
+"""What the scenarios teach, by the names of their files."""
 
 
 @functools.cache
@@ -33,22 +50,39 @@ class Scenarios:
         if not self._names:
             return
         with gui.add_folder("Scenario"):
-            self.choice = gui.add_dropdown("Show", tuple(self._names))
+            self.search = gui.add_text("Search", "", hint="Words of a title or a text")
+            self.topic = gui.add_dropdown("Topic", (EVERY, *TOPICS))
+            self.cards = Html(gui)
+            self.choice = gui.add_dropdown("Chosen", tuple(self._names))
             self.text = Html(gui)
             self.begin = gui.add_button_group("Begin", ("Set up", "Play"))
         self._tell()
 
-        @self.choice.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            self._tell()
+        for control in (self.choice, self.search, self.topic):
+
+            @control.on_update
+            async def _(_: viser.GuiEvent) -> None:
+                self._tell()
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
             self._begin(play=self.begin.value == "Play")
 
+    def found(self) -> dict[str, list[str]]:
+        """Titles by topic, of those that are asked for."""
+        words = self.search.value.casefold().split()
+        chosen: dict[str, list[str]] = {}
+        for title, name in self._names.items():
+            topic = next((topic for topic, names in TOPICS.items() if name in names), "More")
+            text = f"{title} {scenarios()[name].watch} {topic}".casefold()
+            if self.topic.value in (EVERY, topic) and all(word in text for word in words):
+                chosen.setdefault(topic, []).append(title)
+        return {topic: chosen[topic] for topic in (*TOPICS, "More") if topic in chosen}
+
     def _tell(self) -> None:
-        session = scenarios()[self._names[self.choice.value]]
-        self.text.show(svg.note("What to watch", session.watch, Colour.GREY))
+        title = self.choice.value
+        self.cards.show(svg.cards(self.found(), title))
+        self.text.show(svg.note(title, f"Watch: {scenarios()[self._names[title]].watch}", Colour.GREY))
 
     def _begin(self, play: bool) -> None:
         name = self._names[self.choice.value]

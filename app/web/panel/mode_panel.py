@@ -4,18 +4,21 @@ import viser
 
 from app.web.access.guard import Guard
 from app.web.panel.activation_switches import ActivationSwitches
-from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from app.web.panel.button_holds import ButtonHolds
+from app.web.panel.clock_pace import pace
+from app.web.panel.panel_message import HINTS, Remembered, said
+from app.web.panel.reasons_at_the_arm import rgb, show_reasons
+from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
+from app.web.scene.arm_marks import ArmMarks
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Bar, Colour
 from pendant.all_settings import Settings, limits_checksum
 from pendant.decision import Decision
-from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
-from pendant.events.event_row import Clears, Effect, Severity
-from pendant.inputs import Button, Command
+from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.limit_engine import Monitored
 from pendant.tick.modes import TICK_RATE, Mode, Phase
@@ -36,24 +39,14 @@ ABOUT_TO_END = 1.0
 BARS = 5
 """Monitored values shown at once: those nearest to their limits."""
 
-REASONS = 4
-"""Parameters named in a refusal; the log has all of them."""
-
-ASKING = frozenset({Kind.ACTIVATION_STARTED, Kind.SIGNAL_SEEN, Kind.CONFIRM_ASKED, Kind.LET_GO_ASKED, Kind.SEQUENCE_STARTED})
-"""Events that say what the user is to do before free-drive begins; shown while that lasts."""
-
-HINT = svg.note("Drag the arm", "It holds its place. Hold the button for free-drive, then drag it again.", Colour.GREY)
-
 
 class Panel:
     """The pendant docked on the right, with the emergency stop in a panel of its own below it."""
 
     def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, arm: Arm) -> None:
         self._loop = loop
-        self._holders: set[int] = set()
-        self._note: Event | None = None
-        self._asking: Event | None = None
-        self._prevented: list[Event] = []
+        self.holds = ButtonHolds(loop)
+        self._remembered = Remembered()
         self._settings: Settings | None = None
         self._digest = ""
         gui = server.gui
@@ -61,10 +54,11 @@ class Panel:
         self.light = Html(gui)
         self.free_drive = gui.add_button(HOLD, color=(25, 113, 194), icon=viser.Icon.HAND_STOP)
         self.rings = Html(gui)
-        self.note = Html(gui, HINT)
-        self.back = WayBack(server, arm)
-        self.numbers = Html(gui)
         self.leave = gui.add_button("Leave free-drive", color="gray", disabled=True, hint="Key: L")
+        self.note = Html(gui, svg.note(*HINTS[Mode.TEACH][:3]))
+        self.back = WayBack(server, arm)
+        self.marks = ArmMarks(server, arm)
+        self.numbers = Html(gui)
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self.activation = ActivationSwitches(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
@@ -83,18 +77,24 @@ class Panel:
         """Show a snapshot and the events since the last call; True if anything changed."""
         decision = snapshot.decision
         for event in fresh:
-            self._read(event)
-        if self._note is not None and self._over(self._note, decision):
-            self._note = None
+            self._remembered.take(event)
+            if event.kind is Kind.HOLD_SILENT:
+                self.holds.silence()
+        self._remembered.see(decision, snapshot.tick)
         if self._loop.failure:
             return self._fail(self._loop.failure)
-        word, colour = _state(decision)
+        self.said = said(self._remembered, decision, paused=self._loop.paused)
+        word, colour = ("Clock paused", Colour.AMBER) if self._loop.paused else _state(decision)
         bars = decision.monitored
         changed = [
-            self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour)),
-            self.rings.show(svg.rings(self._ring(p.name, p.ticks, p.total, colour) for p in decision.periods)),
-            self.note.show(self._message(decision)),
+            self.light.show(
+                svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour, pace=pace(self._loop))
+            ),
+            self.rings.show(svg.windows([self._window(p.name, p.ticks, p.total, colour) for p in decision.periods])),
+            self.note.show(svg.note(self.said.headline, self.said.text, self.said.colour, self.said.reasons)),
             self.back.show(snapshot, fresh),
+            self.marks.light(rgb(colour)),
+            show_reasons(self.marks, self.said, self._remembered, snapshot),
             self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.free_drive, True),
@@ -109,7 +109,7 @@ class Panel:
         changed = [
             self.light.show(svg.light("FAULT", "Nothing moves", "Unknown", Colour.RED)),
             self.note.show(svg.note("The simulation broke down", f"{reason}. Press Start over, on the tab Lab.", Colour.RED)),
-            self.rings.show(svg.rings(())),
+            self.rings.show(svg.windows([])),
             enable(self.free_drive, False),
             enable(self.leave, False),
             enable(self.reset, False),
@@ -119,12 +119,7 @@ class Panel:
     def let_go(self, client: int) -> None:
         """Release what `client` holds: the button, the enabling device."""
         self.activation.let_go(client)
-        self._release(client)
-
-    def _release(self, client: int) -> None:
-        if client in self._holders:
-            self._holders.discard(client)
-            self._loop.desk.release(Button.FREE_DRIVE)
+        self.holds.let_go(client)
 
     def _name_button(self, decision: Decision) -> bool:
         """While a confirmation is asked for, the button gives it (FD-8)."""
@@ -134,40 +129,9 @@ class Panel:
             self.free_drive.label = label
         return changed
 
-    def _read(self, event: Event) -> None:
-        """Take in an event: what prevented an entry, and the last one that ended or refused something or wants to be read."""
-        row = TABLE[event.kind]
-        if event.kind is Kind.ENTRY_PREVENTED:
-            self._prevented.append(event)
-            return
-        if event.kind in ASKING:
-            self._asking = event
-        if event.kind in (Kind.ACTIVATION_STARTED, Kind.SEQUENCE_STARTED):
-            self._prevented = []
-        worth = row.effect is not Effect.INFO or row.severity >= Severity.NOTICE or event.kind is Kind.ACTIVATION_CANCELLED
-        if event.kind is not Kind.OVERRUN and worth:
-            self._note = event  # a busy machine is told in the log alone: it must not hide why the robot stopped
-
-    def _over(self, event: Event, decision: Decision) -> bool:
-        """Whether a message has nothing to say any more: of a stop that was reset, of free-drive when a program runs."""
-        row = TABLE[event.kind]
-        if row.effect is Effect.LEAVE:
-            return decision.program is ProgramState.RUNNING
-        return row.clears is Clears.RESET and decision.mode is not Mode.STOP
-
-    def _message(self, decision: Decision) -> str:
-        event = self._note
-        if self._asking is not None and decision.phase in ASKED:
-            event = self._asking
-        if event is None:
-            return HINT
-        row = TABLE[event.kind]
-        headline, guidance = render(event)
-        reasons = [_reason(event) for event in self._prevented[:REASONS]] if row.effect is Effect.NO_ENTRY else []
-        return svg.note(headline, guidance, SEVERITY_COLOURS[row.severity], reasons)
-
-    def _ring(self, name: str, ticks: int, total: int, colour: Colour) -> str:
-        return svg.ring(name.capitalize(), ticks / TICK_RATE, ticks / max(total, 1), PERIOD_COLOURS.get(name, colour))
+    def _window(self, name: str, ticks: int, total: int, colour: Colour) -> svg.Window:
+        word = PERIOD_WORDS.get(name, name.capitalize())
+        return svg.Window(word, ticks / TICK_RATE, ticks / max(total, 1), PERIOD_COLOURS.get(name, colour))
 
     def _numbers(self, snapshot: Snapshot) -> list[tuple[str, str]]:
         seen = snapshot.estimate
@@ -175,7 +139,8 @@ class Panel:
         if settings is not self._settings:
             self._settings, self._digest = settings, limits_checksum(settings)
         return [
-            ("Tool, elbow", f"{1000 * seen.v_tcp:.0f}, {1000 * seen.v_elbow:.0f} mm/s"),
+            ("Speed of the tool", f"{1000 * seen.v_tcp:.0f} mm/s"),
+            ("Speed of the elbow", f"{1000 * seen.v_elbow:.0f} mm/s"),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),
@@ -187,13 +152,12 @@ class Panel:
         @self.free_drive.on_hold(callback_hz=HOLD_RATE)
         async def _(event: viser.GuiEvent) -> None:
             if event.client_id is not None:
-                self._holders.add(event.client_id)
-                desk.hold(Button.FREE_DRIVE)
+                self.holds.hold(event.client_id)
 
         @self.free_drive.on_click
         async def _(event: viser.GuiEvent) -> None:
             if event.client_id is not None:
-                self._release(event.client_id)
+                self.holds.lift(event.client_id)
 
         def sends(button: viser.GuiButtonHandle, command: Command) -> None:
             @button.on_click
@@ -213,6 +177,8 @@ def _state(decision: Decision) -> tuple[str, Colour]:
     """The mode light's word and colour."""
     if any(p.name in LEAVING_PERIODS and p.ticks < ABOUT_TO_END * TICK_RATE for p in decision.periods):
         return "About to end", Colour.AMBER
+    if decision.mode is Mode.RUN and decision.program is ProgramState.PAUSED:
+        return "Program paused", Colour.AMBER
     return ASKED.get(decision.phase, WORDS[decision.mode])
 
 
@@ -229,9 +195,3 @@ def _nearest(monitored: tuple[Monitored, ...]) -> list[Bar]:
     """The bars of the values nearest to their limits, nearest first; to a tenth, so that noise does not reorder them."""
     bars = [Bar(value.name, value.part, value.value, value.limit, value.unit) for value in monitored]
     return sorted(bars, key=lambda bar: -round(bar.share, 1))[:BARS]
-
-
-def _reason(event: Event) -> str:
-    """A parameter that prevented entry, in a line (FD-11)."""
-    values = event.values
-    return f"{values['part']} {values['parameter']}: {values['value']:.2g} {values['unit']}, limit {values['limit']:.2g}"

@@ -46,5 +46,18 @@ PERIOD_COLOURS = {
 }
 """Of countdown rings; a period that is not named here has the colour of the mode light."""
 
+PERIOD_WORDS = {
+    "activation": "Keep holding",
+    "feedback": "Hands off",
+    "confirmation": "Confirm within",
+    "let go": "Let go within",
+    "sequence": "Checking",
+    "free-drive": "Move it within",
+    "restart": "Ends in",
+    "cool-down": "Ready again in",
+    "safety": "Recovering",
+}
+"""What a running period is called beside its countdown."""
+
 LEAVING_PERIODS = ("free-drive", "restart")
 """Periods whose end ends free-drive."""

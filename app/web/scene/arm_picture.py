@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
+from app.web.scene.arm_marks import ball_radius
 from app.web.scene.stage import DARK, LIGHT, lay
 from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
+from sim.arm.frames import matrix_from_quaternion
 from sim.arm.scenario import Pad, Plane, Scenario, SnapFit, TwoFrictions
 from sim.exchange.snapshot import Snapshot
 
@@ -29,6 +31,9 @@ LONGEST = 0.4
 
 TOOL = "/arm/tool"
 """Name of the tool's node."""
+
+BELIEVED_APART = 0.05
+"""A configured payload that differs from the true one by less is not shown beside it [kg]."""
 
 TOUCHES = 4
 """Touches shown at once."""
@@ -67,6 +72,10 @@ class Scene:
         self._add_tool(scenario)
         self._add_world(scenario)
         self._payload = server.scene.add_icosphere("/payload", radius=1.0, color=(230, 150, 60), visible=False, cast_shadow=False)
+        self._believed = server.scene.add_icosphere(
+            "/believed", radius=1.0, color=(25, 113, 194), opacity=0.35, visible=False, cast_shadow=False
+        )
+        self._believed_label = server.scene.add_label("/believed label", "", visible=False, anchor="top-center")
         self._arrows = [self._arrow(i) for i in range(TOUCHES)]
         self._shown: list[tuple[float, ...]] = [()] * TOUCHES
         self.walls = WallPictures(server)
@@ -82,6 +91,7 @@ class Scene:
                 poses = snapshot.truth_links if kind == "link" else snapshot.truth_objects
                 changed |= self._place(key, node, poses[int(row)])
             changed |= self._show_payload(snapshot)
+            changed |= self._show_believed(snapshot)
             changed |= self._show_touches(snapshot)
             changed |= self.walls.show(snapshot)
         if changed:
@@ -119,11 +129,32 @@ class Scene:
             self._payload.visible = visible
         if pose is None:
             return changed
-        radius = round((max(snapshot.truth_payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0), 4)
+        radius = ball_radius(snapshot.truth_payload_mass)
         if snapshot.truth_payload_mass > 0.0 and self._payload.scale != radius:
             self._payload.scale = radius
             changed = True
         return self._place("payload", self._payload, pose) or changed
+
+    def _show_believed(self, snapshot: Snapshot) -> bool:
+        """Beside the true payload that which the controller believes in, where they differ."""
+        fitting, mass = snapshot.decision.fitting, snapshot.configured_mass
+        differs = abs(mass - snapshot.truth_payload_mass) >= BELIEVED_APART
+        visible = fitting is not None and differs
+        changed = self._believed.visible != visible
+        if changed:
+            self._believed.visible = self._believed_label.visible = visible
+        if fitting is None or not visible:
+            return changed
+        face = snapshot.truth_links[-1]
+        place = face[:3] + matrix_from_quaternion(face[3:]) @ np.array(fitting.load.com if mass > 0.0 else (0.0, 0.0, 0.05))
+        if self._believed.scale != (radius := ball_radius(mass)):
+            self._believed.scale, changed = radius, True
+        if self._believed_label.text != (text := f"Configured: {mass:.1f} kg"):
+            self._believed_label.text, changed = text, True
+        moved = self._place("believed", self._believed, np.concatenate([place, face[3:]]))
+        if moved:
+            self._believed_label.position = np.round(place, 3)
+        return moved or changed
 
     def _show_touches(self, snapshot: Snapshot) -> bool:
         changed = False

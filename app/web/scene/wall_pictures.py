@@ -25,7 +25,11 @@ STEP = 1e-4
 
 OPACITY = 0.16
 CALM = 0.06
-"""Opacity of a surface that resists, and of one that does not."""
+GLOWING = 0.4
+"""Opacity of a surface that resists, of one that does not, and of the nearest one where the arm is at it."""
+
+GLOW = 0.2
+"""From this distance on the nearest wall glows [m]."""
 
 LEAST_FORCE = 0.5
 """A smaller force is not shown [N]."""
@@ -71,6 +75,9 @@ class WallPictures:
                 self._made += 1
                 drawn = self._drawn[border.name] = DrawnWall(self._server.scene, f"{ROOT}/{self._made}", border)
             changed |= drawn.show(place, states.get(border.name))
+        nearest = max((state for state in states.values() if state.name != TETHER), key=lambda s: s.distance, default=None)
+        for name, drawn in self._drawn.items():
+            changed |= drawn.glow(nearest is not None and name == nearest.name)
         return changed
 
 
@@ -107,6 +114,7 @@ class DrawnWall:
         self._scale = 1.0
         self._told: tuple[object, ...] = ()
         self._colour = GREY
+        self._opacity = CALM
         self._pushes: tuple[float, ...] = ()
 
     def draws(self, border: AnyBorder) -> bool:
@@ -130,7 +138,6 @@ class DrawnWall:
         if colour != self._colour:
             changed, self._colour = True, colour
             self.surface.color = colour
-            self.surface.opacity = CALM if colour in (GREY, GREEN) else OPACITY
             self.outline.colors = np.array(colour, dtype=np.uint8)
             self.way.colors = np.array(colour, dtype=np.uint8)
         # The tether goes along with the hand and is near all the time: it is in the picture once it resists.
@@ -138,6 +145,18 @@ class DrawnWall:
         if seen != self.surface.visible:
             changed = self.surface.visible = self.outline.visible = seen
         return any([changed, self._tell(state if seen else None, seen), self._push(state)])
+
+    def glow(self, nearest: bool) -> bool:
+        """Let the nearest wall glow the more, the nearer it is; True if anything changed."""
+        opacity = CALM if self._colour in (GREY, GREEN) else OPACITY
+        if nearest and self._state is not None:
+            closeness = min(max(1.0 + self._state.distance / GLOW, 0.0), 1.0)
+            opacity = max(opacity, CALM + (GLOWING - CALM) * closeness)
+        opacity = round(opacity / 0.04) * 0.04  # steps that are seen, and few messages
+        if self._opacity == opacity:
+            return False
+        self._opacity = self.surface.opacity = opacity
+        return True
 
     def _move(self, pose: Pose, scale: float) -> bool:
         """Bring the surface to a pose and a size; True if that is elsewhere than it was."""
@@ -221,7 +240,8 @@ def colour_of(state: WallState | None) -> tuple[int, int, int]:
 def text_of(state: WallState) -> str:
     """Name, distance, and the force that it resists with, in words that tell the state without its colour."""
     millimetres = 1000.0 * abs(state.distance)
-    text = f"{state.name}: {millimetres:.0f} mm {'beyond' if state.exceeded else 'left'}"
+    where = f"{millimetres:.0f} mm {'beyond' if state.exceeded else 'left'}" if millimetres >= 0.5 else "at it"
+    text = f"{state.name}: {where}"
     force = math.hypot(*state.force)
     return f"{text}, resists {force:.0f} N" if force >= LEAST_FORCE else text
 

@@ -91,5 +91,5 @@ def _facts(settings: Settings, snapshot: Snapshot) -> list[tuple[str, str]]:
 def _told(snapshot: Snapshot) -> str:
     nearness = snapshot.decision.singularity
     if nearness is None:
-        return svg.note("Singularities", "Told in free-drive.", Colour.GREY)
+        return svg.note("Singularities", "Shown during free-drive.", Colour.GREY)
     return svg.note(*TOLD[nearness])

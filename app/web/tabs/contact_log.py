@@ -27,6 +27,15 @@ SHOWN = 30
 """Contacts in the table."""
 
 NEWEST = "newest"
+FADE = 6 * TICK_RATE
+"""The newest contact is marked for so many ticks, fainter and fainter; one that was chosen stays."""
+
+FAINTER = 6
+"""Steps in which it fades."""
+
+BALL = 0.02
+"""Radius of the mark where it was [m]."""
+
 RED, BLUE = (201, 42, 42), (28, 126, 214)
 COLUMNS = (
     "number",
@@ -68,7 +77,11 @@ class Contacts:
         self.acceleration = _arrow(server, "/contact/acceleration", BLUE)
         self.label = server.scene.add_label("/contact/label", "", visible=False, anchor="bottom-center")
         self.ghost = Ghost(server, arm, "/ghost/contact", RED)
+        self.ball = server.scene.add_icosphere(
+            "/contact/ball", radius=BALL, color=RED, opacity=1.0, visible=False, cast_shadow=False
+        )
         self._marked: tuple[int, str] | None = None
+        self._faded = 0  # steps of fading done
 
         @self.export.on_click
         async def _(event: viser.GuiEvent) -> None:
@@ -103,9 +116,18 @@ class Contacts:
             return False
         wanted = self.choice.value
         number, event = next((entry for entry in self._log if f"{entry[0]}" == wanted), self._log[-1])
+        age = snapshot.tick - event.tick
+        past = wanted == NEWEST and not 0 <= age < FADE  # also of another beginning
+        if past:
+            return any([self._clear(), self.ghost.show(None, snapshot)])
+        faded = age * FAINTER // FADE if wanted == NEWEST else 0
         if self._marked == (number, wanted):
-            return False
-        self._marked = (number, wanted)
+            if faded == self._faded:
+                return False
+            self._faded = faded
+            self.ball.opacity = 1.0 - faded / FAINTER
+            return True
+        self._marked, self._faded = (number, wanted), faded
         values = event.values
         base = snapshot.truth_links[0]
         turn = matrix_from_quaternion(base[3:])
@@ -114,11 +136,20 @@ class Contacts:
         tail = point - _drawn(force, METRES_PER_NEWTON)  # outside of what was touched
         self.force.points = np.array([[tail, point]], dtype=np.float32)
         self.acceleration.points = np.array([[point, point + _drawn(acceleration, METRES_PER_ACCELERATION)]], dtype=np.float32)
-        self.force.visible = self.acceleration.visible = self.label.visible = True
+        self.ball.position, self.ball.opacity = point, 1.0 - faded / FAINTER
+        self.force.visible = self.acceleration.visible = self.label.visible = self.ball.visible = True
         self.label.position = tail
         size = f"{float(values['force']):.0f} N, {float(values['acceleration']):.1f} m/s²"
         self.label.text = f"{number}: {_kind(event)}, {size}"
         self.ghost.show(posture_of(values) if wanted != NEWEST else None, snapshot)  # of one that somebody has asked for
+        return True
+
+    def _clear(self) -> bool:
+        """Take the mark away; True if there was one."""
+        if self._marked is None:
+            return False
+        self._marked = None
+        self.force.visible = self.acceleration.visible = self.label.visible = self.ball.visible = False
         return True
 
 

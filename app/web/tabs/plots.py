@@ -15,7 +15,9 @@ from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
 RATE = 20  # samples a second of simulated time
-SAMPLES = 200  # ten seconds
+SAMPLES = 200  # drawn: ten seconds
+KEPT = 1200  # kept, to go back to a moment: one minute
+AFTER = 3 * TICK_RATE  # ticks drawn after the moment that is looked at
 MARKED = "contact_"  # events whose kind begins like this are marked
 
 
@@ -34,12 +36,12 @@ class PlotHistory:
     """The last samples of everything, oldest first, in arrays of a fixed size."""
 
     def __init__(self, n: int) -> None:
-        blank = np.full(SAMPLES, np.nan)
-        self.force, self.acceleration = np.full((3, SAMPLES), np.nan), np.full((3, SAMPLES), np.nan)
+        blank = np.full(KEPT, np.nan)
+        self.force, self.acceleration = np.full((3, KEPT), np.nan), np.full((3, KEPT), np.nan)
         self.share, self.rate = blank.copy(), blank.copy()
-        self.friction = np.full((3, n, SAMPLES), np.nan)  # true, estimated, its deviation [N·m]
-        self.torque = np.full((4, n, SAMPLES), np.nan)  # true, three ways [N·m]
-        self.tracking = np.full((n, SAMPLES), np.nan)  # [mrad]
+        self.friction = np.full((3, n, KEPT), np.nan)  # true, estimated, its deviation [N·m]
+        self.torque = np.full((4, n, KEPT), np.nan)  # true, three ways [N·m]
+        self.tracking = np.full((n, KEPT), np.nan)  # [mrad]
         self.tick = 0
 
     def add(self, snapshot: Snapshot, rate: float) -> None:
@@ -65,7 +67,8 @@ class Plots:
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._joints = loop, arm.chain.joints
         self.history = PlotHistory(arm.n)
-        self._marks: deque[int] = deque(maxlen=20)  # ticks
+        self._marks: deque[int] = deque(maxlen=60)  # ticks
+        self._moment: int | None = None  # tick that is looked at
         self.view = gui.add_dropdown("Plot", tuple(view.value for view in View))
         self.joint = gui.add_dropdown("Joint", tuple(self._joints), visible=False)
         self.upper, self.lower = Html(gui), Html(gui)
@@ -79,6 +82,11 @@ class Plots:
         """Mark the contacts among new events."""
         self._marks.extend(event.tick for event in fresh if event.kind.value.startswith(MARKED))
 
+    def look_at(self, tick: int | None) -> None:
+        """Show the time round a tick and stay there; None: follow the simulation."""
+        self._moment = tick
+        self._draw()
+
     def show(self, snapshot: Snapshot) -> bool:
         """Take a sample and draw, if it is time; True if anything changed."""
         passed = snapshot.tick - self.history.tick
@@ -87,6 +95,7 @@ class Plots:
         if passed < 0:  # the simulation began again
             self.history = PlotHistory(len(self._joints))
             self._marks.clear()
+            self._moment = None
         self.history.add(snapshot, self._loop.actual_rate)
         return self._draw()
 
@@ -96,30 +105,37 @@ class Plots:
 
     def _pictures(self) -> tuple[str, str]:
         history = self.history
-        newest = SAMPLES - 1
-        marks = [newest - round((history.tick - tick) * RATE / TICK_RATE) for tick in self._marks]
-        marks = [mark for mark in marks if 0 <= mark <= newest]
+        last = history.tick if self._moment is None else min(history.tick, self._moment + AFTER)
+        ago = min(round((history.tick - last) * RATE / TICK_RATE), KEPT - SAMPLES)
+        window = slice(KEPT - SAMPLES - ago, KEPT - ago)
+        ticks = self._marks if self._moment is None else [*self._marks, self._moment]
+        marks = [KEPT - 1 - round((history.tick - tick) * RATE / TICK_RATE) - window.start for tick in ticks]
+        marks = [mark for mark in marks if 0 <= mark < SAMPLES]
         joint = self._joints.index(self.joint.value)
         match View(self.view.value):
             case View.FORCE:
-                force = chart("User force", "N", _xyz(history.force), marks)
-                return force, chart("Acceleration", "m/s²", _xyz(history.acceleration), marks)
+                force = chart("User force", "N", _xyz(history.force[:, window]), marks)
+                return force, chart("Acceleration", "m/s²", _xyz(history.acceleration[:, window]), marks)
             case View.LIMITS:
-                return chart("Nearest to its limit", "%", [Curve("share of the limit", history.share)], marks, limit=100.0), ""
+                return chart(
+                    "Nearest to its limit", "%", [Curve("share of the limit", history.share[window])], marks, limit=100.0
+                ), ""
             case View.FRICTION:
-                true, estimated, deviation = history.friction[:, joint]
+                true, estimated, deviation = history.friction[:, joint, window]
                 lines = [Curve("true", true), Curve("estimated", estimated, dashed=True)]
                 return chart("Friction", "N·m", lines), chart("Its uncertainty", "N·m", [Curve("standard deviation", deviation)])
             case View.TORQUE:
                 names = ("true", "dynamics", "deflection", "motor")
-                lines = [Curve(name, row, name != "true") for name, row in zip(names, history.torque[:, joint], strict=True)]
+                lines = [
+                    Curve(name, row, name != "true") for name, row in zip(names, history.torque[:, joint, window], strict=True)
+                ]
                 errors = [Curve(line.name, line.values - lines[0].values) for line in lines[1:]]
                 return chart("Transmission torque", "N·m", lines), chart("Error of each way", "N·m", errors)
             case View.TRACKING:
-                rows = [Curve(name, row) for name, row in zip(self._joints, history.tracking, strict=True)]
+                rows = [Curve(name, row) for name, row in zip(self._joints, history.tracking[:, window], strict=True)]
                 return chart("Tracking error", "mrad", rows, marks), ""
             case View.RATE:
-                return chart("Rate, simulated over real", "×", [Curve("rate", history.rate)]), ""
+                return chart("Rate, simulated over real", "×", [Curve("rate", history.rate[window])]), ""
 
 
 def _xyz(rows: Array) -> list[Curve]:

@@ -1,5 +1,6 @@
-"""Every setting as a control, a section at a time, rendered from the one schema (pendant.all_settings.describe)."""
+"""The settings in three depths: a safety page, presets, and every setting with search; all from the one schema."""
 
+import asyncio
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -7,24 +8,26 @@ from typing import Any
 import viser
 
 from app.web.running import Running
+from app.web.tuning.presets import changes, presets
+from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
-from pendant.all_settings import Settings, describe, limits_checksum, value_of
+from pendant.all_settings import Settings, describe, find, limits_checksum, value_of
 from pendant.events.event import Event, Kind
 from pendant.settings.schema import SettingRow, Value
 from pendant.tick.modes import Mode, Phase
 from sim.exchange.snapshot import Snapshot
 
-CHANGED = "● "
-"""Stands before the name of a setting that is not at its default."""
+SETTLED = 0.6
+"""A number counts once nobody has typed for this long: of "30" the "3" is not meant [s]."""
 
+MOST = 24
+"""Rows shown of a search."""
 
-def section_of(row: SettingRow) -> str:
-    """The section that a setting is shown in."""
-    return ".".join(row.name.split(".")[: 2 if row.name.startswith("limits.") else 1])
+UNDOS = 50
+"""Changes that can be taken back."""
 
-
-SECTIONS = tuple(dict.fromkeys(section_of(row) for row in describe()))
+VIEWS = ("Safety", "Presets", "All settings")
 BASIC = tuple(dict.fromkeys(section_of(row) for row in describe() if row.basic))
 """The sections that hold a basic setting."""
 
@@ -37,60 +40,103 @@ class SettingsTab:
         self._settings: Settings | None = None
         self._locked = False
         self._lock = threading.Lock()  # controls are made on viser's event loop and brought up to date by the painter
-        self._line = Html(gui)
-        self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
-        self.section = gui.add_dropdown("Section", BASIC)
-        self.defaults = gui.add_button("Section to defaults", color="gray")
+        self._typing: dict[str, asyncio.TimerHandle] = {}
+        self._before: list[dict[str, Value]] = []  # what each change replaced
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
-        self._texts: list[viser.GuiHtmlHandle] = []
+        self._texts: dict[str, Html] = {}
+        self.view = gui.add_button_group("Show", VIEWS)
+        self._chosen = VIEWS[0]
+        self._line = Html(gui)
+        self.undo = gui.add_button("Undo", color="gray", disabled=True)
+        self.preset = gui.add_dropdown("Preset", tuple(presets()), visible=False)
+        self.listed = Html(gui)
+        self.take = gui.add_button("Take this preset", visible=False)
+        self.search = gui.add_text("Search", "", hint="Words of a name, a text or a requirement")
+        self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
+        self.section = gui.add_dropdown("Section", tuple(map(title_of, BASIC)))
+        self.defaults = gui.add_button("Section as shipped", color="gray")
+        self._show_view()
         self._fill()
+        self._connect()
 
-        @self.section.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            with self._lock, self._tab:
-                self._fill()
+    def _connect(self) -> None:
+        def again(control: Any, act: Callable[[], None]) -> None:
+            register = control.on_click if control is self.view else control.on_update
 
-        @self.expert.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            with self._lock, self._tab:
-                self._offer()
-                self._fill()
+            @register
+            async def _(_: viser.GuiEvent) -> None:
+                with self._lock, self._tab:
+                    act()
+                    self._fill()
+
+        again(self.view, self._show_view)
+        for control in (self.section, self.search, self.preset):
+            again(control, lambda: None)
+        again(self.expert, self._offer)
 
         @self.defaults.on_click
         async def _(_: viser.GuiEvent) -> None:
-            self._loop.desk.set({row.name: row.default for row in describe() if section_of(row) == self.section.value})
+            self._change({row.name: row.default for row in describe() if title_of(section_of(row)) == self.section.value})
+
+        @self.take.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._change({change.row.name: change.new for change in changes(self._loop.settings, presets()[self.preset.value])})
+
+        @self.undo.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            if self._before:
+                self._loop.desk.set(self._before.pop())
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Bring the controls up to date with the settings that hold; True if anything changed."""
         settings = self._loop.settings
         decision = snapshot.decision
         locked = decision.mode in (Mode.FREE_DRIVE, Mode.RUN) or decision.phase is Phase.SEQUENCE
+        undone = enable(self.undo, bool(self._before))
         with self._lock:
             relocked = locked != self._locked
             if relocked:
                 self._locked = locked
                 self._let()
             if not relocked and settings is self._settings and all(event.kind is not Kind.SETTING_REFUSED for event in fresh):
-                return False
+                return undone
             self._settings = settings
             self._refresh(settings)
         return True
 
+    def _show_view(self) -> None:
+        """Show the controls of the chosen view alone."""
+        self._chosen = self.view.value if self.view.value in VIEWS else VIEWS[0]
+        for control in (self.preset, self.take):
+            control.visible = self._chosen == VIEWS[1]
+        for control in (self.search, self.expert, self.section, self.defaults):
+            control.visible = self._chosen == VIEWS[2]
+
     def _fill(self) -> None:
-        """Make the controls of the chosen section; within the tab."""
-        for handle in (*self.controls.values(), *self._texts):
+        """Make the controls of the chosen view; within the tab."""
+        for handle in (*self.controls.values(), *self._texts.values()):
             handle.remove()
         controls: dict[str, Any] = {}
-        self._texts = []
+        self._texts = {}
         settings = self._loop.settings
-        self._rows = [row for row in describe() if section_of(row) == self.section.value and self._shows(row, settings)]
-        for row in self._rows:
+        self._rows = self._wanted(settings)
+        for row in self._rows[:MOST] if self.search.value.strip() else self._rows:
             controls[row.name] = self._control(row, value_of(settings, row.name))
-            self._texts.append(self._gui.add_html(svg.fine_print(_about(row))))
+            self._texts[row.name] = Html(self._gui)
+        self._rows = [row for row in self._rows if row.name in controls]
         self.controls = controls
         self._let()
         self._refresh(settings)
+
+    def _wanted(self, settings: Settings) -> list[SettingRow]:
+        if self._chosen == VIEWS[0]:
+            return [find(name) for name in SAFETY]
+        if self._chosen == VIEWS[1]:
+            return []
+        if self.search.value.strip():
+            return found(self.search.value, describe())
+        return [row for row in describe() if title_of(section_of(row)) == self.section.value and self._shows(row, settings)]
 
     def _shows(self, row: SettingRow, settings: Settings) -> bool:
         return self.expert.value or row.basic or value_of(settings, row.name) != row.default
@@ -98,37 +144,65 @@ class SettingsTab:
     def _offer(self) -> None:
         """Offer the sections that have something to show."""
         settings = self._loop.settings
-        offered = tuple(dict.fromkeys(section_of(row) for row in describe() if self._shows(row, settings)))
+        offered = dict.fromkeys(title_of(section_of(row)) for row in describe() if self._shows(row, settings))
         chosen = self.section.value
-        self.section.options = offered
+        self.section.options = tuple(offered)
         if chosen in offered:
             self.section.value = chosen
 
+    def _label(self, row: SettingRow, value: Value) -> str:
+        if self._chosen == VIEWS[0]:
+            return label(row, value, SAFETY[row.name])
+        return label(row, value, f"{title_of(section_of(row))}: {name_of(row)}" if self.search.value.strip() else "")
+
     def _control(self, row: SettingRow, value: Value) -> Any:
-        label = _label(row, value)
+        text, hint = self._label(row, value), f"{row.id}: {row.name}"
         if row.choices:
-            handle: Any = self._gui.add_dropdown(label, row.choices, initial_value=str(value), hint=row.name)
+            handle: Any = self._gui.add_dropdown(text, row.choices, initial_value=str(value), hint=hint)
         elif row.low is None or row.high is None:
-            handle = self._gui.add_checkbox(label, bool(value), hint=row.name)
+            handle = self._gui.add_checkbox(text, bool(value), hint=hint)
         elif row.is_count:
-            handle = self._gui.add_number(label, int(value), min=int(row.low), max=int(row.high), step=1, hint=row.name)
+            handle = self._gui.add_number(text, int(value), min=int(row.low), max=int(row.high), step=1, hint=hint)
         else:
             step = 10.0 ** round_down(row.high - row.low)
-            handle = self._gui.add_number(label, float(value), min=row.low, max=row.high, step=step, hint=row.name)
-        handle.on_update(self._sets(row.name))
+            handle = self._gui.add_number(text, float(value), min=row.low, max=row.high, step=step, hint=hint)
+        handle.on_update(self._sets(row))
         return handle
 
-    def _sets(self, name: str) -> Callable[[viser.GuiEvent], Any]:
+    def _sets(self, row: SettingRow) -> Callable[[viser.GuiEvent], Any]:
+        typed = row.low is not None
+
         async def update(event: viser.GuiEvent) -> None:
-            if event.client_id is not None:  # a person, and not the page bringing itself up to date
-                self._loop.desk.set({name: self.controls[name].value})
+            if event.client_id is None:  # the page brings itself up to date
+                return
+            value = self.controls[row.name].value
+            if not typed:
+                self._change({row.name: value})
+                return
+            waiting = self._typing.pop(row.name, None)
+            if waiting is not None:
+                waiting.cancel()
+            self._typing[row.name] = asyncio.get_running_loop().call_later(SETTLED, self._settle, row.name, value)
 
         return update
+
+    def _settle(self, name: str, value: Value) -> None:
+        self._typing.pop(name, None)
+        self._change({name: value})
+
+    def _change(self, wanted: dict[str, Any]) -> None:
+        """Ask for values, and remember what they replace."""
+        now = self._loop.settings
+        old = {name: value_of(now, name) for name, value in wanted.items() if value_of(now, name) != value}
+        if old:
+            self._before = [*self._before, old][-UNDOS:]
+        self._loop.desk.set(wanted)
 
     def _let(self) -> None:
         for row in self._rows:
             enable(self.controls[row.name], not (row.locked and self._locked))
         enable(self.defaults, not self._locked)
+        enable(self.take, not self._locked)
 
     def _refresh(self, settings: Settings) -> None:
         count = 0
@@ -138,27 +212,25 @@ class SettingsTab:
             control = self.controls.get(row.name)
             if control is None:
                 continue
-            if control.value != value:
+            if control.value != value and row.name not in self._typing:
                 control.value = value
-            if control.label != (label := _label(row, value)):
-                control.label = label
-        state = "Locked while the arm is free or runs" if self._locked else "Taken at the next tick"
+            if control.label != (text := self._label(row, value)):
+                control.label = text
+            self._texts[row.name].show(svg.fine_print(about(row, value)))
+        state = "Locked while the arm is free or runs" if self._locked else "Taken at once"
         self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Now", state)]))
+        self.listed.show(self._changes(settings) if self._chosen == VIEWS[1] else "")
+
+    def _changes(self, settings: Settings) -> str:
+        """What taking the chosen preset would change."""
+        preset = presets()[self.preset.value]
+        rows = [
+            (f"{title_of(section_of(row))}: {name_of(row)}", told(old, row.unit), told(new, row.unit))
+            for row, old, new in changes(settings, preset)
+        ]
+        return svg.differences(preset.text, rows)
 
 
 def round_down(span: float) -> int:
     """The power of ten of a step that divides `span` into 100 to 1000."""
     return next(power for power in range(-6, 4) if 100.0 * 10.0**power * 10.0 >= span)
-
-
-def _label(row: SettingRow, value: Value) -> str:
-    name = row.name.removeprefix(section_of(row) + ".").replace("_", " ").removesuffix(".max").replace(".", " · ")
-    return f"{CHANGED if value != row.default else ''}{name}{f' [{row.unit}]' if row.unit else ''}"
-
-
-def _about(row: SettingRow) -> str:
-    if row.choices:
-        return f"{row.id} · {row.text} · default {row.default}"
-    if row.low is None or row.high is None:
-        return f"{row.id} · {row.text} · default {'on' if row.default else 'off'}"
-    return f"{row.id} · {row.text} · {row.low:g} … {row.high:g} {row.unit} · default {row.default:g}"

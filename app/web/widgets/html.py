@@ -20,6 +20,10 @@ class Html:
         self._handle.content = content
         return True
 
+    def remove(self) -> None:
+        """Take it away."""
+        self._handle.remove()
+
 
 def enable(control: Any, enabled: bool) -> bool:
     """Let a control of viser be used, or not; True if that changed anything."""

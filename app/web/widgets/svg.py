@@ -1,7 +1,7 @@
 """Small pictures for the pendant: mode light, countdown rings, tables. Every text that comes from elsewhere is escaped here."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from html import escape
 from typing import NamedTuple
@@ -36,31 +36,65 @@ RADIUS = 26.0
 _AROUND = 2 * math.pi * RADIUS
 
 
-def light(mode: str, word: str, safety: str, colour: Colour) -> str:
-    """The mode light: mode in large letters, what it means in a word, safety mode beside it."""
+class PaceWord(NamedTuple):
+    """How the machine keeps up with the clock: a word, its colour, and a line for who asks."""
+
+    word: str
+    colour: Colour
+    line: str
+
+
+def light(mode: str, word: str, safety: str, colour: Colour, *, pace: PaceWord | None = None) -> str:
+    """The mode light: mode in large letters, what it means in a word, safety mode beside it, and the pace below that."""
+    told = ""
+    if pace is not None:
+        told = (
+            f'<button type="button" class="pd-pace" style="--c:{pace.colour.value}" title="{escape(pace.line)}"><i></i>'
+            f"{escape(pace.word)}</button>"
+        )
+    line = "" if pace is None else f'<p class="pd-pace-line">{escape(pace.line)}</p>'
     return (
         f'<div class="pd-light" style="--c:{colour.value}"><i></i><div><b>{escape(mode)}</b><span>{escape(word)}</span></div>'
-        f"<em>Safety<strong>{escape(safety)}</strong></em></div>"
+        f"<em>Safety<strong>{escape(safety)}</strong>{told}</em></div>{line}"
     )
 
 
-def ring(name: str, left: float, share: float, colour: Colour) -> str:
-    """A countdown ring: `left` seconds in the middle, `share` (0..1) of the circle, `name` below."""
-    arc = _AROUND * min(max(share, 0.0), 1.0)
+class Window(NamedTuple):
+    """A running period."""
+
+    name: str
+    left: float  # [s]
+    share: float  # of the whole, 0..1
+    colour: Colour
+
+
+def windows(running: Sequence[Window]) -> str:
+    """The first of the running periods as a ring at the button above it, all of them in a line; its room stays the same."""
+    ring = _ring(running[0]) if running else ""
+    words = "".join(
+        f'<span style="--c:{period.colour.value}"><i></i>{escape(period.name)} <b>{period.left:.1f} s</b></span>'
+        for period in running
+    )
+    return f'<div class="pd-windows"><div class="pd-ring">{ring}</div><p>{words}</p></div>'
+
+
+def _ring(period: Window) -> str:
+    """A countdown ring with the seconds in its middle."""
+    arc = _AROUND * min(max(period.share, 0.0), 1.0)
+    label = f"{escape(period.name)} {period.left:.1f} s"
     return (
-        '<figure><svg viewBox="0 0 64 64" width="64" height="64" role="img">'
-        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-opacity=".12" stroke-width="6"/>'
-        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="{colour.value}" stroke-width="6" stroke-linecap="round" '
+        f'<svg viewBox="0 0 64 64" width="46" height="46" role="img" aria-label="{label}">'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-opacity=".3" stroke-width="7"/>'
+        f'<circle cx="32" cy="32" r="{RADIUS:g}" fill="none" stroke="currentColor" stroke-width="7" stroke-linecap="round" '
         f'stroke-dasharray="{arc:.1f} {_AROUND:.1f}" transform="rotate(-90 32 32)"/>'
-        f'<text x="32" y="37" text-anchor="middle" font-size="15" font-weight="600" fill="currentColor">{left:.1f}</text></svg>'
-        f"<figcaption>{escape(name)}</figcaption></figure>"
+        f'<text x="32" y="39" text-anchor="middle" font-size="19" font-weight="700" fill="currentColor">'
+        f"{period.left:.1f}</text></svg>"
     )
 
 
-def rings(pictures: Iterable[str]) -> str:
-    """Rings side by side, or a line that says there are none: the room they take stays the same."""
-    inside = "".join(pictures) or "<p>No period is running</p>"
-    return f'<div class="pd-rings">{inside}</div>'
+def beat(seconds: int) -> str:
+    """Nothing to see: while it changes, the page knows that the server is there."""
+    return f'<span hidden data-pd-beat="{seconds}"></span>'
 
 
 def note(headline: str, text: str, colour: Colour, reasons: Sequence[str] = ()) -> str:
@@ -89,9 +123,13 @@ def _bar(row: Bar) -> str:
     )
 
 
-def who(text: str, colour: Colour) -> str:
-    """Who has control, in a line."""
-    return f'<div class="pd-who" style="--c:{colour.value}"><i></i><b>{escape(text)}</b></div>'
+def who(text: str, hint: str, colour: Colour, *, watching: bool = False) -> str:
+    """Who has control, and what a client can do about it; a page that is `watching` greys what it cannot use."""
+    mark = " data-pd-watching" if watching else ""
+    return (
+        f'<div class="pd-who" style="--c:{colour.value}"{mark}><i></i><span><b>{escape(text)}</b>'
+        f"{f'<em>{escape(hint)}</em>' if hint else ''}</span></div>"
+    )
 
 
 def facts(pairs: Iterable[tuple[str, str]]) -> str:
@@ -110,21 +148,66 @@ def loads(true: float, configured: float) -> str:
     )
 
 
+def differences(text: str, rows: Sequence[tuple[str, str, str]]) -> str:
+    """What would change: name, from, to."""
+    lines = "".join(f"<tr><td>{escape(name)}</td><td>{escape(old)}</td><td>{escape(new)}</td></tr>" for name, old, new in rows)
+    head = "<tr><th>Setting</th><th>now</th><th>then</th></tr>"
+    told = f"<table>{head}{lines}</table>" if rows else "<p>Nothing would change.</p>"
+    return f'<div class="pd-diff"><p>{escape(text)}</p>{told}</div>'
+
+
+def cards(groups: Mapping[str, Sequence[str]], chosen: str) -> str:
+    """Titles to choose from, whole, under the heading of their group; a press chooses what the dropdown calls so."""
+    inside = "".join(
+        f"<h4>{escape(group)}</h4>"
+        + "".join(
+            f'<div role="radio" tabindex="0" data-pd-pick="{escape(title)}" aria-checked="{str(title == chosen).lower()}">'
+            f"{escape(title)}</div>"
+            for title in titles
+        )
+        for group, titles in groups.items()
+    )
+    return f'<div class="pd-cards" role="radiogroup" aria-label="Scenarios">{inside or "<p>Nothing has these words.</p>"}</div>'
+
+
 def fine_print(text: str) -> str:
     """A line in small letters."""
     return f'<p class="pd-fine">{escape(text)}</p>'
 
 
+class LogLine(NamedTuple):
+    """A row of the event log. `moment` is its name in the choice of the plots; without a time it divides."""
+
+    time: str
+    text: str
+    colour: Colour
+    moment: str
+    often: int
+
+
 def table(rows: Iterable[tuple[str, str, Colour]]) -> str:
-    """The event log: time, text, colour of its mark."""
-    lines = "".join(
-        f'<tr><td style="--c:{colour.value}"><i></i></td><td>{escape(time)}</td><td>{escape(text)}</td></tr>'
-        for time, text, colour in rows
-    )
+    """A list of messages: time, text, colour of its mark."""
+    return event_log(LogLine(time, text, colour, "", 1) for time, text, colour in rows)
+
+
+def event_log(rows: Iterable[LogLine]) -> str:
+    """The event log: colour of its mark, time, text, and how often."""
+    lines = "".join(map(_log_line, rows))
     return (
         f'<div class="pd-events pd-log"><table>{lines}</table></div>'
         if lines
         else '<p class="pd-events pd-empty">Nothing has happened yet</p>'
+    )
+
+
+def _log_line(row: LogLine) -> str:
+    if not row.time:
+        return f'<tr class="pd-divide"><td colspan="3">{escape(row.text)}</td></tr>'
+    often = f' <b class="pd-count">{row.often} ×</b>' if row.often > 1 else ""
+    leads = f' tabindex="0" data-pd-pick="{escape(row.moment)}"' if row.moment else ""
+    return (
+        f'<tr{leads}><td style="--c:{row.colour.value}"><i></i></td>'
+        f"<td>{escape(row.time)}</td><td>{escape(row.text)}{often}</td></tr>"
     )
 
 

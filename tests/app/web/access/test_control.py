@@ -95,6 +95,17 @@ def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
     assert (loop.wishes[-1].touches, loop.wishes[-1].inputs.held) == ((), frozenset())
 
 
+def test_a_watcher_is_told_when_it_may_act_and_who_lost_control_that_it_has(served: Served, two: Two, clock: Clock) -> None:
+    _, second, strips = two
+    until(lambda: shown(strips, "You have control", "Free in 10 s"), "the time until it is free")
+    assert "data-pd-watching" in strips[1].text.shown
+    assert "data-pd-watching" not in strips[0].text.shown
+    clock.now += SILENCE
+    until(lambda: shown(strips, "You have control", "whatever you press takes control"), "the warning")
+    press(second, strips[1].take)
+    until(lambda: shown(strips, "You lost control: Client 2 has control", "You have control"), "the former operator is told")
+
+
 def test_whoever_acts_first_after_the_silence_takes_over_by_that(served: Served, two: Two, clock: Clock) -> None:
     _, second, strips = two
     clock.now += SILENCE

@@ -29,6 +29,8 @@ def test_the_page_is_ours_and_talks_to_its_own_server_only(served: Served, encod
     assert len(body) == int(answer.getheader("Content-Length") or 0)
     if encoding == "identity":
         assert b"<title>pendant</title>" in body
+        assert b"<title>Viser</title>" not in body
+        assert body.index(b'id="pd-opening"') < body.index(b"<script data-p=")  # a picture of the arm, before the client is read
 
 
 @pytest.mark.parametrize("path", ["/../guard.py", "/%2e%2e/%2e%2e/__init__.py", "/nothing"])

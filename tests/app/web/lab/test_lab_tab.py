@@ -1,13 +1,14 @@
 """The laboratory: what its controls ask for, and scenarios."""
 
 from collections.abc import Callable
+from html import escape
 
 import pytest
 
 from app.files.checked import load
 from app.files.library import load_tool
 from app.session.session_file import Session, bundled, folder
-from app.web.lab.scenarios import scenarios
+from app.web.lab.scenarios import TOPICS, scenarios
 from app.web.server import Served
 from pendant.tick.modes import Mode
 from pendant.tooling.tool_in_use import Fitting
@@ -124,3 +125,23 @@ def test_a_scenario_is_set_up_and_played(served: Served, join: Join, loop: FakeL
     client.set(part.begin._impl.uuid, value="Set up")
     until(lambda: len(loop.begun) == 2, "begun")
     assert loop.begun[1][1]().unstarted() == []
+
+
+def test_each_scenario_has_one_topic_and_its_whole_title_on_a_card(still: Served) -> None:
+    listed = [name for names in TOPICS.values() for name in names]
+    assert sorted(listed) == sorted(scenarios())
+    shown = still.lab.scenarios.cards.shown
+    for session in scenarios().values():
+        assert f">{escape(session.title)}</div>" in shown
+
+
+def test_scenarios_are_found_by_words_and_by_topic(served: Served, join: Join) -> None:
+    client = join()
+    picker = served.lab.scenarios
+    client.set(picker.search._impl.uuid, value="table touches")
+    until(lambda: picker.cards.shown.count("data-pd-pick") == 1, "one")
+    client.set(picker.search._impl.uuid, value="nothing like this")
+    until(lambda: "Nothing has these words" in picker.cards.shown, "none")
+    client.set(picker.search._impl.uuid, value="")
+    client.set(picker.topic._impl.uuid, value="Free-drive ends")
+    until(lambda: picker.cards.shown.count("data-pd-pick") == len(TOPICS["Free-drive ends"]), "those of the topic")

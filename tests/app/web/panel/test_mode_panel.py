@@ -34,15 +34,22 @@ Join = Callable[[], RawClient]
             Safety.NORMAL,
             Phase.LET_GO,
             (Remaining("let go", 500, 1000),),
-            ("Let go of the arm", "Let go"),
+            ("Let go of the arm", "Let go within"),
             Colour.AMBER,
         ),
-        (Mode.TEACH, Safety.NORMAL, Phase.SEQUENCE, (Remaining("sequence", 500, 500),), ("Hands off", "Sequence"), Colour.BLUE),
+        (Mode.TEACH, Safety.NORMAL, Phase.SEQUENCE, (Remaining("sequence", 500, 500),), ("Hands off", "Checking"), Colour.BLUE),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, (), ("FREE-DRIVE",), Colour.BLUE),
-        (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 500, 1500),), ("1.0", "Free-drive"), Colour.BLUE),
+        (
+            Mode.FREE_DRIVE,
+            Safety.NORMAL,
+            Phase.PERIOD,
+            (Remaining("free-drive", 500, 1500),),
+            ("1.0", "Move it within"),
+            Colour.BLUE,
+        ),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.PERIOD, (Remaining("free-drive", 499, 1500),), ("About to end",), Colour.AMBER),
         (Mode.FREE_DRIVE, Safety.NORMAL, Phase.RESTART, (Remaining("restart", 10, 1500),), ("About to end",), Colour.AMBER),
-        (Mode.TEACH, Safety.NORMAL, Phase.OFF, (Remaining("cool-down", 10, 1000),), ("Ready", "Cool-down"), Colour.GREEN),
+        (Mode.TEACH, Safety.NORMAL, Phase.OFF, (Remaining("cool-down", 10, 1000),), ("Ready", "Ready again in"), Colour.GREEN),
         (Mode.STOP, Safety.EMERGENCY_STOP, Phase.OFF, (), ("STOP", "Stopped", "Emergency stop"), Colour.RED),
     ],
 )
@@ -140,7 +147,7 @@ def test_how_free_drive_ended_is_told_until_a_program_runs(loop: FakeLoop, still
     assert "Free-drive switched off" in still.panel.note.shown
     loop.program = ProgramState.RUNNING
     still.docks.show(loop.latest())
-    assert "Drag the arm" in still.panel.note.shown
+    assert "The program runs" in still.panel.note.shown
 
 
 def test_monitored_values_are_shown_against_their_limits_nearest_first(loop: FakeLoop, still: Served) -> None:

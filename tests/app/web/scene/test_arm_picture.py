@@ -8,6 +8,9 @@ import pytest
 
 from app.web.scene.arm_picture import LONGEST, SHORTEST, frames_of
 from app.web.server import Served, serve
+from pendant.equipment.load import Load
+from pendant.equipment.tools import BARE
+from pendant.tooling.tool_in_use import Fitting
 from sim.arm.scenario import BoxObject, Pad, Plane, Scenario, ToolModel
 from sim.exchange.snapshot import Snapshot
 from tests.app.web.fake_loop import ARM, FakeLoop, links
@@ -125,3 +128,17 @@ def test_the_floor_lies_as_low_as_the_world_says(loop: FakeLoop, still: Served) 
     assert still.scene._floor.position == pytest.approx((0.0, 0.0, -0.8))
     still.scene.show(replace(FakeLoop.latest(loop), scenario=Scenario()))
     assert still.scene._floor.position == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_the_payload_that_the_controller_believes_in_stands_beside_the_true_one(loop: FakeLoop, still: Served) -> None:
+    pose = np.array([0.1, 0.2, 0.3, 1.0, 0.0, 0.0, 0.0])
+    fitting = Fitting(1, BARE, Load(mass=1.0, com=[0.0, 0.0, 0.1]), 1.0, 1.0)
+    loop.fitting, loop.configured = fitting, 1.0
+    still.scene.show(snapshot(loop, truth_payload=pose, truth_payload_mass=2.0))
+    ghost = still.scene._believed
+    assert ghost.visible
+    assert still.scene._believed_label.text == "Configured: 1.0 kg"
+    away = np.linalg.norm(np.asarray(ghost.position) - loop.latest().truth_links[-1][:3])
+    assert away == pytest.approx(0.1, abs=1e-3)
+    still.scene.show(snapshot(loop, truth_payload=pose, truth_payload_mass=1.0))
+    assert not ghost.visible

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from app.web.scene.wall_pictures import AMBER, GREEN, GREY, RED, DrawnWall
+from app.web.scene.wall_pictures import AMBER, GLOWING, GREEN, GREY, RED, DrawnWall
 from app.web.server import Served
 from pendant.tick.pose import Pose, from_rpy
 from pendant.walls.barrier import Place
@@ -113,3 +113,10 @@ def test_they_stand_where_the_base_stands(loop: FakeLoop, still: Served) -> None
     assert still.scene.walls.show(snapshot)
     assert still.scene.walls._root.position == pytest.approx((0.1, 0.2, 0.3))
     assert still.scene.walls._root.wxyz == pytest.approx((math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0), abs=1e-5)
+
+
+def test_the_nearest_wall_glows_the_more_the_nearer_it_is(loop: FakeLoop, still: Served) -> None:
+    far = shown(loop, still, BALL, AT, state("ball", -0.5)).surface.opacity
+    near = shown(loop, still, BALL, AT, state("ball", -0.1)).surface.opacity
+    at = shown(loop, still, BALL, AT, state("ball", 0.0)).surface.opacity
+    assert far < near < at <= GLOWING + 0.02

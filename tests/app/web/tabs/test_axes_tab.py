@@ -53,7 +53,7 @@ def test_it_shows_what_holds(served: Served, join: Join, loop: FakeLoop) -> None
 def test_it_tells_singularities_in_free_drive(served: Served, join: Join, loop: FakeLoop) -> None:
     join()
     tab = served.docks.axes
-    until(lambda: "Told in free-drive" in tab.singularity.shown, "not yet")
+    until(lambda: "Shown during free-drive" in tab.singularity.shown, "not yet")
     for nearness in Nearness:
         loop.singularity = nearness
         until(lambda headline=TOLD[nearness][0]: headline in tab.singularity.shown, nearness)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.plots import SAMPLES, View
+from app.web.tabs.contact_log import FADE
+from app.web.tabs.plots import KEPT, View
 from pendant.events.event import Kind
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -39,12 +40,12 @@ TOUCH = {
 def test_a_sample_is_taken_twenty_times_a_second_and_memory_is_fixed(loop: FakeLoop, still: Served) -> None:
     plots = still.docks.plots
     force = plots.history.force
-    for _ in range(3 * SAMPLES):
+    for _ in range(KEPT + 100):
         loop.advance(0.05)
         plots.show(loop.latest())
         assert not plots.show(loop.latest())
     assert plots.history.force is force
-    assert force.shape == (3, SAMPLES)
+    assert force.shape == (3, KEPT)
     assert np.isfinite(force).all()
 
 
@@ -53,7 +54,23 @@ def test_a_new_start_begins_empty(loop: FakeLoop, still: Served) -> None:
     still.docks.plots.show(loop.latest())
     loop.tick = 1
     still.docks.plots.show(loop.latest())
-    assert np.isnan(still.docks.plots.history.rate).sum() == SAMPLES - 1
+    assert np.isnan(still.docks.plots.history.rate).sum() == KEPT - 1
+
+
+def test_a_moment_that_is_looked_at_stays_in_the_picture(loop: FakeLoop, still: Served) -> None:
+    plots = still.docks.plots
+    for _ in range(300):
+        loop.advance(0.05)
+        plots.show(loop.latest())
+    plots.look_at(loop.tick - 2500)
+    before = plots.upper.shown
+    assert "stroke-dasharray" in before  # its mark
+    for _ in range(20):
+        loop.advance(0.05)
+        plots.show(loop.latest())
+    assert plots.upper.shown == before
+    plots.look_at(None)
+    assert "stroke-dasharray" not in plots.upper.shown
 
 
 @pytest.mark.parametrize("view", list(View))
@@ -65,6 +82,21 @@ def test_every_view_is_drawn(served: Served, join: Join, loop: FakeLoop, view: V
     client.set(plots.view._impl.uuid, value=view.value)
     until(lambda: plots.view.value == view.value and "<svg" in plots.upper.shown, "drawn")
     until(lambda: plots.joint.visible == (view in (View.FRICTION, View.TORQUE)), "the joint's choice")
+
+
+def test_the_mark_of_the_newest_contact_fades_and_goes_with_a_new_start(loop: FakeLoop, still: Served) -> None:
+    contacts = still.docks.contacts
+    for restart in (False, True):
+        loop.tick = 1000
+        loop.note(Kind.CONTACT_GAINED, **TOUCH)
+        still.docks.show(loop.latest())
+        assert (contacts.ball.visible, contacts.ball.opacity) == (True, 1.0)
+        loop.tick += FADE // 2
+        still.docks.show(loop.latest())
+        assert contacts.ball.opacity == pytest.approx(0.5)
+        loop.tick = 5 if restart else loop.tick + FADE
+        still.docks.show(loop.latest())
+        assert not any(node.visible for node in (contacts.ball, contacts.force, contacts.acceleration, contacts.label))
 
 
 def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) -> None:

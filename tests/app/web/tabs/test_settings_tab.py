@@ -5,7 +5,9 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.settings_tab import BASIC, CHANGED, SECTIONS, section_of
+from app.web.tabs.settings_tab import BASIC, VIEWS
+from app.web.tuning.presets import presets
+from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, section_of, title_of
 from pendant.all_settings import Settings, apply, describe, limits_checksum
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
@@ -14,16 +16,26 @@ from tests.app.web.raw_client import RawClient, until
 Join = Callable[[], RawClient]
 
 
+def view(served: Served, client: RawClient, name: str) -> None:
+    tab = served.docks.settings
+    if tab.view.value != name or name == VIEWS[2]:
+        client.set(tab.view._impl.uuid, value=name)
+    until(lambda: tab.section.visible == (name == VIEWS[2]) and tab.preset.visible == (name == VIEWS[1]), f"view {name}")
+
+
 def expert(served: Served, client: RawClient) -> None:
     tab = served.docks.settings
+    view(served, client, VIEWS[2])
     client.set(tab.expert._impl.uuid, value=True)
-    until(lambda: tab.section.options == SECTIONS, "all sections")
+    until(lambda: tab.section.options == tuple(map(title_of, SECTIONS)), "all sections")
 
 
 def choose(served: Served, client: RawClient, section: str) -> None:
     tab = served.docks.settings
-    client.set(tab.section._impl.uuid, value=section)
-    until(lambda: all(name.startswith(f"{section}.") for name in tab.controls), f"section {section}")
+    if not tab.section.visible:
+        view(served, client, VIEWS[2])
+    client.set(tab.section._impl.uuid, value=title_of(section))
+    until(lambda: tab.controls and all(name.startswith(f"{section}.") for name in tab.controls), f"section {section}")
 
 
 def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: Served, join: Join) -> None:
@@ -39,15 +51,17 @@ def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: 
                 seen.add(row.name)
                 assert control.value == row.default
                 assert row.low is None or (control.min, control.max) == (row.low, row.high)
-        texts = "".join(text.content for text in tab._texts)
-        assert all(row.id in texts for row in describe() if section_of(row) == section)
+        hints = "".join(control.hint for control in tab.controls.values())
+        assert all(row.id in hints for row in describe() if section_of(row) == section)
+        texts = "".join(text.shown for text in tab._texts.values())
+        assert not any(row.id in texts for row in describe())
     assert seen == {row.name for row in describe()}
 
 
 def test_the_basic_settings_are_shown_and_what_was_changed(served: Served, join: Join, loop: FakeLoop) -> None:
     client = join()
     tab = served.docks.settings
-    assert tab.section.options == BASIC
+    assert tab.section.options == tuple(map(title_of, BASIC))
     choose(served, client, "walls")
     basic = {row.name for row in describe() if row.basic}
     assert set(tab.controls) == {name for name in basic if name.startswith("walls.")}
@@ -110,6 +124,55 @@ def test_a_refused_change_is_set_back_on_the_page(served: Served, join: Join, lo
     choose(served, client, "free_drive")
     control = served.docks.settings.controls["free_drive.gain"]
     client.set(control._impl.uuid, value=2.0)
-    until(lambda: control.value == 2.0, "shown")
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"free_drive.gain": 2.0}, "the wish")
+    assert control.value == 2.0
     loop.refuse()
     until(lambda: control.value == 1.0, "set back")
+
+
+def test_the_safety_page_has_a_dozen_values_that_people_know(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    tab = served.docks.settings
+    assert set(tab.controls) == set(SAFETY)
+    assert len(SAFETY) <= 12
+    client.set(tab.controls["reduced.tcp_speed"]._impl.uuid, value=0.1)
+    until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"reduced.tcp_speed": 0.1}, "the wish")
+
+
+def test_what_is_typed_counts_when_it_is_all_typed(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    control = served.docks.settings.controls["free_drive.period"]
+    for value in (1.0, 10.0, 15.0):
+        client.set(control._impl.uuid, value=value)
+    until(lambda: loop.advance() is None and bool(loop.wishes[-1].inputs.settings), "a wish")
+    assert loop.wishes[-1].inputs.settings == {"free_drive.period": 15.0}
+
+
+def test_a_preset_lists_its_changes_then_is_taken_and_undone(served: Served, join: Join, loop: FakeLoop) -> None:
+    client = join()
+    tab = served.docks.settings
+    view(served, client, VIEWS[1])
+    assert "Nothing would change" in tab.listed.shown
+    client.set(tab.preset._impl.uuid, value="Classroom")
+    until(lambda: "Limits during free-drive: Tcp speed" in tab.listed.shown, "the list")
+    assert "<td>1.5 m/s</td><td>0.7 m/s</td>" in tab.listed.shown
+    client.set(tab.take._impl.uuid, value=True)
+    until(lambda: loop.advance() is None and bool(loop.wishes[-1].inputs.settings), "the wish")
+    wanted = loop.wishes[-1].inputs.settings
+    assert apply(Settings(), wanted) == presets()["Classroom"].whole
+    loop.settings = apply(Settings(), wanted)
+    until(lambda: not tab.undo.disabled and "Nothing would change" in tab.listed.shown, "taken")
+    client.set(tab.undo._impl.uuid, value=True)
+    until(lambda: loop.advance() is None and bool(loop.wishes[-1].inputs.settings), "undone")
+    assert apply(loop.settings, loop.wishes[-1].inputs.settings) == Settings()
+
+
+def test_search_finds_by_words_sections_and_requirements(served: Served, join: Join) -> None:
+    client = join()
+    tab = served.docks.settings
+    view(served, client, VIEWS[2])
+    client.set(tab.search._impl.uuid, value="tether radius")
+    until(lambda: "walls.operation_radius" in tab.controls, "found")
+    assert all(name.startswith("walls.") for name in tab.controls)
+    client.set(tab.search._impl.uuid, value="no such words")
+    until(lambda: tab.controls == {}, "nothing found")

@@ -15,9 +15,9 @@ EVIL = '<img src=x onerror="alert(1)">&\'</style>'
     "html",
     [
         svg.light(EVIL, EVIL, EVIL, Colour.GREEN),
-        svg.ring(EVIL, 1.0, 0.5, Colour.BLUE),
+        svg.windows([svg.Window(EVIL, 1.0, 0.5, Colour.BLUE)]),
         svg.note(EVIL, EVIL, Colour.RED),
-        svg.who(EVIL, Colour.GREY),
+        svg.who(EVIL, EVIL, Colour.GREY),
         svg.facts([(EVIL, EVIL)]),
         svg.table([(EVIL, EVIL, Colour.AMBER)]),
         svg.note("", "", Colour.RED, [EVIL]),
@@ -36,7 +36,7 @@ def test_texts_are_escaped(html: str) -> None:
 
 @pytest.mark.parametrize(("share", "part"), [(0.0, 0.0), (0.25, 0.25), (1.0, 1.0), (-0.5, 0.0), (7.0, 1.0)])
 def test_a_ring_shows_its_share_of_the_circle(share: float, part: float) -> None:
-    found = re.search(r'stroke-dasharray="([\d.]+) ([\d.]+)"', svg.ring("restart", 2.345, share, Colour.BLUE))
+    found = re.search(r'stroke-dasharray="([\d.]+) ([\d.]+)"', svg.windows([svg.Window("restart", 2.345, share, Colour.BLUE)]))
     assert found is not None
     arc, around = float(found[1]), float(found[2])
     assert around == pytest.approx(2 * math.pi * 26.0, abs=0.06)
@@ -44,7 +44,7 @@ def test_a_ring_shows_its_share_of_the_circle(share: float, part: float) -> None
 
 
 def test_a_ring_shows_the_seconds_left() -> None:
-    assert ">2.3</text>" in svg.ring("restart", 2.31, 0.5, Colour.BLUE)
+    assert ">2.3</text>" in svg.windows([svg.Window("restart", 2.31, 0.5, Colour.BLUE)])
 
 
 def test_a_state_is_never_colour_alone() -> None:
@@ -52,5 +52,7 @@ def test_a_state_is_never_colour_alone() -> None:
 
 
 def test_without_periods_the_rings_say_so() -> None:
-    assert "No period is running" in svg.rings([])
-    assert "No period is running" not in svg.rings([svg.ring("restart", 1.0, 1.0, Colour.BLUE)])
+    assert "<svg" not in svg.windows([])
+    both = svg.windows([svg.Window("restart", 1.0, 1.0, Colour.BLUE), svg.Window("cool-down", 1.0, 1.0, Colour.GREY)])
+    assert both.count("<svg") == 1
+    assert both.count("<span") == 2

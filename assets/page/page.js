@@ -1,0 +1,143 @@
+// What the page needs beyond viser's controls: a picture until they are there, what is told when the connection is lost, names
+// for screen readers, the keyboard, and what a reload must not forget. It sends nothing of its own: it presses viser's controls.
+(() => {
+  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 284;
+  const at = (selector, within = document) => within.querySelector(selector);
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const read = () => { try { return JSON.parse(localStorage.getItem(KEPT)) || {}; } catch { return {}; } };
+  const kept = read();
+  const keep = (name, value) => { kept[name] = value; try { localStorage.setItem(KEPT, JSON.stringify(kept)); } catch { /* not kept */ } };
+  const made = (tag, id, role) => Object.assign(document.createElement(tag), { id, role });
+  const began = performance.now();
+  if (kept.dark) document.documentElement.classList.add("pd-night");
+
+  // The free-drive button and the stop: their ids stand on the style sheet that the server sends.
+  const named = (name) => { const sheet = at(`style[data-pd-${name}]`); return sheet && document.getElementById(sheet.getAttribute(`data-pd-${name}`)); };
+  const freeDrive = () => named("free-drive"), stop = () => named("stop");
+
+  // A press of the free-drive button ends with a click, wherever the pointer is lifted: the server counts a hold that fell silent as
+  // ended until it has heard of the click.
+  let pressed = null;
+  const lift = () => { const button = pressed; pressed = null; if (!button) return;
+    let clicked = false; const heard = () => { clicked = true; };
+    button.addEventListener("click", heard, { once: true });
+    setTimeout(() => { button.removeEventListener("click", heard); if (!clicked) button.click(); }, 80); };
+  addEventListener("pointerdown", (event) => { const button = freeDrive(); if (button && event.button === 0 && button.contains(event.target)) pressed = button; }, true);
+  for (const name of ["pointerup", "pointercancel"]) addEventListener(name, lift, true);
+
+  // Space and Enter hold the free-drive button as a finger does; leaving the page lets go.
+  let key = null;
+  const pointer = (type) => new PointerEvent(type, { bubbles: true, button: 0, buttons: type === "pointerdown" ? 1 : 0, pointerId: 1, isPrimary: true });
+  const release = () => { if (!key) return; key = null; const button = freeDrive(); if (button) { button.dispatchEvent(pointer("pointerup")); } };
+  addEventListener("keydown", (event) => { const button = freeDrive();
+    if (!button || document.activeElement !== button || (event.key !== " " && event.key !== "Enter")) return;
+    event.preventDefault();
+    if (!key && !button.disabled) { key = event.key; button.dispatchEvent(pointer("pointerdown")); } }, true);
+  addEventListener("keyup", (event) => { if (event.key === key) { event.preventDefault(); release(); } }, true);
+  addEventListener("blur", release); document.addEventListener("visibilitychange", release); addEventListener("focusout", release);
+
+  // The connection: the server's beat changes again and again while it is there.
+  let beat = "", heard = performance.now();
+  const listen = () => { const now = at("[data-pd-beat]"), value = now ? now.getAttribute("data-pd-beat") : "";
+    if (value && value !== beat) { beat = value; heard = performance.now(); }
+    const lost = at("#pd-lost"), silent = performance.now() - heard;
+    if (lost && document.visibilityState === "visible") {
+      const told = beat && silent > STALE ? `No answer from the simulation for ${Math.floor(silent / 1000)} s. What you see is old; nothing that you press arrives.` : "";
+      if (Boolean(told) !== lost.classList.contains("pd-on")) { lost.classList.toggle("pd-on", Boolean(told)); if (told) release(); }
+      if (told) lost.textContent = told; }
+    if (beat && at(".pd-picture") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
+  const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore();
+    const place = at(".pd-picture"); if (place && !at("#pd-tour")) { const card = made("section", "pd-tour", "region"); card.setAttribute("aria-label", "Tour"); place.append(card); tour(); } };
+
+  // What a reload keeps: dark or light, the tabs that were chosen, the width of the left side.
+  const strips = () => all("[role=tablist]").filter((list) => list.getBoundingClientRect().left < innerWidth / 2);
+  let restored = false;
+  const restore = () => { if (restored) return; restored = true;
+    if (kept.dark && document.documentElement.dataset.mantineColorScheme !== "dark")
+      document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "t", code: "KeyT", bubbles: true }));
+    for (const list of strips()) for (const tab of all("[role=tab]", list))
+      if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
+    if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
+  const press = (tab) => { for (const type of ["pointerdown", "mousedown", "pointerup", "mouseup", "click"])
+    tab.dispatchEvent(type.startsWith("pointer") ? pointer(type) : new MouseEvent(type, { bubbles: true, button: 0 })); };
+  const edge = () => at('[data-dock-region-resize="left"]');
+  const left = () => { const grip = edge(); return grip && grip.parentElement; };
+  const resize = (width) => { const grip = edge(); if (!grip) return; const strip = grip.firstElementChild || grip, x = left().getBoundingClientRect().width;
+    const moved = (type, at_) => new PointerEvent(type, { bubbles: true, button: 0, buttons: 1, pointerId: 1, isPrimary: true, clientX: at_, clientY: 300 });
+    strip.dispatchEvent(moved("pointerdown", x)); window.dispatchEvent(moved("pointermove", width));
+    requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(moved("pointerup", width)))); };
+  addEventListener("pointerup", () => setTimeout(() => { if (!restored) return;
+    const side = left(); if (side && innerWidth > 1000) { const width = Math.round(side.getBoundingClientRect().width); if (width > 60) keep("width", width); } }, 400), true);
+  addEventListener("click", () => setTimeout(() => { if (restored)
+    keep("tabs", strips().map((list) => (at("[role=tab][aria-selected=true]", list) || {}).textContent).filter(Boolean).map((text) => text.trim())); }, 100), true);
+  new MutationObserver(() => { if (restored) { const dark = document.documentElement.dataset.mantineColorScheme === "dark";
+    keep("dark", dark); document.documentElement.classList.toggle("pd-night", dark); } })
+    .observe(document.documentElement, { attributes: true, attributeFilter: ["data-mantine-color-scheme"] });
+
+  // Names for what viser leaves without one.
+  const labelled = (control) => { for (let box = control.parentElement; box; box = box.parentElement) { const label = at("label", box); if (label) return label.textContent.trim(); if (box.childElementCount > 6) return ""; } return ""; };
+  const set = (node, name, value) => { if (value && node.getAttribute(name) !== value) node.setAttribute(name, value); };
+  const nameAll = () => {
+    const side = left(); if (side) side.classList.add("pd-left");
+    const canvas = at("canvas"), picture = canvas && canvas.closest('[style*="inset"]'); if (picture) picture.classList.add("pd-picture");
+    if (canvas) { set(canvas, "role", "img"); set(canvas, "aria-label", "The arm. Drag a link to push it; with Shift to turn it."); }
+    for (const slider of all("[role=slider]")) set(slider, "aria-label", labelled(slider));
+    for (const input of all("input:not([type=hidden])")) if (!input.labels || !input.labels.length) set(input, "aria-label", input.placeholder || labelled(input));
+    for (const group of all(".mantine-Button-root[data-size=compact-xs]")) { const text = group.textContent.trim();
+      if (text.length < 2) set(group, "aria-label", `${labelled(group)}: ${{ "↑": "up", "↓": "down", "✕": "delete" }[text] || text}`); }
+    for (const close of all(".mantine-Notification-closeButton")) set(close, "aria-label", "Close this message");
+    all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Connection and view" : "Command palette"));
+    for (const head of all('[style*="cursor: pointer"]')) { const next = head.nextElementSibling; if (head.tagName !== "DIV" || !next || !at("svg", head) || head.querySelector("input,button") || !/^(button)?$/.test(head.getAttribute("role") || "") || head.closest("[role=tablist]")) continue;
+      const hidden = next.getBoundingClientRect().height < 2; set(head, "role", "button"); set(head, "tabindex", "0"); set(head, "aria-expanded", String(!hidden)); }
+    for (const list of all("label[for]")) { const target = document.getElementById(list.htmlFor); if (target && target.getAttribute("role") === "presentation") target.removeAttribute("role"); }
+    tell(); };
+  addEventListener("keydown", (event) => { const head = event.target;
+    if ((event.key === "Enter" || event.key === " ") && head.getAttribute && head.tagName === "DIV" && head.getAttribute("role") === "button") { event.preventDefault(); head.click(); } }, true);
+
+  // A row of the event log is the choice of its moment; the pace says more when it is pressed.
+  const option = (text) => all("[role=option]").find((one) => one.textContent.trim() === text);
+  const picked = (target) => { const row = target.closest && target.closest("[data-pd-pick]"); if (!row) return;
+    const one = option(row.getAttribute("data-pd-pick").trim()); if (one) one.click();
+    if (!row.closest(".pd-log")) return;
+    const plots = all("[role=tab]").find((tab) => tab.textContent.trim() === "Plots"); if (plots) press(plots); };
+  addEventListener("click", (event) => { picked(event.target);
+    if (event.target.closest && event.target.closest(".pd-pace")) document.documentElement.classList.toggle("pd-explain"); });
+  addEventListener("keydown", (event) => { if ((event.key === "Enter" || event.key === " ") && event.target.matches && event.target.matches("[data-pd-pick]")) {
+    event.preventDefault(); picked(event.target); } });
+
+  // One live region: what the panel says in words. The element stays when its content changes.
+  const tell = () => { let box = at(".pd-light"); while (box && !at(".pd-note", box)) box = box.parentElement;
+    const note = box && at(".pd-note", box); if (note) { set(note.parentElement, "aria-live", "polite"); set(note.parentElement, "role", "status"); } };
+
+  // A tour of five steps for who is new. A step is over when the page shows it, or by Next; it can be left at any time.
+  const mode = () => (at(".pd-light b") || { textContent: "" }).textContent;
+  const STEPS = [
+    { title: "Push the arm", text: "Drag its last link. The arrow is the force of your hand; the arm holds its place." },
+    { title: "Free it", text: "Hold the blue button for a second, then hands off until the check is over.", aim: freeDrive, over: () => mode() === "FREE-DRIVE" },
+    { title: "Guide it", text: "Drag the arm again: it follows. Register waypoint, on the tab Teach, keeps a posture." },
+    { title: "Let it be", text: "Wait, or press Leave free-drive. The ring at the button shows what is left.", aim: freeDrive, over: () => mode() === "TEACH" },
+    { title: "Stop it", text: "Press EMERGENCY STOP or the key X. The panel says why it stands; then press Reset.", aim: stop, over: () => mode() === "STOP" } ];
+  let step = -1;
+  const tour = () => { const card = at("#pd-tour"); if (!card) return;
+    for (const aimed of all(".pd-aim")) aimed.classList.remove("pd-aim");
+    if (kept.toured && step < 0) { card.remove(); return; }
+    card.replaceChildren();
+    const button = (text, act) => { const one = Object.assign(document.createElement("button"), { type: "button", textContent: text }); one.addEventListener("click", act); return one; };
+    const leave = () => { step = -1; keep("toured", true); tour(); };
+    if (step < 0) { card.append(button("New here? Five steps", () => { step = 0; tour(); }), button("No, thanks", leave)); return; }
+    const one = STEPS[step], last = step === STEPS.length - 1;
+    const title = Object.assign(document.createElement("b"), { textContent: `${step + 1} of ${STEPS.length}: ${one.title}` });
+    card.append(title, Object.assign(document.createElement("p"), { textContent: one.text }),
+      button(last ? "Done" : "Next", () => { if (last) leave(); else { step += 1; tour(); } }));
+    if (!last) card.append(button("Leave the tour", leave));
+    const aim = one.aim && one.aim(); if (aim) aim.classList.add("pd-aim"); };
+  let was = false;
+  const advance = () => { const one = STEPS[step]; if (!one || !one.over) { was = false; return; }
+    const over = one.over(); if (over && was === false && step < STEPS.length - 1) { step += 1; tour(); was = Boolean(STEPS[step].over && STEPS[step].over()); } };
+
+  addEventListener("DOMContentLoaded", () => {
+    const skip = Object.assign(document.createElement("a"), { href: "#", className: "pd-skip", textContent: "Skip to the stop (or key X)" });
+    skip.addEventListener("click", (event) => { event.preventDefault(); const button = stop(); if (button) button.focus(); });
+    document.body.prepend(skip, made("div", "pd-lost", "alert"));
+    setInterval(() => { nameAll(); listen(); advance(); }, BEAT); });
+})();

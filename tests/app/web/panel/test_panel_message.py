@@ -1,0 +1,94 @@
+"""What the panel says: one function of the state, and nothing outlives its cause."""
+
+import pytest
+
+from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, PASSING, PROGRAM_PAUSED
+from app.web.server import Served
+from pendant.events.event import Kind
+from pendant.program.steps import ProgramState
+from pendant.tick.modes import Mode, Safety
+from tests.app.web.fake_loop import FakeLoop
+
+LIMIT = {"parameter": "flange acceleration", "part": "flange", "value": 9.0, "limit": 8.0, "unit": "m/s²", "time": 0.1}
+
+
+def headline(loop: FakeLoop, still: Served) -> str:
+    still.docks.show(loop.latest())
+    return still.panel.said.headline
+
+
+def stop_by_limit(loop: FakeLoop) -> None:
+    loop.mode, loop.safety = Mode.STOP, Safety.NORMAL
+    loop.note(Kind.STOPPED_LIMIT, **LIMIT)
+
+
+def test_in_stop_the_cause_stays_until_reset(loop: FakeLoop, still: Served) -> None:
+    stop_by_limit(loop)
+    assert headline(loop, still) == "Stopped: flange acceleration"
+    loop.note(Kind.ZERO_DUE, force=3.0, torque=0.1)
+    loop.note(Kind.REFUSED_MODE, mode="STOP", allowed="TEACH")
+    assert headline(loop, still) == "Stopped: flange acceleration"
+    loop.mode = Mode.TEACH
+    assert "Stopped" not in headline(loop, still)
+
+
+def test_a_graver_stop_is_the_cause_and_a_lesser_one_is_not(loop: FakeLoop, still: Served) -> None:
+    stop_by_limit(loop)
+    headline(loop, still)
+    loop.safety = Safety.EMERGENCY_STOP
+    loop.note(Kind.EMERGENCY_STOP, mode="STOP")
+    assert "mergency" in headline(loop, still)
+    loop.note(Kind.STOPPED_LIMIT, **LIMIT)
+    assert "mergency" in headline(loop, still)
+
+
+def test_a_page_that_comes_late_says_stopped_without_a_cause(loop: FakeLoop, still: Served) -> None:
+    loop.mode = Mode.STOP
+    assert headline(loop, still) == HINTS[Mode.STOP].headline
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_each_mode_has_a_hint_of_its_own(loop: FakeLoop, still: Served, mode: Mode) -> None:
+    loop.mode = mode
+    if mode is Mode.RUN:
+        loop.program = ProgramState.RUNNING
+    assert headline(loop, still) == HINTS[mode].headline
+
+
+def test_what_is_paused_says_so(loop: FakeLoop, still: Served) -> None:
+    loop.mode, loop.program = Mode.RUN, ProgramState.PAUSED
+    assert headline(loop, still) == PROGRAM_PAUSED.headline
+    assert "Program paused" in still.panel.light.shown
+    loop.paused = True
+    assert headline(loop, still) == CLOCK_PAUSED.headline
+    assert "Clock paused" in still.panel.light.shown
+
+
+def test_start_over_takes_every_message_away(loop: FakeLoop, still: Served) -> None:
+    loop.tick = 5000
+    loop.note(Kind.REFUSED_MODE, mode="RUN", allowed="TEACH")
+    assert "refused" in headline(loop, still)
+    loop.tick = 3
+    assert headline(loop, still) == HINTS[Mode.TEACH].headline
+
+
+def test_what_ended_free_drive_is_over_when_the_next_one_begins(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.LEFT_PERIOD, limit=3.0)
+    assert "nobody moved" in headline(loop, still)
+    loop.mode = Mode.FREE_DRIVE
+    assert headline(loop, still) == HINTS[Mode.FREE_DRIVE].headline
+    loop.mode = Mode.TEACH
+    assert headline(loop, still) == HINTS[Mode.TEACH].headline
+
+
+def test_what_changes_no_mode_is_told_for_a_while(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.ZERO_DUE, force=3.0, torque=0.1)
+    assert headline(loop, still) == "Zero the force sensor"
+    loop.tick += PASSING + 1
+    assert headline(loop, still) == HINTS[Mode.TEACH].headline
+
+
+def test_a_busy_machine_hides_nothing(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.LEFT_PERIOD, limit=3.0)
+    loop.note(Kind.OVERRUN, late=80.0, lost=0.08, often="once")
+    assert "nobody moved" in headline(loop, still)

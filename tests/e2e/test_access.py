@@ -1,0 +1,151 @@
+"""The page for everybody: by keyboard, by finger, read aloud, in every size; after a reload and without a connection."""
+
+from collections.abc import Callable
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from pendant.tick.modes import Mode
+from tests.e2e.cell import Cell
+
+pytestmark = pytest.mark.e2e
+Visit = Callable[..., Page]
+
+TABS = ("Teach", "Axes", "Lab", "Tools", "Settings", "Contacts", "Plots", "Record", "Events")
+SIZES = [(1024, 768), (1440, 900), (1920, 1080), (820, 1180)]
+GRAVE = ("serious", "critical")
+
+CUT = """() => {
+  const seen = (e) => {
+    const r = e.getBoundingClientRect();
+    return r.width > 1 && r.height > 1 && getComputedStyle(e).visibility !== "hidden";
+  };
+  const wrong = [];
+  const kinds = ["label", "[role=tab]", ".mantine-Button-label", ".pd-light *", ".pd-note *", ".pd-who *", ".pd-facts *",
+    ".pd-cards *", ".pd-log td", ".pd-loads *", ".pd-fine", ".pd-diff td"];
+  const texts = [...document.querySelectorAll(kinds.join(","))];
+  for (const e of texts) {
+    if (!seen(e) || !e.textContent.trim()) continue;
+    const block = getComputedStyle(e).display !== "inline" && e.clientWidth > 0;
+    if (block && e.scrollWidth > e.clientWidth + 1) wrong.push(["cut", e.textContent.trim().slice(0, 60)]);
+    const range = document.createRange(); range.selectNodeContents(e);
+    const box = range.getBoundingClientRect();
+    for (let p = e.parentElement; p; p = p.parentElement) {
+      const style = getComputedStyle(p);
+      if (style.overflowX === "visible" || style.overflowX === "clip") continue;
+      const room = p.getBoundingClientRect();
+      if (box.right > room.right + 1 || box.left < room.left - 1) wrong.push(["beyond", e.textContent.trim().slice(0, 60)]);
+      break;
+    }
+  }
+  for (const label of document.querySelectorAll("label[for]")) {
+    const control = document.getElementById(label.htmlFor);
+    if (!control || !seen(label) || !seen(control)) continue;
+    const a = label.getBoundingClientRect(), b = control.getBoundingClientRect();
+    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1)
+      wrong.push(["over its control", label.textContent.trim()]);
+  }
+  return wrong;
+}"""
+"""Texts that are wider than their place, leave the part that scrolls, or lie over their control."""
+
+
+def ready(page: Page) -> Page:
+    """A page whose opening picture has gone, and whose names are given."""
+    expect(page.locator("#pd-opening")).to_have_count(0, timeout=30_000)
+    expect(page.locator("canvas[role=img]")).to_have_count(1)
+    return page
+
+
+def tabs(page: Page, see: Callable[[str], None]) -> None:
+    """Open one tab after the other."""
+    for tab in TABS:
+        one = page.get_by_role("tab", name=tab, exact=True)
+        one.click()
+        expect(one).to_have_attribute("aria-selected", "true")
+        page.wait_for_timeout(600)  # names are given twice a second
+        see(tab)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_axe_finds_nothing_serious_on_any_tab(visit: Visit, dark: bool) -> None:
+    page = ready(visit())
+    if dark:
+        page.keyboard.press("t")
+        expect(page.locator("html")).to_have_attribute("data-mantine-color-scheme", "dark")
+    found: list[str] = []
+
+    def look(where: str) -> None:
+        for issue in Axe().run(page).response["violations"]:
+            if issue["impact"] in GRAVE:
+                found.extend(f"{where}: {issue['id']} {node['html'][:120]}" for node in issue["nodes"])
+
+    tabs(page, look)
+    assert found == []
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_no_text_is_cut_or_lies_over_another(visit: Visit, width: int, height: int) -> None:
+    page = ready(visit(width, height))
+    wrong: list[object] = []
+    tabs(page, lambda tab: wrong.extend((tab, *found) for found in page.evaluate(CUT)))
+    assert wrong == []
+
+
+@pytest.mark.parametrize(("width", "height"), [(820, 1180), (1024, 768)])
+def test_what_stops_or_frees_the_arm_is_found_by_a_finger(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    page = ready(visit(width, height, touch=True))
+    for name in ("EMERGENCY STOP", "Hold for free-drive", "Leave free-drive", "Reset"):
+        box = page.get_by_role("button", name=name, exact=True).bounding_box()
+        assert box is not None
+        assert min(box["width"], box["height"]) >= 44.0, name
+    canvas = page.locator("canvas").first.bounding_box()
+    assert canvas is not None
+    assert canvas["width"] >= 400.0
+    page.get_by_role("button", name="EMERGENCY STOP", exact=True).tap()
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
+    page.get_by_role("button", name="Reset", exact=True).tap()
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
+
+
+def test_the_first_stop_of_the_keyboard_leads_to_the_stop_of_the_arm(visit: Visit, cell: Cell) -> None:
+    page = ready(visit())
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="EMERGENCY STOP", exact=True)).to_be_focused()
+    page.keyboard.press("Enter")
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
+    expect(page.locator("[aria-live=polite]")).to_contain_text("Emergency stop")
+
+
+def test_space_holds_the_free_drive_button(visit: Visit, cell: Cell) -> None:
+    page = ready(visit())
+    page.get_by_role("button", name="Hold for free-drive").focus()
+    for _ in range(4):  # a page that stalls has let go
+        page.keyboard.down(" ")
+        cell.pass_time(3.5)
+        page.keyboard.up(" ")
+        if cell.loop.latest().decision.mode is Mode.FREE_DRIVE:
+            return
+        cell.pass_time(0.5)
+    pytest.fail(cell.told())
+
+
+def test_a_reload_comes_back_as_it_was(visit: Visit) -> None:
+    page = ready(visit())
+    page.get_by_role("tab", name="Settings", exact=True).click()
+    page.keyboard.press("t")
+    html = page.locator("html")
+    expect(html).to_have_attribute("data-mantine-color-scheme", "dark")
+    page.wait_for_timeout(300)
+    page.reload()
+    expect(page.get_by_role("tab", name="Settings", exact=True)).to_have_attribute("aria-selected", "true", timeout=60_000)
+    expect(html).to_have_attribute("data-mantine-color-scheme", "dark", timeout=30_000)
+
+
+def test_a_page_without_an_answer_says_so(visit: Visit, cell: Cell) -> None:
+    page = ready(visit())
+    expect(page.locator("#pd-lost")).not_to_be_visible()
+    cell.served.stop_drawing()
+    expect(page.locator("#pd-lost")).to_contain_text("No answer from the simulation", timeout=20_000)
