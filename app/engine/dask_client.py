@@ -62,6 +62,18 @@ def connect(workers: int, scheduler: str | None) -> Any:
     return Client(_embedded[workers], set_as_default=False)
 
 
+def crippled(workers: int) -> bool:
+    """Whether a process of the embedded cluster ended for good: Dask does not replace one that was killed while it started."""
+    return any(each.status.name in ("closed", "failed") for each in _embedded[workers].workers.values())
+
+
+def end_embedded(workers: int) -> None:
+    """End an embedded cluster; the next `connect` starts another."""
+    cluster = _embedded.pop(workers)
+    atexit.unregister(cluster.close)
+    cluster.close(timeout=10)
+
+
 def _remote(scheduler: str) -> Any:
     from distributed import Client
 

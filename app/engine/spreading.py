@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import chain, islice
 from typing import Any, TypeVar
 
-from app.engine.dask_client import PATIENCE, compare, connect, cores, dashboard
+from app.engine.dask_client import PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
 from app.engine.source import identity
 from app.files.bad_input import ABSENT, BadInput
 
@@ -15,6 +15,9 @@ R = TypeVar("R")
 
 AHEAD = 3
 """Pieces in flight for each worker: one that it does, and some that wait there, so that it never waits for the next."""
+
+LOOK = 3.0
+"""How often the processes of this machine are looked at [s]."""
 
 LIVES = 3
 """Times that a piece is given out again after it was lost with all workers that tried it."""
@@ -76,6 +79,7 @@ class _Spreading:
         self._client = connect(workers, scheduler)
         self._ours = identity()
         self._count, self._counted_at = workers, -math.inf
+        self._looked_at = time.monotonic()
         self._said_dashboard()
 
     def run(self, items: Iterator[tuple[int, T]], lost: Callable[[T], R] | None) -> Iterator[tuple[int, R]]:
@@ -86,9 +90,9 @@ class _Spreading:
             self._fill(items, under_way)
             if not under_way:
                 return
-            future = next(self._ready)
-            place = self._places.pop(future)
-            if future.status in ("cancelled", "lost"):  # with the scheduler
+            future = self._next()
+            place = -1 if future is None else self._places.pop(future)
+            if future is None or future.status in ("cancelled", "lost"):  # with the scheduler
                 self._reconnect()
                 self._begin(under_way)
                 continue
@@ -101,6 +105,17 @@ class _Spreading:
             del under_way[place]
             lives.pop(place)
             yield place, result
+
+    def _next(self) -> Any:
+        """The next future that has ended; None: processes of this machine ended for good."""
+        while True:
+            if self._scheduler is None and time.monotonic() > self._looked_at + LOOK:
+                self._looked_at = time.monotonic()
+                if crippled(self._workers):
+                    return None
+            if self._ready.has_ready():
+                return next(self._ready)
+            time.sleep(0.005)
 
     def _begin(self, under_way: dict[int, Any]) -> None:
         from distributed import as_completed
@@ -145,7 +160,10 @@ class _Spreading:
     def _reconnect(self) -> None:
         """A scheduler that went may come again, at its address, with new workers."""
         if self._scheduler is None:
-            raise BadInput("workers", "", ABSENT, "the scheduler of this process has ended")
+            self._client.close(timeout=2)
+            end_embedded(self._workers)
+            self._client = connect(self._workers, None)
+            return
         self._told(f"The scheduler {self._scheduler} is gone; waiting for it.")
         self._client.close(timeout=2)
         until = time.monotonic() + PATIENCE
