@@ -203,8 +203,14 @@ class Countdown(During, tag="countdown", frozen=True, kw_only=True):
 class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
     """The first event of a change in contact comes at most `max` after the true touch of an object, or parting."""
 
-    kind: Literal[Kind.CONTACT_GAINED, Kind.CONTACT_LOST, Kind.CONTACT_CLAMPING] = Kind.CONTACT_GAINED
+    kind: Kind = Kind.CONTACT_GAINED
     max: Span
+
+    def __post_init__(self) -> None:
+        """Check that the kind is one of a touch, or of parting."""
+        super().__post_init__()
+        if self.kind not in (Kind.CONTACT_GAINED, Kind.CONTACT_LOST, Kind.CONTACT_CLAMPING):
+            raise ValueError("kind must be contact_gained, contact_lost or contact_clamping")
 
     @property
     def gained(self) -> bool:
