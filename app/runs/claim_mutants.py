@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -29,6 +30,8 @@ PRODUCT = ASSETS.parent
 """The folder of the product's packages."""
 
 TOPS = ("app", "sim", "pendant", "assets")
+
+LINKED = (".nbc", ".nbi", ".glb")
 
 LONGEST = 180.0
 """A mutant that has not ended by then never will [s]."""
@@ -63,7 +66,7 @@ class Trial(NamedTuple):
     seen: str
 
 
-def mutants() -> list[Mutant]:
+def declared() -> list[Mutant]:
     """All of them, file by file.
 
     Raises:
@@ -91,27 +94,42 @@ def mutated(mutant: Mutant, folder: Path = PRODUCT) -> str:
 def copy_of(product: Path, folder: Path) -> Path:
     """Copy the product's packages, with what is compiled of them; gives `folder`."""
     for top in TOPS:
-        shutil.copytree(product / top, folder / top)
+        shutil.copytree(product / top, folder / top, copy_function=_copy)
     return folder
 
 
-def change(mutant: Mutant, copy: Path) -> None:
+def _copy(source: str, target: str) -> None:
+    """What is compiled, and pictures, are never written in place: a link will do."""
+    with suppress(OSError):
+        if source.endswith(LINKED):
+            os.link(source, target)
+            return
+    shutil.copy2(source, target)
+
+
+def change(mutant: Mutant, copy: Path, product: Path = PRODUCT) -> None:
     """Make the change in a copy. What was compiled of the file, and of all that import it, is thrown away."""
     (copy / mutant.file).write_text(mutated(mutant, copy), encoding="utf-8")
-    for path in importers(copy, mutant.file):
+    for path in importers(product, mutant.file):
         for compiled in (copy / path).parent.glob(f"__pycache__/{Path(path).stem}.*.nb[ic]"):
             compiled.unlink()
 
 
 def importers(folder: Path, file: str) -> set[str]:
     """The file and all of the product's files that import it, themselves or by others."""
-    paths = {_module(path): path for top in TOPS[:3] for path in _sources(folder, top)}
-    uses = {name: _imports(folder / path, set(paths)) for name, path in paths.items()}
+    paths, uses = _graph(folder)
     found, new = set[str](), {_module(file)}
     while new:
         found |= new
         new = {name for name, used in uses.items() if used & new} - found
     return {paths[name] for name in found if name in paths}
+
+
+@cache
+def _graph(folder: Path) -> tuple[dict[str, str], dict[str, set[str]]]:
+    """Paths of the product's modules, and which of each other they import, by name."""
+    paths = {_module(path): path for top in TOPS[:3] for path in _sources(folder, top)}
+    return paths, {name: _imports(folder / path, set(paths)) for name, path in paths.items()}
 
 
 def _sources(folder: Path, top: str) -> Iterator[str]:
@@ -209,7 +227,7 @@ def _started(context: "ForkServerContext", mutant: Mutant, product: Path) -> _Ru
 
     folder = tempfile.TemporaryDirectory(prefix="pendant-mutant-")
     copy = copy_of(product, Path(folder.name) / "product")
-    change(mutant, copy)
+    change(mutant, copy, product)
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=trial, args=(str(copy), mutant.session, str(copy.parent / "out"), theirs), daemon=True)
     process.start()
