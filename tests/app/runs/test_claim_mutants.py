@@ -14,6 +14,7 @@ from app.runs.coverage import claiming, rows_of, with_trials
 from app.runs.runner import RunOutcome
 from app.session.claims import CLAIMS
 from app.session.expectation_watch import Verdict
+from tools import claims_page
 
 MUTANTS = declared()
 SAMPLE = 12
@@ -115,3 +116,7 @@ def test_a_row_is_shown_only_where_its_mutants_are_noticed() -> None:
     assert states[0]["C 8"] == "shown"
     assert states[0]["C 17"] == "has no mutant"
     assert states[1]["C 8"] == "holds with a mutant"
+
+
+def test_the_page_of_claims_is_up_to_date() -> None:
+    assert claims_page.PAGE.read_text(encoding="utf-8") == claims_page.page(), "run python -m tools.claims_page"
