@@ -17,6 +17,7 @@ from app.session.expectation_watch import Verdict
 from tools import claims_page
 
 MUTANTS = declared()
+SESSIONS = claiming()
 SAMPLE = 12
 """Runs in each test of the whole product; `make claims` runs all."""
 
@@ -35,7 +36,7 @@ SUPPORT = Mutant(
 def test_a_mutant_fits_the_code_and_is_code(mutant: Mutant) -> None:
     ast.parse(mutated(mutant))
     assert mutant.replace != mutant.find
-    assert set(mutant.claims) <= set(claiming()[mutant.session].claims)
+    assert set(mutant.claims) <= set(SESSIONS[mutant.session].claims)
 
 
 def test_every_claim_has_a_mutant() -> None:
@@ -53,8 +54,8 @@ def test_no_mutant_serves_two_claims_that_say_different_things() -> None:
 
 def test_a_dozen_mutants_are_noticed() -> None:
     chosen = [mutant for mutant in MUTANTS if mutant.file.startswith("pendant/")][:: len(MUTANTS) // SAMPLE][: SAMPLE - 2]
-    chosen += [mutant for mutant in MUTANTS if mutant.file == "sim/control/motor_controller.py"][:1]
-    chosen += [mutant for mutant in MUTANTS if mutant.file == "sim/control/controller.py"][:1]
+    chosen += [mutant for mutant in MUTANTS if mutant.session == "control-torque-feedback"][:1]
+    chosen += [mutant for mutant in MUTANTS if mutant.session == "control-two-encoders"][:1]
     assert [trial.seen for trial in run_mutants(chosen) if not trial.noticed] == []
 
 
@@ -107,7 +108,7 @@ def test_one_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_row_is_shown_only_where_its_mutants_are_noticed() -> None:
-    sessions = {"control-torque-feedback": claiming()["control-torque-feedback"]}
+    sessions = {"control-torque-feedback": SESSIONS["control-torque-feedback"]}
     met, unmet = RunOutcome(verdicts=[Verdict(True, "a", "b")]), RunOutcome(verdicts=[Verdict(False, "a", "b")])
     rows = rows_of(sessions, {"control-torque-feedback": (met, unmet)})
     noticed = with_trials(rows, [judged(SUPPORT, [(False, "displacement", "2 m", True)])])
