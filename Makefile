@@ -7,7 +7,8 @@
 #                    their results are in out/bench, and python -m tools.results makes docs/results of them
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
-#   make fuzz      files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
+#   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
+#   make fuzz        files and messages drawn from their types, and damaged ones, for an hour on all cores (tools/fuzz)
 #   make clean       remove what the above made
 
 PYTHON ?= python3
@@ -21,7 +22,7 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate fuzz clean lint types contracts kernels unit e2e wheel browser pictures
+.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels unit e2e wheel browser pictures
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -122,6 +123,9 @@ mutate: $(VENV)/dev.stamp
 	$(PIP) --editable '.[dev,mutate]'
 	$(BIN)/mutmut run --max-children $(WORKERS)
 	$(BIN)/python -m tools.mutants
+
+claims: $(VENV)/dev.stamp kernels
+	$(BIN)/pendant claims --mutants --out out/claims
 
 fuzz: $(VENV)/dev.stamp
 	$(BIN)/python -m tools.fuzz --seconds 3600 --seed $(SEED)

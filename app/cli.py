@@ -190,16 +190,20 @@ def replay(
 app.command("export", epilog=EXAMPLES)(export_)
 
 
-@app.command(epilog=example("pendant claims", "pendant claims --out results/claims"))
+@app.command(epilog=example("pendant claims", "pendant claims --mutants --out results/claims"))
 def claims(
     out: Annotated[Path, typer.Option(help="Folder for claims.md, claims.json and the runs.")] = Path("out/claims"),
+    mutants: Annotated[bool, typer.Option("--mutants", help="Each session with its mutants, too, in copies.")] = False,
 ) -> None:
-    """Show every claim: run each session that names some with its switch on and off. Exit code 1 when a row is not shown."""
-    from app.runs.coverage import cover, totals, write
+    """Run each session that names claims, on and off. Exit code 1 when a row is not shown."""
+    from app.runs.claim_mutants import declared, run_mutants
+    from app.runs.coverage import cover, totals, with_trials, write
     from app.runs.progress import counting
 
     with counting("claims") as told:
         rows = cover(out, told)
+        if mutants:
+            rows = with_trials(rows, run_mutants(declared(), told))
     write(rows, out)
     for row in rows:
         if row.session is not None and not row.shown:

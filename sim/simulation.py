@@ -266,6 +266,7 @@ class Simulation:
             plant.sliding_friction(),
             plant.tau_J.copy(),
             plant.temperature.copy(),
+            plant.touched,
             self.scenario,
             self._reference(),
             self.supervisor.places,

@@ -1,18 +1,24 @@
-"""Which claims are shown: runs every session that names some with its switch on and off, and writes claims.md and claims.json."""
+"""Which claims are shown: every session that names some runs with its switch on and off, and with its mutants.
+
+The result is claims.md and claims.json.
+"""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from app.files.checked import ABSENT, BadInput, load
+from app.runs.claim_mutants import Trial
 from app.runs.jobs import Job, run_all
 from app.runs.runner import RunOutcome
 from app.session.claims import CLAIMS, Claim
 from app.session.prepare import prepare, without
 from app.session.session_file import Session, bundled, find
+
+STATES = ("shown", "fails", "holds without its switch", "holds with a mutant", "has no mutant", "missing")
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,18 +32,27 @@ class ClaimRow:
     passed: bool | None = None  # with the switch on
     failed_when_off: bool | None = None
     why: str = ""  # the first expectation that was not met with the switch on
+    trials: tuple[Trial, ...] | None = None  # of the row's mutants; None: they were not asked for
+    untried: bool = False  # they were, and the claim has none
 
     @property
     def shown(self) -> bool:
-        """Whether the claim holds, and does not without its switch."""
-        return self.passed is True and self.failed_when_off is True
+        """Whether the claim holds, and neither without its switch nor with one of its mutants."""
+        noticed = self.trials is None or all(trial.noticed for trial in self.trials)
+        return self.passed is True and self.failed_when_off is True and noticed and not self.untried
 
     @property
     def state(self) -> str:
         """In a word."""
         if self.session is None:
             return "missing"
-        return "shown" if self.shown else "fails" if not self.passed else "holds without its switch"
+        if self.shown:
+            return "shown"
+        if not self.passed:
+            return "fails"
+        if not self.failed_when_off:
+            return "holds without its switch"
+        return "has no mutant" if self.untried else "holds with a mutant"
 
 
 def claiming() -> dict[str, Session]:
@@ -87,6 +102,19 @@ def rows_of(sessions: dict[str, Session], pairs: dict[str, tuple[RunOutcome, Run
     return rows
 
 
+def with_trials(rows: list[ClaimRow], trials: list[Trial]) -> list[ClaimRow]:
+    """The rows, each with the trials of its claim and session.
+
+    Where several sessions show a claim, one of them at least has mutants.
+    """
+    tried = {claim for trial in trials for claim in trial.mutant.claims}
+    found: list[ClaimRow] = []
+    for row in rows:
+        own = tuple(t for t in trials if t.mutant.session == row.session and row.claim.name in t.mutant.claims)
+        found.append(replace(row, trials=own, untried=row.claim.name not in tried))
+    return found
+
+
 def _row(claim: Claim, name: str, session: Session, *, on: RunOutcome, off: RunOutcome) -> ClaimRow:
     checks = tuple(verdict.expected for verdict in on.verdicts)
     unmet = next((f"{verdict.expected}: {verdict.seen}" for verdict in on.verdicts if not verdict.passed), "")
@@ -107,30 +135,30 @@ def write(rows: list[ClaimRow], out: Path) -> None:
         raise BadInput(str(out), "", ABSENT, f"cannot be written ({error.strerror})") from None
 
 
-def as_json(rows: list[ClaimRow]) -> dict[str, Any]:
+def as_json(rows: list[ClaimRow]) -> list[dict[str, Any]]:
     """The content of claims.json."""
-    return {
-        "totals": totals(rows),
-        "rows": [
-            {
-                "claim": row.claim.name,
-                "to_show": row.claim.text,
-                "ids": row.claim.ids.split(),
-                "session": row.session,
-                "checks": row.checks,
-                "switch": row.switch,
-                "passed": row.passed,
-                "failed_when_off": row.failed_when_off,
-                "why": row.why,
-            }
-            for row in rows
-        ],
-    }
+    return [
+        {
+            "name": row.claim.name,
+            "to_show": row.claim.text,
+            "ids": row.claim.ids.split(),
+            "session": row.session,
+            "checks": row.checks,
+            "switch": row.switch,
+            "passed": row.passed,
+            "failed_when_off": row.failed_when_off,
+            "why": row.why,
+            "mutants": [
+                {"what": t.mutant.what, "file": t.mutant.file, "noticed": t.noticed, "seen": t.seen} for t in row.trials or ()
+            ],
+        }
+        for row in rows
+    ]
 
 
 def totals(rows: list[ClaimRow]) -> dict[str, int]:
     """How many rows are in each state."""
-    return {state: sum(row.state == state for row in rows) for state in ("shown", "fails", "holds without its switch", "missing")}
+    return {state: sum(row.state == state for row in rows) for state in STATES}
 
 
 def markdown(rows: list[ClaimRow]) -> str:
@@ -139,12 +167,13 @@ def markdown(rows: list[ClaimRow]) -> str:
     lines = [
         "# Claims",
         "",
-        "Written by `pendant claims`. A row is shown when its session meets what it expects, and does not with its switch off.",
+        "Written by `pendant claims --mutants`. A row is shown when its session meets what it expects, and does not with its "
+        "switch off, nor with any of its mutants: the smallest changes of code that take away what the claim says.",
         "",
         f"{len(rows)} rows: {counts}.",
         "",
-        "| claim | to show | ids | session | checks | switch | passed | failed when off | |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| claim | to show | ids | session | checks | switch | passed | failed when off | mutants, and what was seen | |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
         checks = "<br>".join(row.checks).replace("|", "\\|")
@@ -152,10 +181,16 @@ def markdown(rows: list[ClaimRow]) -> str:
         cells += [
             _word(row.passed),
             _word(row.failed_when_off),
+            "<br>".join(_told(trial) for trial in row.trials or ()).replace("|", "\\|") or "-",
             row.state + (f": {row.why}" if row.why else "").replace("|", "\\|"),
         ]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
+
+
+def _told(trial: Trial) -> str:
+    noticed = "noticed" if trial.noticed else "NOT NOTICED"
+    return f"{trial.mutant.what} (`{trial.mutant.file}`): {noticed}; {trial.seen}"
 
 
 def _word(value: bool | None) -> str:

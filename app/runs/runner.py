@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+import msgspec
 import mujoco
 import numpy as np
 
@@ -15,9 +16,9 @@ from app.log.events_file import EventsFile
 from app.log.recorder import Recorder
 from app.runs.network_run import NetworkRun
 from app.session.actions import OfClient
-from app.session.expectation_watch import Verdict
-from app.session.measures import watch
-from app.session.prepare import Prepared
+from app.session.expectation_watch import Verdict, Watch
+from app.session.measures import ComparedWatch, watch
+from app.session.prepare import Prepared, prepare
 from app.session.session_file import Session
 from app.session.timeline import Timeline
 from pendant.all_settings import Settings
@@ -207,9 +208,32 @@ def run(
                 progress(tick * TICK)
             if realtime:
                 time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
+    _compare(watches, session, prepared)
     outcome.took = time.perf_counter() - begun
     outcome.verdicts = [each.verdict() for each in watches] + ([] if clients is None else clients.verdicts)
     for place, action in timeline.unstarted():
         seen = f'"{action.after}" never came (time {action.nth}), or too late'
         outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))
     return outcome
+
+
+def _compare(watches: list[Watch], session: Session, prepared: Prepared) -> None:
+    """Hand each comparison its other run."""
+    for each in watches:
+        if isinstance(each, ComparedWatch):
+            each.other = _of_other_run(session, prepared, each)
+
+
+def _of_other_run(session: Session, prepared: Prepared, watched: ComparedWatch) -> float:
+    """What a comparison measures in the same session with the other settings."""
+    other = msgspec.structs.replace(session, settings={**session.settings, **watched.wanted.settings})
+    again = prepare(other, prepared.where)
+    simulation = simulate(again)
+    timeline = Timeline(other.timeline, again.arm.chain.joints, again.program)
+    each = watch(watched.wanted, again.arm.chain.joints)
+    assert isinstance(each, ComparedWatch)
+    for tick in range(1, ticks(session.duration) + 1):
+        decision = _tick(simulation, again, timeline.wishes(tick, simulation.snapshot))
+        timeline.see(tick, decision)
+        each.see(tick, decision, simulation.glance)
+    return each.measured

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.session.expectations import Happens, Heard, Never, Period, State
+from app.session.expectations import State
 from app.session.triggers import NEVER, Trigger
-from app.tones import tone_for
 from pendant.decision import Decision
 from pendant.tick.modes import TICK
 from sim.exchange.scoring import Scored
@@ -140,108 +139,6 @@ class StateWatch(Watch):
             return passed, ""
         tick, now = self.seen
         return passed, f"mode {now.mode.value}, phase {now.phase.value}, safety {now.safety.name} at {at(tick)}"
-
-
-@dataclass(slots=True)
-class EventWatch(Watch):
-    """Follows `Happens` and `Never`."""
-
-    events_alone: bool = True
-    wanted: Happens | Never = field(kw_only=True)
-    found: list[int] = field(default_factory=list)
-
-    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
-        """See `Watch.look`."""
-        wanted = self.wanted
-        for event in decision.events:
-            if event.kind == wanted.kind and all(event.values.get(name) == word for name, word in wanted.values.items()):
-                self.found.append(tick)
-
-    def settled(self) -> bool:
-        """See `Watch.settled`."""
-        return len(self.found) >= (self.wanted.times if isinstance(self.wanted, Happens) else 1)
-
-    def expected(self) -> str:
-        """See `Watch.expected`."""
-        wanted = self.wanted
-        words = ", ".join(f"{name} {word}" for name, word in wanted.values.items())
-        event = f"event {wanted.kind.value}{f' ({words})' if words else ''}"
-        if isinstance(wanted, Never):
-            return f"no {event} {self.span()}"
-        return f"{event}{f' {wanted.times} times' if wanted.times > 1 else ''} {self.span()}"
-
-    def judge(self) -> tuple[bool, str]:
-        """See `Watch.judge`."""
-        return self.settled() == isinstance(self.wanted, Happens), listed(self.found)
-
-
-@dataclass(slots=True)
-class ToneWatch(Watch):
-    """Follows `Heard`."""
-
-    wanted: Heard = field(kw_only=True)
-    before: Decision | None = None  # of the tick before
-    found: list[int] = field(default_factory=list)
-
-    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
-        """See `Watch.look`."""
-        if self.before is not None:
-            tone = tone_for(self.before, decision)
-            if tone is not None and tone.name == self.wanted.tone:
-                self.found.append(tick)
-        self.before = decision
-
-    def settled(self) -> bool:
-        """See `Watch.settled`."""
-        return len(self.found) >= self.wanted.times
-
-    def expected(self) -> str:
-        """See `Watch.expected`."""
-        times = f" {self.wanted.times} times" if self.wanted.times > 1 else ""
-        return f"tone {self.wanted.tone}{times} {self.span()}"
-
-    def judge(self) -> tuple[bool, str]:
-        """See `Watch.judge`."""
-        return self.settled(), listed(self.found)
-
-
-@dataclass(slots=True)
-class PeriodWatch(Watch):
-    """Follows `Period`: a run is the ticks in which the period is present without its remainder rising."""
-
-    wanted: Period = field(kw_only=True)
-    runs: list[tuple[int, int]] = field(default_factory=list)  # first tick, length in ticks, of each run that has ended
-    began: int | None = None
-    before: int = 0  # the remainder a tick before
-
-    def look(self, tick: int, decision: Decision, glance: Callable[[], Scored]) -> None:
-        """See `Watch.look`."""
-        left = next((period.ticks for period in decision.periods if period.name == self.wanted.name), None)
-        if self.began is not None and (left is None or left > self.before):
-            self.runs.append((self.began, tick - self.began))
-            self.began = None
-        if left is not None:
-            self.began = tick if self.began is None else self.began
-            self.before = left
-
-    def expected(self) -> str:
-        """See `Watch.expected`."""
-        wanted = self.wanted
-        return f"period {wanted.name}, run {wanted.run}, lasts {wanted.length:g} s within {wanted.tolerance:g} s"
-
-    def judge(self) -> tuple[bool, str]:
-        """See `Watch.judge`."""
-        if len(self.runs) < self.wanted.run:
-            return False, f"{len(self.runs)} ended runs"
-        first, length = self.runs[self.wanted.run - 1]
-        # Half a tick of grace, since lengths are whole ticks.
-        passed = abs(length * TICK - self.wanted.length) <= self.wanted.tolerance + 0.5 * TICK
-        return passed, f"{length * TICK:.3f} s, from {at(first)}"
-
-
-def listed(found: list[int]) -> str:
-    """When something was seen, in words."""
-    return "none" if not found else f"{len(found)}, at {', '.join(at(tick) for tick in found[:5])}"
 
 
 def at(tick: int) -> str:

@@ -71,25 +71,58 @@ class State(Expectation, tag="state", frozen=True, kw_only=True):
             raise ValueError(f"to = {self.end} must come after from = {self.begin}")
 
 
+def bounds(least: float | None, most: float | None) -> str:
+    """Bounds, in words."""
+    low = "" if least is None else f"at least {least:g}"
+    high = "" if most is None else f"at most {most:g}"
+    return " and ".join(filter(None, (low, high)))
+
+
+class Range(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where a number lies, its bounds within."""
+
+    min: Signed | None = None
+    max: Signed | None = None
+
+    def __post_init__(self) -> None:
+        """Check that there are bounds, in order."""
+        if self.min is None and self.max is None:
+            raise ValueError("needs min, max, or both")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise ValueError(f"min = {self.min} must not be above max = {self.max}")
+
+    def holds(self, value: float) -> bool:
+        """Whether `value` lies there; what is not a number lies nowhere."""
+        return (self.min is None or value >= self.min) and (self.max is None or value <= self.max)
+
+    def words(self) -> str:
+        """The bounds, in words."""
+        return bounds(self.min, self.max)
+
+
 class OfEvents(During, frozen=True, kw_only=True):
-    """Base of what looks for events of a kind, those alone that carry these words: `values: {parameter: flange speed}`."""
+    """Base of what looks for events of a kind, those alone that carry these words and numbers in these ranges:
+    `values: {parameter: flange speed}`, `numbers: {ratio: {max: -0.5}}`.
+    """
 
     kind: Kind
     values: dict[str, str | bool] = msgspec.field(default_factory=dict)
+    numbers: dict[str, Range] = msgspec.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that events of the kind carry such values."""
         super().__post_init__()
         keys = TABLE[self.kind].keys
-        for name in self.values:
+        for name in [*self.values, *self.numbers]:
             if name not in keys:
                 raise ValueError(f"values: {self.kind.value} carries no {name}; it carries {', '.join(keys) or 'none'}")
 
 
 class Happens(OfEvents, tag="event", frozen=True, kw_only=True):
-    """An event of a kind happens in the interval, at least `times` times."""
+    """An event of a kind happens in the interval, at least `times` times, or `exactly` so many."""
 
     times: Annotated[int, Meta(ge=1)] = 1
+    exactly: bool = False
 
 
 class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
@@ -158,4 +191,48 @@ class Period(Expectation, tag="period", frozen=True, kw_only=True):
     run: Annotated[int, Meta(ge=1)] = 1
 
 
-AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period
+class Countdown(During, tag="countdown", frozen=True, kw_only=True):
+    """As often as a period is shown in the interval (FD-20), its remainder is the whole period less the time since it began,
+    in every tick; and it is not taken away before its end, if it `runs_down`.
+    """
+
+    name: str
+    runs_down: bool = True
+
+
+class ContactDelay(During, tag="contact_delay", frozen=True, kw_only=True):
+    """The first event of a change in contact comes at most `max` after the true touch of an object, or parting."""
+
+    kind: Kind = Kind.CONTACT_GAINED
+    max: Span
+
+    def __post_init__(self) -> None:
+        """Check that the kind is one of a touch, or of parting."""
+        super().__post_init__()
+        if self.kind not in (Kind.CONTACT_GAINED, Kind.CONTACT_LOST, Kind.CONTACT_CLAMPING):
+            raise ValueError("kind must be contact_gained, contact_lost or contact_clamping")
+
+    @property
+    def gained(self) -> bool:
+        """It tells of a touch, not of a parting."""
+        return self.kind is not Kind.CONTACT_LOST
+
+
+class Compared(Bounds, tag="compared", frozen=True, kw_only=True):
+    """How large a quantity is in the interval, over what it is in the same session with other `settings`: a ratio."""
+
+    of: Quantity
+    joint: str | None = None  # for a quantity of a joint
+    measure: Literal["largest", "mean_square"] = "largest"
+    settings: dict[str, float | bool | str]  # of the other run, by dotted name
+
+    def __post_init__(self) -> None:
+        """Check that a joint is named where one is needed, and that something is different."""
+        super().__post_init__()
+        if (self.of in OF_A_JOINT) != (self.joint is not None):
+            raise ValueError(f"joint goes with {' and '.join(OF_A_JOINT)}, and only with these; of = {self.of}")
+        if not self.settings:
+            raise ValueError("settings must name what is different in the other run")
+
+
+AnyExpectation = State | Happens | Never | Heard | Value | Reaches | Displacement | Period | Countdown | ContactDelay | Compared

@@ -4,14 +4,28 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.session.expectation_watch import EventWatch, PeriodWatch, StateWatch, ToneWatch, Watch, at
-from app.session.expectations import AnyExpectation, Displacement, Happens, Heard, Never, Period, Reaches, State, Value
-from app.session.parts import point_of
+from app.session.event_watch import watch_told
+from app.session.expectation_watch import StateWatch, Watch, at
+from app.session.expectations import (
+    AnyExpectation,
+    Compared,
+    ContactDelay,
+    Countdown,
+    Displacement,
+    Happens,
+    Heard,
+    Never,
+    Period,
+    Reaches,
+    State,
+    Value,
+    bounds,
+)
 from app.session.triggers import Trigger
 from pendant.decision import Decision
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
-from sim.exchange.scoring import Scored
+from sim.exchange.scoring import Scored, point_of
 from sim.plant.touch import Triple
 
 UNITS = {
@@ -72,9 +86,7 @@ class BoundsWatch(Watch):
 
     def expected(self) -> str:
         """See `Watch.expected`."""
-        low = "" if self.min is None else f"at least {self.min:g}"
-        high = "" if self.max is None else f"at most {self.max:g}"
-        return f"{self.name()} {' and '.join(filter(None, (low, high)))} {self.unit()} {self.span()}"
+        return f"{self.name()} {bounds(self.min, self.max)} {self.unit()} {self.span()}"
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
@@ -131,6 +143,44 @@ class ValueWatch(BoundsWatch):
     def name(self) -> str:
         """See `BoundsWatch.name`."""
         return self.wanted.of.replace("_", " ") + (f" of {self.wanted.joint}" if self.wanted.joint else "")
+
+
+@dataclass(slots=True)
+class ComparedWatch(ValueWatch):
+    """Follows `Compared` in one of the two runs; `against` makes the verdict of both."""
+
+    wanted: Compared = field(kw_only=True)  # pyright: ignore[reportIncompatibleVariableOverride]
+    squares: float = 0.0
+    count: int = 0
+    other: float = math.nan  # the same measure in the other run
+
+    def number(self, value: float, tick: int) -> None:
+        """See `BoundsWatch.number`."""
+        BoundsWatch.number(self, abs(value), tick)
+        self.squares += value * value
+        self.count += 1
+
+    @property
+    def measured(self) -> float:
+        """The measure of the quantity in this run, in its unit."""
+        if self.wanted.measure == "mean_square":
+            return math.sqrt(self.squares / self.count) if self.count else math.nan
+        return self.high[0]
+
+    def expected(self) -> str:
+        """See `Watch.expected`."""
+        wanted = self.wanted
+        settings = ", ".join(f"{name} {str(value).lower()}" for name, value in wanted.settings.items())
+        measure = "root mean square of" if wanted.measure == "mean_square" else "largest"
+        return f"{measure} {self.name()} {bounds(self.min, self.max)} times that with {settings} {self.span()}"
+
+    def judge(self) -> tuple[bool, str]:
+        """See `Watch.judge`."""
+        if not self.count or not self.other > 0.0:
+            return False, "nothing was measured"
+        ratio = self.measured / self.other
+        within = (self.min is None or ratio >= self.min) and (self.max is None or ratio <= self.max)
+        return within, f"{ratio:.3g} times, {self.measured:.4g} {self.unit()} over {self.other:.4g} {self.unit()}"
 
 
 @dataclass(slots=True)
@@ -207,14 +257,12 @@ def watch(expectation: AnyExpectation, joints: list[str]) -> Watch:
             return StateWatch(joints, trigger, 0, ticks(time), wanted=expectation)
         case State():
             return StateWatch(joints, trigger, ticks(expectation.begin or 0.0), ticks(expectation.end or 0.0), wanted=expectation)
-        case Period():
-            return PeriodWatch(joints, trigger, wanted=expectation)
+        case Period() | Heard() | Happens() | Never() | Countdown() | ContactDelay():
+            return watch_told(expectation, joints, trigger)
     begin, end = ticks(expectation.begin), None if expectation.end is None else ticks(expectation.end)
     match expectation:
-        case Heard():
-            return ToneWatch(joints, trigger, begin, end, wanted=expectation)
-        case Happens() | Never():
-            return EventWatch(joints, trigger, begin, end, wanted=expectation)
+        case Compared():
+            return ComparedWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Reaches():
             return ReachWatch(joints, trigger, begin, end, wanted=expectation, min=expectation.min, max=expectation.max)
         case Value():

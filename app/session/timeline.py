@@ -21,7 +21,6 @@ from app.session.actions import (
     Wrench,
     triple,
 )
-from app.session.parts import point_of
 from app.session.triggers import NEVER, Trigger
 from pendant.decision import Decision
 from pendant.inputs import NOTHING, Button, Command, Inputs
@@ -30,6 +29,7 @@ from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.arm.scenario import Load
 from sim.exchange.desk import Wishes
+from sim.exchange.scoring import point_of
 from sim.exchange.snapshot import Snapshot
 from sim.plant.changes import AnyChange
 from sim.plant.touch import Pull, Touch, Triple

@@ -142,7 +142,7 @@ def session_of(raw: dict[str, Any], values: Any, seed: int, where: str) -> Sessi
 
 
 def described(plan: Plan) -> dict[str, Any]:
-    """What study.json says, by which a study is known again."""
+    """What is written of a study, by which a study is known again."""
     content = plain(plan.study) | {"session": plan.raw}
     return {"runs": plan.size, "digest": source_digest(), "study": content}
 

@@ -56,7 +56,7 @@ def sweep(
     Args:
         study: what to do.
         base: its session.
-        out: folder for rows/, study.json and report.html. One that holds a part of the same study is completed.
+        out: folder for the rows, what the study is, and its report. One that holds a part of the same study is completed.
         where: name of the study, for messages.
         workers: who does the runs.
         told: how many rows there are, of how many.

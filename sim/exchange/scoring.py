@@ -1,5 +1,6 @@
 """What scoring reads of the tick done last, in place: a copy of everything, each tick, would cost more than a recording."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from pendant.tick.estimate import Estimate
 from pendant.tooling.tool_in_use import Fitting
 from sim.control.controller import Controller
+from sim.plant.touch import Triple
 from sim.plant.true_arm import Plant
 
 Array = NDArray[np.float64]
@@ -54,6 +56,11 @@ class Scored(Protocol):
     @property
     def truth_tau_J(self) -> Array:
         """Transmission torque (n,) [N·m]."""
+        ...
+
+    @property
+    def truth_touched(self) -> bool:
+        """A hand or an object touches the arm, or what it carries."""
         ...
 
 
@@ -119,3 +126,29 @@ class Glance:
     def truth_tau_J(self) -> Array:
         """See `Scored.truth_tau_J`."""
         return self._simulation.plant.tau_J
+
+    @property
+    def truth_touched(self) -> bool:
+        """See `Scored.truth_touched`."""
+        return self._simulation.plant.touched
+
+
+def point_of(seen: Scored, joints: list[str], part: str, point: Sequence[float] = (0.0, 0.0, 0.0)) -> Triple:
+    """A point of a part, in W [m].
+
+    Args:
+        seen: whose truth is read.
+        joints: the arm's joint names, base to flange.
+        part: "foot", a joint's link by its joint name, "flange" or "tool"; these two are the tool-side face of the flange sensor.
+        point: in the part's frame [m].
+    """
+    row = -1 if part in ("flange", "tool") else 0 if part == "foot" else 1 + joints.index(part)
+    x, y, z, w, i, j, k = seen.truth_links[row].tolist()
+    a, b, c = point
+    # Rotation by the unit quaternion (w, v): p + 2 w t + 2 v x t with t = v x p; by hand, since it runs every tick.
+    tx, ty, tz = j * c - k * b, k * a - i * c, i * b - j * a
+    return (
+        x + a + 2.0 * (w * tx + j * tz - k * ty),
+        y + b + 2.0 * (w * ty + k * tx - i * tz),
+        z + c + 2.0 * (w * tz + i * ty - j * tx),
+    )

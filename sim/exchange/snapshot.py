@@ -37,6 +37,7 @@ class Snapshot:
     truth_friction: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of both sides, with the speed's sign [N·m]
     truth_tau_J: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) transmission torque [N·m]
     truth_temperature: NDArray[np.float64] = field(default_factory=_nothing)  # (n,) of the joints [°C]
+    truth_touched: bool = False  # a hand or an object touches the arm, or what it carries
     scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks
     reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]
     places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B

@@ -198,6 +198,11 @@ class Plant:
         """Let the payload fall: it leaves with the flange's velocity."""
         self.payload.drop(lambda point: self.hands.velocity(self.flange_body, point))
 
+    @property
+    def touched(self) -> bool:
+        """A hand or an object touches the arm, or what it carries."""
+        return self.data.ncon > 0 or bool(self.hands.touched)
+
     def sliding_friction(self) -> Array:
         """True friction (n,) of both sides at the present speeds, with their signs [N·m].
 

@@ -84,7 +84,7 @@ def test_rows_say_what_is_shown_and_what_is_missing() -> None:
     assert len(rows) == len(CLAIMS)
     assert found["A 3"] == found["C 2"] == "shown"
     assert found["A 4"] == "missing"
-    assert coverage.totals(rows) == {"shown": 2, "fails": 0, "holds without its switch": 0, "missing": len(CLAIMS) - 2}
+    assert coverage.totals(rows) == dict.fromkeys(coverage.STATES, 0) | {"shown": 2, "missing": len(CLAIMS) - 2}
     assert _states(session, MET, MET) == {"holds without its switch"}
     assert _states(session, UNMET, UNMET) == {"fails"}
     assert _states(session, MET, LATE) == {"holds without its switch"}  # nothing that it expects was looked at
@@ -100,12 +100,13 @@ def test_claims_are_written_as_a_page_and_as_data(tmp_path: Path) -> None:
     coverage.write(rows, tmp_path / "new")
     page = (tmp_path / "new" / "claims.md").read_text()
     assert "| A 3 | a signal shorter" in page
-    assert "| s | mode TEACH<br>mode STOP | FD-7 | no | yes | fails: mode STOP: mode TEACH \\| at 2 s |" in page
+    assert "| s | mode TEACH<br>mode STOP | FD-7 | no | yes | - | fails: mode STOP: mode TEACH \\| at 2 s |" in page
     data = msgspec.json.decode((tmp_path / "new" / "claims.json").read_bytes())
-    row = next(row for row in data["rows"] if row["claim"] == "A 3")
+    row = next(row for row in data if row["name"] == "A 3")
     assert row["checks"] == ["mode TEACH", "mode STOP"]
     assert (row["switch"], row["passed"], row["failed_when_off"]) == ("FD-7", False, True)
-    assert data["rows"][0]["passed"] is None
+    assert data[0]["passed"] is None
+    assert row["mutants"] == []
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInput):
         coverage.write(rows, tmp_path / "file")

@@ -1,0 +1,123 @@
+"""Mutants of claims: they fit the code, each claim has one, and sessions notice them."""
+
+import ast
+import shutil
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+from app.files.checked import BadInput
+from app.runs import claim_mutants
+from app.runs.claim_mutants import PRODUCT, Mutant, declared, importers, judged, mutated, run_mutants
+from app.runs.coverage import claiming, rows_of, with_trials
+from app.runs.runner import RunOutcome
+from app.session.claims import CLAIMS
+from app.session.expectation_watch import Verdict
+from tools import claims_page
+
+MUTANTS = declared()
+SESSIONS = claiming()
+SAMPLE = 12
+"""Runs in each test of the whole product; `make claims` runs all."""
+
+SUPPORT = Mutant(
+    session="control-torque-feedback",
+    claims=["C 8"],
+    file="sim/control/feedback.py",
+    find="SUPPORT * own.error[i]",
+    replace="-SUPPORT * own.error[i]",
+    what="the sign",
+    fails="displacement",
+)
+
+
+@pytest.mark.parametrize("mutant", MUTANTS, ids=lambda mutant: f"{mutant.session}: {mutant.what}")
+def test_a_mutant_fits_the_code_and_is_code(mutant: Mutant) -> None:
+    ast.parse(mutated(mutant))
+    assert mutant.replace != mutant.find
+    assert set(mutant.claims) <= set(SESSIONS[mutant.session].claims)
+
+
+def test_every_claim_has_a_mutant() -> None:
+    tried = {claim for mutant in MUTANTS for claim in mutant.claims}
+    assert [name for name in CLAIMS if name not in tried] == []
+    assert len(MUTANTS) >= 130
+
+
+def test_no_mutant_serves_two_claims_that_say_different_things() -> None:
+    texts: defaultdict[tuple[str, str, str], set[str]] = defaultdict(set)
+    for mutant in MUTANTS:
+        texts[mutant.file, mutant.find, mutant.replace] |= {CLAIMS[name].text for name in mutant.claims}
+    assert {change: said for change, said in texts.items() if len(said) > 1} == {}
+
+
+def test_a_dozen_mutants_are_noticed() -> None:
+    chosen = [mutant for mutant in MUTANTS if mutant.file.startswith("pendant/")][:: len(MUTANTS) // SAMPLE][: SAMPLE - 2]
+    chosen += [mutant for mutant in MUTANTS if mutant.session == "control-torque-feedback"][:1]
+    chosen += [mutant for mutant in MUTANTS if mutant.session == "control-two-encoders"][:1]
+    assert [trial.seen for trial in run_mutants(chosen) if not trial.noticed] == []
+
+
+def test_what_is_called_is_compiled_again() -> None:
+    """The kernel that the simulation calls is in another module than the one that changes."""
+    assert "def input_side" not in (PRODUCT / "sim/plant/joint_state.py").read_text()
+    callee = Mutant(
+        session="control-friction-learned",
+        claims=["C 5"],
+        file="sim/plant/joint_friction.py",
+        find="out[i] = (curve * heat",
+        replace="out[i] = 0.0 * (curve * heat",
+        what="the true friction is gone",
+        fails="friction error",
+    )
+    assert run_mutants([callee])[0].noticed
+
+
+def test_what_imports_a_module_is_found() -> None:
+    found = importers(PRODUCT, "sim/estimation/adaptive_friction.py")
+    assert {"sim/estimation/adaptive_friction.py", "sim/control/feed_forward.py", "sim/simulation.py"} <= found
+    assert not any(path.startswith("pendant/") for path in found)
+
+
+def test_a_mutant_that_does_not_fit_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "sim/control").mkdir(parents=True)
+    shutil.copy(PRODUCT / SUPPORT.file, tmp_path / SUPPORT.file)
+    assert mutated(SUPPORT, tmp_path).count("-SUPPORT") == 1
+    (tmp_path / SUPPORT.file).write_text("SUPPORT * own.error[i]\n" * 2)
+    with pytest.raises(BadInput, match="not 2 times"):
+        mutated(SUPPORT, tmp_path)
+    (tmp_path / SUPPORT.file).unlink()
+    with pytest.raises(BadInput, match="no such file"):
+        run_mutants([SUPPORT], product=tmp_path)
+
+
+def test_a_mutant_is_noticed_for_the_reason_that_it_names() -> None:
+    other = (False, "mode TEACH", "at 1 s", True)
+    named = (False, "largest displacement of flange at most 1 m", "2 m", True)
+    assert judged(SUPPORT, [other, named]) == (SUPPORT, True, "largest displacement of flange at most 1 m: 2 m")
+    assert judged(SUPPORT, [other]) == (SUPPORT, False, "fails, but for another reason: mode TEACH: at 1 s")
+    assert not judged(SUPPORT, [(False, "displacement", "never came", False)]).noticed
+    assert judged(SUPPORT, [(True, "displacement", "1 m", True)]) == (SUPPORT, False, "everything is as expected")
+    assert judged(SUPPORT, "breaks down") == (SUPPORT, False, "breaks down")
+
+
+def test_one_that_does_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(claim_mutants, "LONGEST", 0.0)
+    assert run_mutants([SUPPORT])[0].seen == "has not ended after 0 s"
+
+
+def test_a_row_is_shown_only_where_its_mutants_are_noticed() -> None:
+    sessions = {"control-torque-feedback": SESSIONS["control-torque-feedback"]}
+    met, unmet = RunOutcome(verdicts=[Verdict(True, "a", "b")]), RunOutcome(verdicts=[Verdict(False, "a", "b")])
+    rows = rows_of(sessions, {"control-torque-feedback": (met, unmet)})
+    noticed = with_trials(rows, [judged(SUPPORT, [(False, "displacement", "2 m", True)])])
+    missed = with_trials(rows, [judged(SUPPORT, "breaks down")])
+    states = [{row.claim.name: row.state for row in told if row.session} for told in (noticed, missed)]
+    assert states[0]["C 8"] == "shown"
+    assert states[0]["C 17"] == "has no mutant"
+    assert states[1]["C 8"] == "holds with a mutant"
+
+
+def test_the_page_of_claims_is_up_to_date() -> None:
+    assert claims_page.PAGE.read_text(encoding="utf-8") == claims_page.page(), "run python -m tools.claims_page"
