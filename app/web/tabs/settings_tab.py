@@ -175,7 +175,7 @@ class SettingsTab:
         async def update(event: viser.GuiEvent) -> None:
             if event.client_id is None:  # the page brings itself up to date
                 return
-            value = self.controls[row.name].value
+            value: Value = event.target.value
             if not typed:
                 self._change({row.name: value})
                 return

@@ -101,12 +101,13 @@ def test_the_operator_sets_every_control_to_its_other_end(served: Served, join: 
     client = join()
     usable = {u: c for u, c in controls(served).items() if c.visible and not c.disabled}
     able = [u for u, c in usable.items() if not isinstance(c, viser.GuiUploadButtonHandle)]
-    section = served.docks.settings.section._impl.uuid
-    shown = controls(served)[section].value
+    settings = served.docks.settings
+    view = settings.view._impl.uuid
+    before = (settings.section.visible, settings.preset.visible)
     assert len(able) > 40
-    for uuid in sorted(able, key=lambda uuid: uuid == section):  # the section last, because it makes other controls
+    for uuid in sorted(able, key=lambda uuid: uuid == view):  # the view last, because it makes other controls
         client.set(uuid, value=other_value(controls(served)[uuid]))
-    until(lambda: controls(served)[section].value != shown, "the last of them")
+    until(lambda: (settings.section.visible, settings.preset.visible) != before, "the last of them")
     assert served.guard.refused.total() == 0
     assert served.lab.setup.seed.value == 2**31 - 1
 
