@@ -28,6 +28,7 @@ from app.studies.study_measures import (
 from pendant.decision import Decision
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
+from sim.exchange.scoring import point_of
 from sim.simulation import Simulation
 
 Number = float | bool | None
