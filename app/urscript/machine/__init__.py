@@ -1,0 +1,1 @@
+"""From a tree to steps that a tick can stop at: values, operators, compiler, threads."""

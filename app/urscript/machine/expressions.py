@@ -1,0 +1,256 @@
+"""Compiles expressions to functions of a frame."""
+
+from collections.abc import Callable
+from typing import Any
+
+from app.urscript.language import tree
+from app.urscript.language.trouble import Misuse, Place, ScriptTrouble
+from app.urscript.machine.operators import (
+    NUMBERS,
+    SINGLE,
+    compare,
+    compute,
+    element,
+    member,
+    negative,
+    truth,
+)
+from app.urscript.machine.values import GREATEST, LEAST, UNSET, PoseValue, Value, kind, made_list
+
+Frame = list[Any]
+Read = Callable[[Frame], Value]
+
+
+def constant(value: Value) -> Read:
+    """Always the same."""
+    return lambda f: value
+
+
+def local(slot: int, name: str, place: Place) -> Read:
+    """A variable of a function."""
+
+    def read(f: Frame) -> Value:
+        value = f[slot]
+        if value is UNSET:
+            raise ScriptTrouble(place, f"variable {name} has no value yet")
+        return value
+
+    return read
+
+
+def shared(values: list[Value], number: int, name: str, place: Place) -> Read:
+    """A variable that all functions see."""
+
+    def read(f: Frame) -> Value:
+        value = values[number]
+        if value is UNSET:
+            raise ScriptTrouble(place, f"variable {name} has no value yet")
+        return value
+
+    return read
+
+
+def arithmetic(operator: str, x: Read, y: Read, place: Place) -> Read:
+    """+ - * / %."""
+    work, whole = SINGLE[operator], operator in "+-*"
+
+    def both(a: Value, b: Value) -> Value:
+        try:
+            return compute(operator, a, b)
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    if not whole:
+        return lambda f: both(x(f), y(f))
+
+    def result(f: Frame) -> Value:
+        a, b = x(f), y(f)
+        if type(a) is float and type(b) is float:
+            return work(a, b)
+        if type(a) is int and type(b) is int:
+            found = work(a, b)
+            if LEAST <= found <= GREATEST:
+                return found
+        return both(a, b)
+
+    return result
+
+
+def comparison(operator: str, x: Read, y: Read, place: Place) -> Read:
+    """== != < > <= >=."""
+    if operator == "==":
+        return lambda f: x(f) == y(f)
+    if operator == "!=":
+        return lambda f: x(f) != y(f)
+
+    def result(f: Frame) -> bool:
+        try:
+            return compare(operator, x(f), y(f))
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return result
+
+
+def same(x: Read, value: Value) -> Read:
+    """== of something that never changes."""
+    return lambda f: x(f) == value
+
+
+def condition(x: Read, node: tree.Node) -> Read:
+    """Whether a condition holds."""
+    if is_bool(node):
+        return x
+    place = node.place
+
+    def result(f: Frame) -> bool:
+        value = x(f)
+        if value is True or value is False:
+            return value
+        try:
+            return truth(value)
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return result
+
+
+def is_bool(node: tree.Node) -> bool:
+    """The value is a bool whatever happens."""
+    if isinstance(node, tree.Binary):
+        return node.operator in ("==", "!=", "<", ">", "<=", ">=", "and", "or", "xor")
+    if isinstance(node, tree.Unary):
+        return node.operator == "not"
+    return isinstance(node, tree.Constant) and isinstance(node.value, bool)
+
+
+def either(parts: list[Read]) -> Read:
+    """`or` of several conditions."""
+    if len(parts) == 2:
+        x, y = parts
+        return lambda f: x(f) or y(f)
+
+    def result(f: Frame) -> bool:
+        for part in parts:
+            if part(f):
+                return True
+        return False
+
+    return result
+
+
+def both(x: Read, y: Read) -> Read:
+    """`and`."""
+    return lambda f: x(f) and y(f)
+
+
+def unequal(x: Read, y: Read) -> Read:
+    """`xor`."""
+    return lambda f: x(f) is not y(f)
+
+
+def opposite(x: Read) -> Read:
+    """`not`."""
+    return lambda f: not x(f)
+
+
+def signed(x: Read, place: Place) -> Read:
+    """A sign before a value."""
+
+    def result(f: Frame) -> Value:
+        try:
+            return negative(x(f))
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return result
+
+
+def listed(parts: list[Read], place: Place, pose: bool) -> Read:
+    """A list or a pose."""
+
+    def posed(f: Frame) -> Value:
+        values = [part(f) for part in parts]
+        for value in values:
+            if type(value) not in NUMBERS:
+                raise ScriptTrouble(place, f"a pose has 6 numbers, one of these is {kind(value)}")
+        return PoseValue(values)
+
+    def result(f: Frame) -> Value:
+        try:
+            return made_list([part(f) for part in parts])
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return posed if pose else result
+
+
+def indexed(of: Read, parts: list[Read], place: Place) -> Read:
+    """An element of a list, a pose, a matrix."""
+    first = parts[0]
+
+    def one(f: Frame) -> Value:
+        value, number = of(f), first(f)
+        if (type(value) is tuple or type(value) is PoseValue) and type(number) is int and 0 <= number < len(value):
+            return value[number]
+        try:
+            return element(value, [number])
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    def several(f: Frame) -> Value:
+        try:
+            return element(of(f), [part(f) for part in parts])
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return one if len(parts) == 1 else several
+
+
+def selected(of: Read, name: str, place: Place) -> Read:
+    """A member of a struct."""
+
+    def result(f: Frame) -> Value:
+        try:
+            return member(of(f), name)
+        except Misuse as misuse:
+            raise ScriptTrouble(place, str(misuse)) from None
+
+    return result
+
+
+def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Callable[[Value], Value]]], place: Place) -> Read:
+    """A function of the language that takes no time; each argument is checked."""
+
+    def failed(misuse: Exception) -> ScriptTrouble:
+        return ScriptTrouble(place, f"{name}(): {misuse}")
+
+    if not arguments:
+
+        def nothing(f: Frame) -> Value:
+            try:
+                return work()
+            except Misuse as misuse:
+                raise failed(misuse) from None
+
+        return nothing
+    if len(arguments) == 1:
+        ((x, check),) = arguments
+
+        def one(f: Frame) -> Value:
+            value = x(f)
+            try:
+                return work(check(value))
+            except Misuse as misuse:
+                raise failed(misuse) from None
+
+        return one
+
+    def several(f: Frame) -> Value:
+        values = [x(f) for x, _ in arguments]
+        try:
+            return work(*[check(value) for value, (_, check) in zip(values, arguments, strict=True)])
+        except Misuse as misuse:
+            raise failed(misuse) from None
+
+    return several

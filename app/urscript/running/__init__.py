@@ -1,0 +1,1 @@
+"""A script in the robot: where it comes from, what it asks of the arm, how it ends."""
