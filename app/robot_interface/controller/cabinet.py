@@ -56,8 +56,8 @@ class Scripts(Protocol):
         """Of the script that runs."""
         ...
 
-    def wishes(self, tick: int) -> Wishes:
-        """What the script wants of the tick that begins."""
+    def wishes(self, tick: int) -> Wishes | None:
+        """What the script wants of the tick that begins; None: nothing."""
         ...
 
     def see(self, decision: Decision) -> None:

@@ -167,6 +167,9 @@ class Compiler:
     def _binary(self, node: tree.Binary) -> Read:
         operator = node.operator
         if operator == "or":
+            choice = self._choice(node)
+            if choice is not None:
+                return choice
             return make.either([make.condition(self._plain(part), part) for part in self._chain(node)])
         x, y = self._plain(node.left), self._plain(node.right)
         if operator == "and":
@@ -174,10 +177,35 @@ class Compiler:
         if operator == "xor":
             return make.unequal(make.condition(x, node.left), make.condition(y, node.right))
         if operator == "==" and isinstance(node.right, tree.Constant):
-            return make.same(x, node.right.value)
+            return self._same(node.left, x, node.right.value)
         if operator in "+-*/%":
             return make.arithmetic(operator, x, y, node.place)
         return make.comparison(operator, x, y, node.place)
+
+    def _same(self, node: tree.Node, x: Read, value: Value) -> Read:
+        if not isinstance(node, tree.Name) or id(node) in self._temporary:
+            return make.same(x, value)
+        slot = self.routine.slots.get(node.name)
+        if slot is not None:
+            return make.same_local(slot, value, x)
+        return make.same_shared(self.held.globals, self.script.globals[node.name], value, x)
+
+    def _choice(self, node: tree.Binary) -> Read | None:
+        """Of one variable that is compared with several numbers."""
+        names: set[str] = set()
+        values: list[Value] = []
+        for part in self._chain(node):
+            if not (isinstance(part, tree.Binary) and part.operator == "==" and isinstance(part.left, tree.Name)):
+                return None
+            if not isinstance(part.right, tree.Constant) or type(part.right.value) not in (int, float):
+                return None
+            names.add(part.left.name)
+            values.append(part.right.value)
+        if len(names) > 1 or any(id(part) in self._temporary for part in self._chain(node)):
+            return None
+        part = self._chain(node)[0]
+        assert isinstance(part, tree.Binary)
+        return make.one_of(self._plain(part.left), values)
 
     def _chain(self, node: tree.Node) -> list[tree.Node]:
         """The parts of a or b or c."""
@@ -206,6 +234,11 @@ class Compiler:
     def frame(self, node: tree.Call, routine: Routine) -> Callable[[Frame], Frame]:
         """Makes the frame of a call."""
         reads = self.given(node, routine)
+        if not reads:
+            return lambda f: [None] + [UNSET] * (routine.size - 1)
+        if len(reads) == 1:
+            (read,) = reads
+            return lambda f: [None, read(f)] + [UNSET] * (routine.size - 2)
 
         def made(f: Frame) -> Frame:
             g: Frame = [None]

@@ -97,6 +97,37 @@ def same(x: Read, value: Value) -> Read:
     return lambda f: x(f) == value
 
 
+def one_of(x: Read, values: list[Value]) -> Read:
+    """Whether it equals one of several numbers: `a == 1 or a == 2`."""
+    found = frozenset(values)
+
+    def result(f: Frame) -> bool:
+        value = x(f)
+        return type(value) in NUMBERS and value in found
+
+    return result
+
+
+def same_local(slot: int, value: Value, missing: Read) -> Read:
+    """== of a function's variable and what never changes; `missing` says that it has no value."""
+
+    def result(f: Frame) -> bool:
+        found = f[slot]
+        return (missing(f) if found is UNSET else found) == value
+
+    return result
+
+
+def same_shared(values: list[Value], number: int, value: Value, missing: Read) -> Read:
+    """== of a variable that all functions see and what never changes."""
+
+    def result(f: Frame) -> bool:
+        found = values[number]
+        return (missing(f) if found is UNSET else found) == value
+
+    return result
+
+
 def condition(x: Read, node: tree.Node) -> Read:
     """Whether a condition holds."""
     if is_bool(node):

@@ -44,6 +44,7 @@ class Strand:
     where: Place = NOWHERE  # of what it waits for
     joins: int = 0  # the thread that it waits for
     ran: int = 0  # the tick in which it ran last
+    parent: int = 0  # the thread that started it
     spent: int = 0  # steps since time passed for it
 
 
@@ -138,22 +139,25 @@ class Machine:
         if len(self._strands) >= MOST_THREADS:
             raise ScriptTrouble(place, f"more than {MOST_THREADS} threads")
         self._count += 1
-        self._strands.append(Strand(self._count, routine, frame))
+        self._strands.append(Strand(self._count, routine, frame, parent=self._now.number))
         self._room(place)
         return self._count
 
     def kill(self, thread: Value, place: Place) -> None:
-        """End a thread; one that has ended, or a number of none, is left as it is."""
+        """End a thread, and those that it started; one that has ended, or a number of none, is left as it is."""
         found = self._find(thread, place)
         if found is None:
             return
-        if found.wait is not None:
-            found.wait.close()
-        if found is self._now:
+        gone = {found.number}
+        for each in sorted(self._strands, key=lambda strand: strand.number):  # a child's number is the greater one
+            if each.parent in gone:
+                gone.add(each.number)
+        if self._now.number in gone:
             raise ScriptTrouble(place, "a thread cannot kill itself")
-        self._strands = [each for each in self._strands if each is not found]
-        if found is self._main:
-            raise Halted
+        for each in self._strands:
+            if each.number in gone and each.wait is not None:
+                each.wait.close()
+        self._strands = [each for each in self._strands if each.number not in gone]
 
     def critical(self, inside: bool) -> None:
         """A part begins or ends in which no other thread runs unless this one waits."""

@@ -231,6 +231,14 @@ class Statements:
             value = _changed(compiler.variable(tree.Name(place, name)), path, value, place)
         following, values, made = len(self._code) + 1, compiler.held.globals, compiler.held.made
 
+        plain = node.value
+        if not path and (make.is_bool(plain) or (isinstance(plain, tree.Constant) and type(plain.value) is not str)):
+            if own:
+                self._add(_put(number, value, following), place, cost)
+            else:
+                self._add(_put_shared(values, number, value, following), place, cost)
+            return
+
         def to_own(f: Frame) -> int:
             found = value(f)
             if type(found) in BULKY:
@@ -263,6 +271,26 @@ class Statements:
         for part in parts:
             total += size(part) + _within(part, routines)
         return total
+
+
+def _put(slot: int, value: Read, following: int) -> Any:
+    """Assign what needs no room to a function's variable."""
+
+    def step(f: Frame) -> int:
+        f[slot] = value(f)
+        return following
+
+    return step
+
+
+def _put_shared(values: list[Value], number: int, value: Read, following: int) -> Any:
+    """The same to a variable that all functions see."""
+
+    def step(f: Frame) -> int:
+        values[number] = value(f)
+        return following
+
+    return step
 
 
 def _within(node: tree.Node, routines: dict[str, Routine]) -> int:

@@ -11,13 +11,13 @@ from app.urscript.functions.library_of_functions import builtins_of
 from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language.reading import read_script
-from app.urscript.language.trouble import NOWHERE, Place, ScriptTrouble
+from app.urscript.language.trouble import NOWHERE, ScriptTrouble
 from app.urscript.machine.machine import Machine
 from app.urscript.running.script_robot import ScriptRobot
 from app.urscript.running.step_arm import StepArm
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
-from pendant.inputs import Inputs
+from pendant.inputs import NOTHING, Inputs
 from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
@@ -164,10 +164,10 @@ class ScriptRunner:
 
     # on the loop's thread
 
-    def wishes(self, tick: int) -> Wishes:
-        """What the script wants of the tick that begins."""
+    def wishes(self, tick: int) -> Wishes | None:
+        """What the script wants of the tick that begins; None: nothing."""
         self._change()
-        inputs = Inputs()
+        inputs = NOTHING
         running = self._running
         if running is not None and not self.paused:
             over = running.machine.tick()
@@ -190,11 +190,11 @@ class ScriptRunner:
         inputs = _joined(inputs, self.arm.inputs())
         if self.arm.freeing:
             self._cabinet.free_drive_until = self._cabinet.ticks + FREE_DRIVE
-        return Wishes(inputs, (), ())
+        return None if inputs is NOTHING else Wishes(inputs, (), ())
 
     def see(self, decision: Decision) -> None:
         """Take in what the robot decided."""
-        self.arm.see(decision)
+        self.arm.see(decision, self._cabinet.simulation)
         if self._running is None:
             return
         self._history.appendleft(tuple(self._cabinet.simulation.estimate.q.tolist()))
@@ -225,7 +225,9 @@ class ScriptRunner:
 
     def _taken(self, robot: ScriptRobot) -> Inputs:
         """What its functions asked of the robot besides motion."""
-        inputs = Inputs()
+        if not robot.asks and robot.tool is None:
+            return NOTHING
+        inputs = NOTHING
         asks, robot.asks = robot.asks, []
         for ask in asks:
             inputs = _joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
@@ -269,7 +271,6 @@ class ScriptRunner:
 
 
 def _joined(a: Inputs, b: Inputs) -> Inputs:
+    if a is NOTHING or b is NOTHING:
+        return b if a is NOTHING else a
     return Wishes(a, (), ()).joined(Wishes(b, (), ())).inputs
-
-
-__all__ = ["Place", "ScriptRunner"]

@@ -9,11 +9,12 @@ from app.urscript.language.trouble import Misuse
 from app.urscript.machine.values import PoseValue
 from pendant.decision import Decision
 from pendant.events.event import Kind
-from pendant.inputs import Command, Inputs
+from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, LinearMove, Program, ProgramState
 from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode, Phase
 from sim.arm.arm_file import Arm
+from sim.simulation import Simulation
 
 NAME = "script"
 """Of these programs."""
@@ -44,6 +45,7 @@ class StepArm:
         self._refusal = ""
         self.freeing = False  # the arm is to be guided by hand
         self._running = False
+        self._still, self._standing = True, 0
         self._mode = Mode.TEACH
 
     def ask(self, request: Any) -> int:
@@ -97,13 +99,15 @@ class StepArm:
     def inputs(self) -> Inputs:
         """What the pendant gets for the tick that begins."""
         if self._over or self._ask is None:
-            return Inputs()
+            return NOTHING
         if self._stopping:
             self._stopping = False
             return Inputs(commands=(Command.STOP_PROGRAM,))
         if isinstance(self._ask, StopAsk) or self._began or self._running:
-            return Inputs()
+            return NOTHING
         self._left -= 1
+        if not self._still and self._left > 0:
+            return NOTHING
         start = STARTS.get(self._mode, Command.START_PROGRAM)
         step = self._step(self._ask)
         return Inputs(program=Program(name=NAME, steps=(step,)), commands=(start,))
@@ -118,10 +122,15 @@ class StepArm:
         speed, acceleration = min(max(ask.speed, 1e-4), 3.0), min(max(ask.acceleration, 1e-3), 50.0)
         return LinearMove(position=(x, y, z), quaternion=quaternion(ask.target[3:]), speed=speed, acceleration=acceleration)
 
-    def see(self, decision: Decision) -> None:
+    def see(self, decision: Decision, simulation: Simulation) -> None:
         """Take in a tick."""
         self._mode = decision.mode
         self._running = decision.program is ProgramState.RUNNING
+        if not self._over:
+            use = simulation.settings.static
+            slow = float(abs(simulation.estimate.qd).max()) < use.speed
+            self._standing = self._standing + 1 if slow else 0
+            self._still = self._standing > ticks(use.time)
         for event in decision.events:
             if event.kind is Kind.PROGRAM_STARTED:
                 self._began = True
