@@ -40,7 +40,7 @@ hold: HOLD expression
 ?sum: product | sum SIGN product -> binary
 ?product: sign | product FACTOR sign -> binary
 ?sign: postfix | SIGN sign -> unary
-?postfix: atom | postfix "[" _expressions "]" -> subscript | postfix "." NAME -> select
+?postfix: atom | postfix "[" _expressions "]" -> subscript | postfix "." (NAME | KIND) -> select
 ?atom: NUMBER -> number
      | STRING -> string
      | WORD -> word
@@ -48,7 +48,7 @@ hold: HOLD expression
      | call
      | RUN call -> run
      | pose
-     | "[" [_expressions] "]" -> listing
+     | LSQB [_expressions] "]" -> listing
      | "(" expression ")"
 call: NAME "(" [arguments] ")"
 pose: POSE _expressions "]"
@@ -78,6 +78,7 @@ POSE.3: /p\s*\[/
 NAME: /[A-Za-z_]\w*/
 NUMBER: /0[xX][0-9a-fA-F]+|(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/
 STRING: /"[^"\n]*"|'[^'\n]*'/
+LSQB: "["
 COMPARE.2: /==|!=|<=|>=|<|>/
 SIGN: /[+-]/
 FACTOR: /[*\/%]/

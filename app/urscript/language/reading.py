@@ -59,8 +59,7 @@ class _Build(Transformer[Token, Any]):
         return tree.Unary(_at(items[0]), operator, operand)
 
     def listing(self, items: list[Any]) -> tree.Items:
-        found = [item for item in items if item is not None]
-        return tree.Items(found[0].place if found else NOWHERE, found)
+        return tree.Items(_at(items[0]), [item for item in items[1:] if item is not None])
 
     def pose(self, items: list[Any]) -> tree.Node:
         """Six values are a pose; one or two are an element of a variable that is called p."""

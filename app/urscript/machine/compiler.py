@@ -18,16 +18,12 @@ from app.urscript.machine.signature import Builtin
 from app.urscript.machine.statements import Statements
 from app.urscript.machine.values import UNSET, StructValue, Value
 
-RETURN, CALL, WAIT, SYNC, JOIN, HALT = -1, -2, -3, -4, -5, -6
-"""What a step asks of the machine."""
-
-
 class Held(Protocol):
     """What steps leave for the machine, and ask of it."""
 
     globals: list[Value]
     called: tuple[Routine, Frame, int]
-    waiting: tuple[Any, int, Place]
+    waiting: tuple[Any, int, Place, str]
     joined: int
 
     def start(self, routine: Routine, frame: Frame, place: Place) -> int:

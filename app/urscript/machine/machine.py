@@ -42,6 +42,7 @@ class Strand:
     wait: Generator[None, None, Value] | None = None
     slot: int = 0  # for the result of what it waits for
     where: Place = NOWHERE  # of what it waits for
+    function: str = ""  # that it waits in
     joins: int = 0  # the thread that it waits for
     ran: int = 0  # the tick in which it ran last
     parent: int = 0  # the thread that started it
@@ -205,7 +206,7 @@ class Machine:
             return True
         except Misuse as misuse:
             strand.wait = None
-            raise ScriptTrouble(strand.where, str(misuse)) from None
+            raise ScriptTrouble(strand.where, f"{strand.function}(): {misuse}") from None
         strand.spent = 0
         return False
 
@@ -245,7 +246,7 @@ class Machine:
                     frame[slot] = value
                     code, costs = routine.code, routine.costs
                 elif following == WAIT:
-                    strand.wait, strand.slot, strand.where = self.waiting
+                    strand.wait, strand.slot, strand.where, strand.function = self.waiting
                     strand.frame, pc = frame, pc + 1
                     if not self._resumed(strand):
                         begun = budget

@@ -198,7 +198,7 @@ class Statements:
 
         def wait(f: Frame) -> int:
             try:
-                held.waiting = (work(*[check(read(f)) for read, check in arguments]), slot, place)
+                held.waiting = (work(*[check(read(f)) for read, check in arguments]), slot, place, name)
             except Misuse as misuse:
                 raise ScriptTrouble(place, f"{name}(): {misuse}") from None
             return WAIT
