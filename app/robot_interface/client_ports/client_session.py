@@ -99,9 +99,7 @@ class StreamSession:
 class PrimarySession(StreamSession):
     """Robot state ten times a second, and messages; `messages` False is the secondary interface."""
 
-    def __init__(
-        self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool, state: RobotState, messages: bool
-    ) -> None:
+    def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool, state: RobotState, messages: bool) -> None:
         self._state, self._messages = state, messages
         self._safety: SafetyMode | None = None
         super().__init__(robot, peer, outbox=outbox, writable=writable)

@@ -18,7 +18,19 @@ from app.urscript.functions.motion_asks import (
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.functions.sensing_values import Kinematics
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.signature import Builtin, Taken, any_value, boolean, builtin, integer, items, number, numbers, pose, within
+from app.urscript.machine.signature import (
+    Builtin,
+    Taken,
+    any_value,
+    boolean,
+    builtin,
+    integer,
+    items,
+    number,
+    numbers,
+    pose,
+    within,
+)
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.tick.modes import TICK_RATE
 
@@ -100,7 +112,9 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
     yield builtin("optimovej", optimovej, q, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
     yield builtin("optimovel", optimovel, x, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
     for name in ("stopj", "stopl"):
-        yield builtin(name, _stopping(until_done, name[-1]), Taken("a", POSITIVE), Taken("aRot", any_value, None), takes_time=True)
+        yield builtin(
+            name, _stopping(until_done, name[-1]), Taken("a", POSITIVE), Taken("aRot", any_value, None), takes_time=True
+        )
 
 
 def _stopping(until_done: Callable[[Any], Doing], kind_: str) -> Callable[..., Doing]:
@@ -154,7 +168,9 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     )
     a, t = Taken("a", POSITIVE), Taken("t", ZERO_UP, 0.0)
     blend = Taken("r", ZERO_UP, 0.0)
-    yield builtin("servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, takes_time=True)
+    yield builtin(
+        "servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, takes_time=True
+    )
     yield builtin("speedj", speedj, Taken("qd", numbers(6)), a, t, takes_time=True)
     yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), takes_time=True)
 

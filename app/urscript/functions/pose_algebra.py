@@ -30,7 +30,12 @@ def times(a: Quaternion, b: Quaternion) -> Quaternion:
     """First b, then a."""
     w, x, y, z = a
     t, u, v, s = b
-    return (w * t - x * u - y * v - z * s, w * u + x * t + y * s - z * v, w * v - x * s + y * t + z * u, w * s + x * v - y * u + z * t)
+    return (
+        w * t - x * u - y * v - z * s,
+        w * u + x * t + y * s - z * v,
+        w * v - x * s + y * t + z * u,
+        w * s + x * v - y * u + z * t,
+    )
 
 
 def turned_back(q: Quaternion) -> Quaternion:

@@ -137,5 +137,3 @@ def _switch(record: FieldRecord, first: int) -> Callable[[int, bool], None]:
         set_outputs(record, bit, bit if on else 0)
 
     return switch
-
-

@@ -18,6 +18,7 @@ from app.urscript.machine.signature import Builtin
 from app.urscript.machine.statements import Statements
 from app.urscript.machine.values import UNSET, StructValue, Value
 
+
 class Held(Protocol):
     """What steps leave for the machine, and ask of it."""
 

@@ -1,12 +1,13 @@
 """The robot, as the functions of one script see it."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import ArmSide
 from app.urscript.functions.script_sockets import ScriptSockets
-from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.limits import MOST_MESSAGES
 from app.urscript.running.told import Telling, Told, printable
@@ -16,8 +17,6 @@ from pendant.inputs import Command
 from pendant.tick.modes import TICK_RATE
 from sim.arm.frames import matrix_from_quaternion
 from sim.simulation import Simulation
-
-import math
 
 TOOL_NAME = "script"
 """Of the tool that set_tcp() changes to."""
@@ -124,7 +123,9 @@ class ScriptRobot:
         now = -self.simulation.estimate.g_B
         if math.dist(gravity, now.tolist()) > 0.5:
             x, y, z = now.tolist()
-            raise Misuse(f"the simulated arm is mounted with gravity [{x:.3f}, {y:.3f}, {z:.3f}]; set it where the cell is set up")
+            raise Misuse(
+                f"the simulated arm is mounted with gravity [{x:.3f}, {y:.3f}, {z:.3f}]; set it where the cell is set up"
+            )
 
     def _watch(self, name: str, frequency: float, action: str) -> None:
         if action not in ("pause", "stop", "ignore"):

@@ -54,9 +54,7 @@ class StepArm:
             self.freeing = True
         elif isinstance(request, FreeDriveEndAsk):
             self.freeing = False
-        elif isinstance(request, MoveAsk) and request.kind in ("j", "l", "p"):
-            self._begin(request)
-        elif isinstance(request, StopAsk):
+        elif (isinstance(request, MoveAsk) and request.kind in ("j", "l", "p")) or isinstance(request, StopAsk):
             self._begin(request)
         elif isinstance(request, SpeedAsk) and not any(request.speed):
             self._begin(StopAsk(request.kind, request.acceleration))
