@@ -30,18 +30,19 @@ class TextCommands:
     Args:
         commands: what the lines do.
         ask: hands a wish to the robot.
+        complain: tells the client what cannot be done: line, column, text.
         scripts: runs programs.
         hosts: that the client's programs may connect to: where it is.
-        complain: tells the client what cannot be done: line, column, text.
     """
 
     def __init__(
         self,
         commands: DashboardCommands,
         ask: Callable[[Ask], object],
+        complain: Callable[[int, int, str], None],
+        *,
         scripts: ScriptRunner,
         hosts: frozenset[str],
-        complain: Callable[[int, int, str], None],
     ) -> None:
         self._commands, self._ask, self._scripts, self._hosts, self._complain = commands, ask, scripts, hosts, complain
         self._text = ProgramText()

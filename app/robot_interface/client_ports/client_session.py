@@ -59,7 +59,7 @@ class StreamSession:
         self.cabinet, self.outbox = robot.cabinet, outbox
         self._peers, self._peer, self._writable, self._scripts = robot.peers, peer, writable, robot.scripts
         hosts = frozenset({peer.address.rpartition(":")[0]})
-        self._text = TextCommands(robot.commands, self.cabinet.ask, robot.scripts, hosts, self._complain)
+        self._text = TextCommands(robot.commands, self.cabinet.ask, self._complain, scripts=robot.scripts, hosts=hosts)
         self.cabinet.listen(self)
         self._scripts.listen(self.script)
 

@@ -46,7 +46,7 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
             yield
         return failed
 
-    def listed(count: int, name: str, timeout: float, take: Callable[[ScriptSocket], Any], fill: Value) -> Reading:
+    def listed(count: int, name: str, timeout: float, take: Callable[[ScriptSocket], Any], *, fill: Value) -> Reading:
         found = yield from read(name, timeout, take, None)
         if not found:
             return (0, *[fill] * count)
@@ -54,15 +54,16 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
         return (len(found), *found, *[fill] * (count - len(found)))
 
     def integers(count: int, name: str, timeout: float) -> Reading:
-        return listed(count, name, timeout, lambda c: c.integers(count), -1)
+        return listed(count, name, timeout, lambda c: c.integers(count), fill=-1)
 
     def octets(count: int, name: str, timeout: float) -> Reading:
-        return listed(count, name, timeout, lambda c: c.bytes(count), -1)
+        return listed(count, name, timeout, lambda c: c.octets(count), fill=-1)
 
     def floats(count: int, name: str, timeout: float) -> Reading:
-        return listed(count, name, timeout, lambda c: c.floats(), 0.0)
+        return listed(count, name, timeout, lambda c: c.floats(), fill=0.0)
 
-    def string(name: str, prefix: str, suffix: str, escape: bool, timeout: float) -> Reading:
+    def string(*given: Value) -> Reading:
+        name, prefix, suffix, escape, timeout = given
         first, last = (_escaped(part) if escape else part for part in (prefix, suffix))
         return read(name, timeout, lambda c: c.text(first.encode(), last.encode()), "")
 

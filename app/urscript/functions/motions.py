@@ -76,16 +76,19 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
     def cartesian(where: tuple[float, ...] | PoseValue) -> PoseValue:
         return where if type(where) is PoseValue else arm.forward(where, None)
 
-    def movej(q: Value, a: float, v: float, t: float, r: float) -> Doing:
+    def movej(*given: Value) -> Doing:
+        q, a, v, t, r = given
         return until_done(MoveAsk("j", joints(q), a, v, t, r))
 
-    def movel(x: Value, a: float, v: float, t: float, r: float) -> Doing:
+    def movel(*given: Value) -> Doing:
+        x, a, v, t, r = given
         return until_done(MoveAsk("l", cartesian(x), a, v, t, r))
 
     def movep(x: Value, a: float, v: float, r: float) -> Doing:
         return until_done(MoveAsk("p", cartesian(x), a, v, 0.0, r))
 
-    def movec(via: Value, to: Value, a: float, v: float, r: float, mode: int) -> Doing:
+    def movec(*given: Value) -> Doing:
+        via, to, a, v, r, mode = given
         return until_done(MoveAsk("c", cartesian(to), a, v, 0.0, r, cartesian(via), mode == 1))
 
     a, v, t, r = (
@@ -129,7 +132,8 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         for _ in range(max(round(min(seconds, MOST) * TICK_RATE), 1)):
             yield
 
-    def servoj(q: Value, a: float, v: float, t: float, lookahead: float, gain: float) -> Doing:
+    def servoj(*given: Value) -> Doing:
+        q, _, _, t, lookahead, gain = given
         return for_time(ServoAsk(q, t, lookahead, gain), t)
 
     def servoc(x: Value, a: float, v: float, r: float) -> Doing:
@@ -179,7 +183,8 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
     """force_mode and tool_contact."""
     damping, scaling = [0.025], [1.0]
 
-    def force_mode(frame: Value, selection: Value, wrench: Value, type_: int, limits: Value) -> None:
+    def force_mode(*given: Value) -> None:
+        frame, selection, wrench, type_, limits = given
         if any(each not in (0, 1) for each in selection):
             raise Misuse("selection_vector: expected six of 0 and 1")
         chosen = tuple(bool(each) for each in selection)

@@ -45,7 +45,7 @@ def turned_back(q: Quaternion) -> Quaternion:
 
 def turned(q: Quaternion, point: tuple[float, ...]) -> Point:
     """A point, turned."""
-    _, x, y, z = times(times(q, (0.0, *point)), turned_back(q))
+    _, x, y, z = times(times(q, (0.0, point[0], point[1], point[2])), turned_back(q))
     return x, y, z
 
 

@@ -87,7 +87,7 @@ class ScriptSocket:
         del self.data[: 4 * count]
         return list(found)
 
-    def bytes(self, count: int) -> list[int] | None:
+    def octets(self, count: int) -> list[int] | None:
         """So many bytes, or None."""
         if len(self.data) < count:
             return None

@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.signature import Builtin, Taken, any_value, builtin, integer, number, numbers, optional, pose, within
+from app.urscript.machine.signature import (
+    Builtin,
+    Taken,
+    any_value,
+    builtin,
+    integer,
+    number,
+    numbers,
+    optional,
+    pose,
+    vector,
+    within,
+)
 from app.urscript.machine.values import PoseValue, Value
 from sim.arm.frames import matrix_from_quaternion
 from sim.motion.line import rotation_vector
@@ -94,7 +106,7 @@ def of_measurement(robot: RobotSide) -> Iterator[Builtin]:
     read = record.get
 
     def field(name: str, posed: bool = False) -> Callable[[], Value]:
-        return (lambda: PoseValue(read(name))) if posed else (lambda: _tuple(read(name)))
+        return (lambda: PoseValue(vector(_tuple(read(name))))) if posed else (lambda: _tuple(read(name)))
 
     plain = {
         "get_actual_joint_positions": "actual_q",
@@ -155,10 +167,11 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
     def forward(q: tuple[float, ...] | None, point: tuple[float, ...] | None) -> PoseValue:
         return arm.forward(_tuple(robot.record.get("actual_q")) if q is None else q, point)
 
-    def flange(point: Value = None) -> PoseValue:
+    def flange() -> PoseValue:
         return arm.forward(_tuple(robot.record.get("actual_q")), FLANGE)
 
-    def found(x: PoseValue, near: Value, position: float, orientation: float, point: Value) -> Value:
+    def found(*given: Value) -> Value:
+        x, near, _, _, point = given
         return arm.inverse(x, _tuple(robot.record.get("target_q")) if near is None else near, point)
 
     def inverse(*given: Value) -> Value:
@@ -187,13 +200,13 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         return tuple(map(tuple, values.tolist()))
 
     def jacobian(q: Value, point: Value) -> Value:
-        p, R, J = robot.simulation.dynamics.update(q_now(q))
+        _, R, J = robot.simulation.dynamics.update(q_now(q))
         lever = R @ np.array((arm.tcp if point is None else point)[:3])
         moved = J.copy()
         moved[:3] += np.cross(J[3:].T, lever).T
         return matrix(moved)
 
-    def mass(q: Value, rotors: bool) -> Value:
+    def mass(q: Value, _rotors: bool) -> Value:
         found = np.array(robot.simulation.dynamics.mass(q_now(q)))
         found = np.triu(found) + np.triu(found, 1).T
         return matrix(found)

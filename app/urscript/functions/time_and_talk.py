@@ -38,7 +38,8 @@ def of_talk(robot: RobotSide) -> Iterator[Builtin]:
     def told(first: Value, second: Value) -> None:
         robot.say((shown(first) + shown(second))[:LONGEST_TEXT])
 
-    def popup(s: Value, title: str, warning: bool, error: bool, blocking: bool) -> Generator[None, None, None]:
+    def popup(*given: Value) -> Generator[None, None, None]:
+        s, title, warning, error, blocking = given
         robot.popup(shown(s), title, "error" if error else "warning" if warning else "", blocking)
         while blocking and robot.popup_shown:
             yield

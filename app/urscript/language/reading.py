@@ -8,7 +8,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 
 from app.urscript.language import tree
 from app.urscript.language.grammar import GRAMMAR, LineEnds, expected
-from app.urscript.language.trouble import NOWHERE, Place, ScriptTrouble
+from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 
 LONGEST = 1 << 20
 """Of a script [bytes]."""
@@ -21,8 +21,8 @@ POSE_ITEMS = 6
 VALUES = {"True": True, "true": True, "False": False, "false": False, "None": None}
 
 
-def _at(token: Token) -> Place:
-    return Place(token.line or 1, token.column or 1)
+def _at(token: Token) -> Spot:
+    return Spot(token.line or 1, token.column or 1)
 
 
 class _Build(Transformer[Token, Any]):
@@ -33,18 +33,18 @@ class _Build(Transformer[Token, Any]):
 
     body = start
 
-    def number(self, items: list[Token]) -> tree.Constant:
+    def number(self, items: list[Token]) -> tree.Literal:
         text = str(items[0])
         if text[:2] in ("0x", "0X"):
-            return tree.Constant(_at(items[0]), int(text, 16))
+            return tree.Literal(_at(items[0]), int(text, 16))
         whole = text.isdigit() and len(text) < 11 and int(text) < 1 << 31
-        return tree.Constant(_at(items[0]), int(text) if whole else float(text))
+        return tree.Literal(_at(items[0]), int(text) if whole else float(text))
 
-    def string(self, items: list[Token]) -> tree.Constant:
-        return tree.Constant(_at(items[0]), str(items[0])[1:-1])
+    def string(self, items: list[Token]) -> tree.Literal:
+        return tree.Literal(_at(items[0]), str(items[0])[1:-1])
 
-    def word(self, items: list[Token]) -> tree.Constant:
-        return tree.Constant(_at(items[0]), VALUES[items[0]])
+    def word(self, items: list[Token]) -> tree.Literal:
+        return tree.Literal(_at(items[0]), VALUES[items[0]])
 
     def name(self, items: list[Token]) -> tree.Name:
         return tree.Name(_at(items[0]), str(items[0]))
@@ -54,8 +54,8 @@ class _Build(Transformer[Token, Any]):
 
     def unary(self, items: list[Any]) -> tree.Node:
         operator, operand = str(items[0]), items[1]
-        if operator == "-" and isinstance(operand, tree.Constant) and type(operand.value) in (int, float):
-            return tree.Constant(_at(items[0]), -operand.value)  # pyright: ignore[reportOptionalOperand, reportOperatorIssue]
+        if operator == "-" and isinstance(operand, tree.Literal) and type(operand.value) in (int, float):
+            return tree.Literal(_at(items[0]), -operand.value)  # pyright: ignore[reportOptionalOperand, reportOperatorIssue]
         return tree.Unary(_at(items[0]), operator, operand)
 
     def listing(self, items: list[Any]) -> tree.Items:
@@ -104,7 +104,7 @@ class _Build(Transformer[Token, Any]):
     def declare(self, items: list[Any]) -> tree.Assign:
         scope, target = items
         _variable(target)
-        return tree.Assign(target.place, target, tree.Constant(target.place, None), str(scope))
+        return tree.Assign(target.place, target, tree.Literal(target.place, None), str(scope))
 
     def call_statement(self, items: list[Any]) -> tree.Evaluate:
         value = items[0]
@@ -120,11 +120,11 @@ class _Build(Transformer[Token, Any]):
     def return_(self, items: list[Any]) -> tree.Return:
         return tree.Return(_at(items[0]), items[1])
 
-    def hold(self, items: list[Any]) -> tree.Hold:
-        return tree.Hold(_at(items[0]), str(items[0]), items[1])
+    def hold(self, items: list[Any]) -> tree.OnThread:
+        return tree.OnThread(_at(items[0]), str(items[0]), items[1])
 
-    def parameter(self, items: list[Any]) -> tree.Parameter:
-        return tree.Parameter(_at(items[0]), str(items[0]), items[1])
+    def parameter(self, items: list[Any]) -> tree.FunctionParameter:
+        return tree.FunctionParameter(_at(items[0]), str(items[0]), items[1])
 
     def parameters(self, items: list[Any]) -> list[Any]:
         return items
@@ -193,16 +193,16 @@ def read_script(text: str) -> list[tree.Node]:
             raise error.orig_exc from None
         raise
     except UnexpectedCharacters as error:
-        raise ScriptTrouble(Place(error.line, error.column), f"syntax error: unexpected character {error.char!r}") from None
+        raise ScriptTrouble(Spot(error.line, error.column), f"syntax error: unexpected character {error.char!r}") from None
     except UnexpectedToken as error:
         token = error.token
         if token.type == "$END":
             lines = text.rstrip().splitlines() or [""]
-            raise ScriptTrouble(Place(len(lines), len(lines[-1]) + 1), "syntax error: the text ends too early") from None
+            raise ScriptTrouble(Spot(len(lines), len(lines[-1]) + 1), "syntax error: the text ends too early") from None
         shown = "the end of the line" if token.type == "_NL" else f"'{str(token)[:30]}'"
         raise ScriptTrouble(_at(token), f"syntax error: unexpected {shown}{expected(set(error.expected))}") from None
     except UnexpectedInput as error:
-        raise ScriptTrouble(Place(error.line, error.column), "syntax error") from None
+        raise ScriptTrouble(Spot(error.line, error.column), "syntax error") from None
 
 
 def _shallow(text: str) -> None:
@@ -210,12 +210,12 @@ def _shallow(text: str) -> None:
     depth, deepest = 0, DEEPEST
     for number, line in enumerate(text.splitlines(), 1):
         if len(line) > 1 << 15:
-            raise ScriptTrouble(Place(number, 1), f"the line has {len(line)} characters, allowed: {1 << 15}")
+            raise ScriptTrouble(Spot(number, 1), f"the line has {len(line)} characters, allowed: {1 << 15}")
         code = line.split("#", 1)[0]
         for column, character in enumerate(code, 1):
             if character in "([":
                 depth += 1
                 if depth > deepest:
-                    raise ScriptTrouble(Place(number, column), f"brackets within brackets, more than {deepest}")
+                    raise ScriptTrouble(Spot(number, column), f"brackets within brackets, more than {deepest}")
             elif character in ")]":
                 depth = max(depth - 1, 0)

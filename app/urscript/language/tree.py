@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from app.urscript.language.trouble import Place
+from app.urscript.language.trouble import Spot
 
 Plain = float | int | bool | str | None
 
@@ -11,11 +11,11 @@ Plain = float | int | bool | str | None
 class Node:
     """Base of all."""
 
-    place: Place
+    place: Spot
 
 
 @dataclass(slots=True)
-class Constant(Node):
+class Literal(Node):
     """A number, a text, True, False or None."""
 
     value: Plain
@@ -131,7 +131,7 @@ class Return(Node):
 
 
 @dataclass(slots=True)
-class Hold(Node):
+class OnThread(Node):
     """join or kill of a thread."""
 
     word: str
@@ -139,7 +139,7 @@ class Hold(Node):
 
 
 @dataclass(slots=True)
-class Parameter(Node):
+class FunctionParameter(Node):
     """Of a function; with a default it can be left out."""
 
     name: str
@@ -152,5 +152,5 @@ class Function(Node):
 
     kind: str
     name: str
-    parameters: list[Parameter]
+    parameters: list[FunctionParameter]
     body: list[Node] = field(default_factory=list)

@@ -3,14 +3,14 @@
 from typing import NamedTuple
 
 
-class Place(NamedTuple):
+class Spot(NamedTuple):
     """A place in a script's text; both count from 1."""
 
     line: int
     column: int
 
 
-NOWHERE = Place(1, 1)
+NOWHERE = Spot(1, 1)
 
 
 class ScriptTrouble(Exception):
@@ -21,7 +21,7 @@ class ScriptTrouble(Exception):
         text: one sentence, without the place.
     """
 
-    def __init__(self, place: Place, text: str) -> None:
+    def __init__(self, place: Spot, text: str) -> None:
         super().__init__(f"line {place.line}, column {place.column}: {text}")
         self.place, self.text = place, text
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import NOWHERE, Place, ScriptTrouble
+from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.limits import HEAVY, MOST_FUNCTIONS
 from app.urscript.machine.signature import Builtin
 
@@ -19,21 +19,21 @@ class Routine:
     """
 
     name: str
-    parameters: list[tree.Parameter]
+    parameters: list[tree.FunctionParameter]
     body: list[tree.Node]
     kind: str = "def"
-    place: Place = NOWHERE
+    place: Spot = NOWHERE
     slots: dict[str, int] = field(default_factory=dict)
     size: int = 1
     by_steps: bool = True  # takes time, loops, calls itself, or is long: the machine runs it; the others run within a statement
     cost: int = 0
     code: list = field(default_factory=list)  # of functions of a frame, each gives the number of the next
     costs: list[int] = field(default_factory=list)  # steps that each counts
-    places: list[Place] = field(default_factory=list)
+    places: list[Spot] = field(default_factory=list)
 
 
 @dataclass(slots=True)
-class Outline:
+class ScriptOutline:
     """A script, looked through."""
 
     name: str
@@ -80,7 +80,7 @@ def expressions(statement: tree.Node) -> list[tree.Node]:
         return [statement.condition]
     if isinstance(statement, tree.Return):
         return [] if statement.value is None else [statement.value]
-    return [statement.thread] if isinstance(statement, tree.Hold) else []
+    return [statement.thread] if isinstance(statement, tree.OnThread) else []
 
 
 def statements(body: list[tree.Node]) -> Iterator[tree.Node]:
@@ -102,7 +102,7 @@ def base(target: tree.Node) -> str:
     return target.name
 
 
-def outline(body: list[tree.Node], builtins: dict[str, Builtin]) -> Outline:
+def outline(body: list[tree.Node], builtins: dict[str, Builtin]) -> ScriptOutline:
     """Look a script through: a single function is a program by its name, anything else is one without a name.
 
     Raises:
@@ -130,7 +130,7 @@ def outline(body: list[tree.Node], builtins: dict[str, Builtin]) -> Outline:
     for routine in routines.values():
         _lay_out(routine, shared)
     _who_takes_time(main, routines, builtins)
-    return Outline(name, secondary, main, routines, shared)
+    return ScriptOutline(name, secondary, main, routines, shared)
 
 
 def _collect(body: list[tree.Node], found: dict[str, Routine]) -> None:
@@ -180,7 +180,7 @@ def _who_takes_time(main: Routine, routines: dict[str, Routine], builtins: dict[
         cost, plain = 2, routine.kind == "def"
         for each in statements(routine.body):
             cost += 1 + sum(size(expression) for expression in expressions(each))
-            plain = plain and not isinstance(each, tree.While | tree.Hold)
+            plain = plain and not isinstance(each, tree.While | tree.OnThread)
             for call in (call for expression in expressions(each) for call in calls(expression)):
                 called = routines.get(call.name)
                 if called is not None:

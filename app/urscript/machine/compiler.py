@@ -1,56 +1,33 @@
 """Compiles a script: each function to a list of steps that the machine can stop between.
 
-A step is a function of the frame; it gives the number of the next one, or says that the machine has to do something first. What
-takes time within an expression, and what is long, is done beforehand, in the order of the text, and kept in the frame for a moment.
+A step is a function of the frame; it gives the number of the next one, or says that the machine has to do something first.
+What takes time within an expression, and what is long, is done beforehand, in the order of the text, and kept in the frame.
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import Place, ScriptTrouble
+from app.urscript.language.calling import Given, bound
+from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.machine import expressions as make
-from app.urscript.machine.analysis import MAIN, Outline, Routine, calls, children, outline, size
-from app.urscript.machine.calling import Given, bound
+from app.urscript.machine.analysis import MAIN, Routine, ScriptOutline, calls, children, size
 from app.urscript.machine.expressions import Frame, Read
+from app.urscript.machine.held import Held
 from app.urscript.machine.limits import HEAVY
-from app.urscript.machine.signature import Builtin
+from app.urscript.machine.signature import Builtin, NeededArgument
 from app.urscript.machine.statements import Statements
 from app.urscript.machine.values import UNSET, StructValue, Value
-
-
-class Held(Protocol):
-    """What steps leave for the machine, and ask of it."""
-
-    globals: list[Value]
-    called: tuple[Routine, Frame, int]
-    waiting: tuple[Any, int, Place, str]
-    joined: int
-
-    def start(self, routine: Routine, frame: Frame, place: Place) -> int:
-        """Start a thread; its number."""
-        ...
-
-    def kill(self, thread: Value, place: Place) -> None:
-        """End a thread."""
-        ...
-
-    def critical(self, inside: bool) -> None:
-        """A part begins or ends in which no other thread runs unless this one waits."""
-        ...
-
-    def made(self, value: Value, place: Place) -> None:
-        """A list or a text is kept."""
-        ...
+from app.urscript.machine.worked import as_it_is, kept, named_check, worked
 
 
 class Compiler:
     """Compiles one script for one machine."""
 
-    def __init__(self, script: Outline, builtins: dict[str, Builtin], held: Held) -> None:
+    def __init__(self, script: ScriptOutline, builtins: dict[str, Builtin], held: Held) -> None:
         self.script, self.builtins, self.held = script, builtins, held
         self.routine = script.main
-        self.kept = 0  # slots in use by the present statement
+        self.held_slots = 0  # slots in use by the present statement
         self._temporary: dict[int, Read] = {}  # of nodes done beforehand, by id
         self._statements = Statements(self)
 
@@ -88,12 +65,12 @@ class Compiler:
         for k, part in enumerate(parts):
             if self._steps_in(part) or size(part) > HEAVY // 4:
                 self._beforehand(part)
-            if (k < last or size(part) > HEAVY // 8) and not isinstance(part, tree.Constant):
+            if (k < last or size(part) > HEAVY // 8) and not isinstance(part, tree.Literal):
                 self._keep(part, self._plain(part))
         if isinstance(node, tree.Call) and self._by_steps(node):
             slot = self.slot()
             self._statements.call(node, slot)
-            self._temporary[id(node)] = _slot(slot)
+            self._temporary[id(node)] = kept(slot)
 
     def _short(self, node: tree.Binary) -> None:
         """`and`, `or` whose second part takes time: only if the first does not decide."""
@@ -101,35 +78,35 @@ class Compiler:
         first = make.condition(self.expression(node.left), node.left)
         wanted = node.operator == "and"
         self._statements.store_slot(slot, first, node.place)
-        jump = self._statements.branch(_slot(slot), node.place, wanted)
+        jump = self._statements.branch(kept(slot), node.place, wanted)
         second = make.condition(self.expression(node.right), node.right)
         self._statements.store_slot(slot, second, node.place)
         self._statements.land(jump)
-        self._temporary[id(node)] = _slot(slot)
+        self._temporary[id(node)] = kept(slot)
 
     def _keep(self, node: tree.Node, value: Read) -> None:
         slot = self.slot()
         self._statements.store_slot(slot, value, node.place)
-        self._temporary[id(node)] = _slot(slot)
+        self._temporary[id(node)] = kept(slot)
 
     def slot(self) -> int:
         """A place in the frame for the present statement."""
         routine = self.routine
-        found = 1 + len(routine.slots) + self.kept
-        self.kept += 1
+        found = 1 + len(routine.slots) + self.held_slots
+        self.held_slots += 1
         routine.size = max(routine.size, found + 1)
         return found
 
     def done(self) -> None:
         """A statement is compiled: what it kept is free."""
-        self.kept = 0
+        self.held_slots = 0
         self._temporary.clear()
 
     def _plain(self, node: tree.Node) -> Read:
-        kept = self._temporary.get(id(node))
-        if kept is not None:
-            return kept
-        if isinstance(node, tree.Constant):
+        done = self._temporary.get(id(node))
+        if done is not None:
+            return done
+        if isinstance(node, tree.Literal):
             return make.constant(node.value)
         if isinstance(node, tree.Name):
             return self.variable(node)
@@ -173,7 +150,7 @@ class Compiler:
             return make.both(make.condition(x, node.left), make.condition(y, node.right))
         if operator == "xor":
             return make.unequal(make.condition(x, node.left), make.condition(y, node.right))
-        if operator == "==" and isinstance(node.right, tree.Constant):
+        if operator == "==" and isinstance(node.right, tree.Literal):
             return self._same(node.left, x, node.right.value)
         if operator in "+-*/%":
             return make.arithmetic(operator, x, y, node.place)
@@ -194,7 +171,7 @@ class Compiler:
         for part in self._chain(node):
             if not (isinstance(part, tree.Binary) and part.operator == "==" and isinstance(part.left, tree.Name)):
                 return None
-            if not isinstance(part.right, tree.Constant) or type(part.right.value) not in (int, float):
+            if not isinstance(part.right, tree.Literal) or type(part.right.value) not in (int, float):
                 return None
             names.add(part.left.name)
             values.append(part.right.value)
@@ -251,7 +228,7 @@ class Compiler:
         routine = self.script.routines.get(node.name)
         if routine is None:
             found = self.builtin(node)
-            return make.worked(node.name, found.work, self.checked(node, found), node.place)
+            return worked(node.name, found.work, self.checked(node, found), node.place)
         if routine.kind == "thread":
             raise ScriptTrouble(node.place, f"{node.name} is a thread: start it with run")
         made, code = self.frame(node, routine), routine.code
@@ -273,17 +250,16 @@ class Compiler:
 
     def checked(self, node: tree.Call, found: Builtin) -> list[tuple[Read, Callable[[Value], Value]]]:
         """The arguments of a function of the language, each with its check."""
-        from app.urscript.machine.signature import Needed
-
-        defaults = {each.name: Given(None, each.default) for each in found.parameters if not isinstance(each.default, Needed)}
+        may_lack = [each for each in found.parameters if not isinstance(each.default, NeededArgument)]
+        defaults = {each.name: Given(None, each.default) for each in may_lack}
         given = bound(node, [each.name for each in found.parameters], defaults)
         reads: list[tuple[Read, Callable[[Value], Value]]] = []
         for each, taken in zip(given, found.parameters, strict=True):
             if each.node is None:
-                reads.append((make.constant(each.default), _as_it_is))
+                reads.append((make.constant(each.default), as_it_is))
             else:
                 check, name = taken.check, taken.name
-                reads.append((self._plain(each.node), _named(check, name)))
+                reads.append((self._plain(each.node), named_check(check, name)))
         return reads
 
     def _struct(self, node: tree.Call) -> Read:
@@ -298,36 +274,3 @@ class Compiler:
             raise ScriptTrouble(node.call.place, f"there is no thread {node.call.name}()")
         made, held, place = self.frame(node.call, routine), self.held, node.place
         return lambda f: held.start(routine, made(f), place)
-
-
-def _slot(slot: int) -> Read:
-    return lambda f: f[slot]
-
-
-def _as_it_is(value: Value) -> Value:
-    return value
-
-
-def _named(check: Callable[[Value], Value], name: str) -> Callable[[Value], Value]:
-    """The same check, whose error says which argument is wrong."""
-    from app.urscript.language.trouble import Misuse
-
-    def checked(value: Value) -> Value:
-        try:
-            return check(value)
-        except Misuse as misuse:
-            raise Misuse(f"{name}: {misuse}") from None
-
-    return checked
-
-
-def compiled(body: list[tree.Node], builtins: dict[str, Builtin], held: Held) -> Outline:
-    """A script, ready to run on `held`.
-
-    Raises:
-        ScriptTrouble: a name is unknown, a call does not fit, or the like.
-    """
-    script = outline(body, builtins)
-    held.globals[:] = [UNSET] * len(script.globals)
-    Compiler(script, builtins, held).all()
-    return script

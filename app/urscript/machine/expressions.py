@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import Misuse, Place, ScriptTrouble
+from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
 from app.urscript.machine.operators import (
     NUMBERS,
     SINGLE,
@@ -23,10 +23,10 @@ Read = Callable[[Frame], Value]
 
 def constant(value: Value) -> Read:
     """Always the same."""
-    return lambda f: value
+    return lambda _: value
 
 
-def local(slot: int, name: str, place: Place) -> Read:
+def local(slot: int, name: str, place: Spot) -> Read:
     """A variable of a function."""
 
     def read(f: Frame) -> Value:
@@ -38,10 +38,10 @@ def local(slot: int, name: str, place: Place) -> Read:
     return read
 
 
-def shared(values: list[Value], number: int, name: str, place: Place) -> Read:
+def shared(values: list[Value], number: int, name: str, place: Spot) -> Read:
     """A variable that all functions see."""
 
-    def read(f: Frame) -> Value:
+    def read(_: Frame) -> Value:
         value = values[number]
         if value is UNSET:
             raise ScriptTrouble(place, f"variable {name} has no value yet")
@@ -50,7 +50,7 @@ def shared(values: list[Value], number: int, name: str, place: Place) -> Read:
     return read
 
 
-def arithmetic(operator: str, x: Read, y: Read, place: Place) -> Read:
+def arithmetic(operator: str, x: Read, y: Read, place: Spot) -> Read:
     """+ - * / %."""
     work, whole = SINGLE[operator], operator in "+-*"
 
@@ -76,7 +76,7 @@ def arithmetic(operator: str, x: Read, y: Read, place: Place) -> Read:
     return result
 
 
-def comparison(operator: str, x: Read, y: Read, place: Place) -> Read:
+def comparison(operator: str, x: Read, y: Read, place: Spot) -> Read:
     """== != < > <= >=."""
     if operator == "==":
         return lambda f: x(f) == y(f)
@@ -152,7 +152,7 @@ def is_bool(node: tree.Node) -> bool:
         return node.operator in ("==", "!=", "<", ">", "<=", ">=", "and", "or", "xor")
     if isinstance(node, tree.Unary):
         return node.operator == "not"
-    return isinstance(node, tree.Constant) and isinstance(node.value, bool)
+    return isinstance(node, tree.Literal) and isinstance(node.value, bool)
 
 
 def either(parts: list[Read]) -> Read:
@@ -162,10 +162,7 @@ def either(parts: list[Read]) -> Read:
         return lambda f: x(f) or y(f)
 
     def result(f: Frame) -> bool:
-        for part in parts:
-            if part(f):
-                return True
-        return False
+        return any(part(f) for part in parts)
 
     return result
 
@@ -185,7 +182,7 @@ def opposite(x: Read) -> Read:
     return lambda f: not x(f)
 
 
-def signed(x: Read, place: Place) -> Read:
+def signed(x: Read, place: Spot) -> Read:
     """A sign before a value."""
 
     def result(f: Frame) -> Value:
@@ -197,7 +194,7 @@ def signed(x: Read, place: Place) -> Read:
     return result
 
 
-def listed(parts: list[Read], place: Place, pose: bool) -> Read:
+def listed(parts: list[Read], place: Spot, pose: bool) -> Read:
     """A list or a pose."""
 
     def posed(f: Frame) -> Value:
@@ -216,7 +213,7 @@ def listed(parts: list[Read], place: Place, pose: bool) -> Read:
     return posed if pose else result
 
 
-def indexed(of: Read, parts: list[Read], place: Place) -> Read:
+def indexed(of: Read, parts: list[Read], place: Spot) -> Read:
     """An element of a list, a pose, a matrix."""
     first = parts[0]
 
@@ -238,7 +235,7 @@ def indexed(of: Read, parts: list[Read], place: Place) -> Read:
     return one if len(parts) == 1 else several
 
 
-def selected(of: Read, name: str, place: Place) -> Read:
+def selected(of: Read, name: str, place: Spot) -> Read:
     """A member of a struct."""
 
     def result(f: Frame) -> Value:
@@ -248,40 +245,3 @@ def selected(of: Read, name: str, place: Place) -> Read:
             raise ScriptTrouble(place, str(misuse)) from None
 
     return result
-
-
-def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Callable[[Value], Value]]], place: Place) -> Read:
-    """A function of the language that takes no time; each argument is checked."""
-
-    def failed(misuse: Exception) -> ScriptTrouble:
-        return ScriptTrouble(place, f"{name}(): {misuse}")
-
-    if not arguments:
-
-        def nothing(f: Frame) -> Value:
-            try:
-                return work()
-            except Misuse as misuse:
-                raise failed(misuse) from None
-
-        return nothing
-    if len(arguments) == 1:
-        ((x, check),) = arguments
-
-        def one(f: Frame) -> Value:
-            value = x(f)
-            try:
-                return work(check(value))
-            except Misuse as misuse:
-                raise failed(misuse) from None
-
-        return one
-
-    def several(f: Frame) -> Value:
-        values = [x(f) for x, _ in arguments]
-        try:
-            return work(*[check(value) for value, (_, check) in zip(values, arguments, strict=True)])
-        except Misuse as misuse:
-            raise failed(misuse) from None
-
-    return several

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import NOWHERE, Misuse, Place, ScriptTrouble
-from app.urscript.machine.analysis import Outline, Routine
-from app.urscript.machine.compiler import compiled
+from app.urscript.language.trouble import NOWHERE, Misuse, ScriptTrouble, Spot
+from app.urscript.machine.analysis import Routine, ScriptOutline, outline
+from app.urscript.machine.compiler import Compiler
 from app.urscript.machine.expressions import Frame
 from app.urscript.machine.limits import (
     DEEPEST_CALLS,
@@ -41,7 +41,7 @@ class Strand:
     callers: list[tuple[Routine, int, Frame, int]] = field(default_factory=list)
     wait: Generator[None, None, Value] | None = None
     slot: int = 0  # for the result of what it waits for
-    where: Place = NOWHERE  # of what it waits for
+    where: Spot = NOWHERE  # of what it waits for
     function: str = ""  # that it waits in
     joins: int = 0  # the thread that it waits for
     ran: int = 0  # the tick in which it ran last
@@ -65,7 +65,9 @@ class Machine:
         self.called: Any = None
         self.waiting: Any = None
         self.joined: Value = 0
-        self.script: Outline = compiled(body, builtins, self)
+        self.script: ScriptOutline = outline(body, builtins)
+        self.globals += [UNSET] * len(self.script.globals)
+        Compiler(self.script, builtins, self).all()
         main = self.script.main
         self._count = 1
         self._main = Strand(1, main, [UNSET] * main.size)
@@ -135,7 +137,7 @@ class Machine:
                 strand.wait.close()
         self._strands = []
 
-    def start(self, routine: Routine, frame: Frame, place: Place) -> int:
+    def start(self, routine: Routine, frame: Frame, place: Spot) -> int:
         """Start a thread; its number."""
         if len(self._strands) >= MOST_THREADS:
             raise ScriptTrouble(place, f"more than {MOST_THREADS} threads")
@@ -144,7 +146,7 @@ class Machine:
         self._room(place)
         return self._count
 
-    def kill(self, thread: Value, place: Place) -> None:
+    def kill(self, thread: Value, place: Spot) -> None:
         """End a thread, and those that it started; one that has ended, or a number of none, is left as it is."""
         found = self._find(thread, place)
         if found is None:
@@ -164,7 +166,7 @@ class Machine:
         """A part begins or ends in which no other thread runs unless this one waits."""
         self._inside = 1 if inside else 0
 
-    def made(self, value: Value, place: Place) -> None:
+    def made(self, value: Value, place: Spot) -> None:
         """A list or a text is kept."""
         self._fresh += weight(value)
         if self._fresh > MEMORY_LOOK:
@@ -176,17 +178,17 @@ class Machine:
             if held > MOST_MEMORY:
                 raise ScriptTrouble(place, f"out of memory: variables hold more than {MOST_MEMORY} values")
 
-    def _room(self, place: Place) -> None:
+    def _room(self, place: Spot) -> None:
         slots = sum(len(strand.frame) + sum(len(each[2]) for each in strand.callers) for strand in self._strands)
         if slots > MOST_SLOTS:
             raise ScriptTrouble(place, f"more than {MOST_SLOTS} variables in running functions")
 
-    def _find(self, thread: Value, place: Place) -> Strand | None:
+    def _find(self, thread: Value, place: Spot) -> Strand | None:
         if type(thread) is not int:
             raise ScriptTrouble(place, "expected a thread, as run gives it")
         return next((each for each in self._strands if each.number == thread), None)
 
-    def _place(self) -> Place:
+    def _place(self) -> Spot:
         strand = self._now
         places = strand.routine.places
         return places[min(strand.pc, len(places) - 1)]

@@ -116,9 +116,8 @@ def with_element(of: Value, numbers: list[Value], value: Value) -> Value:
     at = place_in(of, numbers[0])
     if len(numbers) > 1:
         value = with_element(of[at], numbers[1:], value)
-    elif type(of) is PoseValue or type(of[at]) in NUMBERS:
-        if type(value) not in NUMBERS:
-            raise Misuse(f"an element that is a number cannot become {kind(value)}")
+    elif (type(of) is PoseValue or type(of[at]) in NUMBERS) and type(value) not in NUMBERS:
+        raise Misuse(f"an element that is a number cannot become {kind(value)}")
     return _like(of, [*of[:at], value, *of[at + 1 :]])
 
 

@@ -10,11 +10,11 @@ from app.urscript.machine.values import PoseValue, Value, kind
 Check = Callable[[Value], Value]
 
 
-class Needed:
+class NeededArgument:
     """Stands for the default of a parameter that has none."""
 
 
-NEEDED = Needed()
+NEEDED = NeededArgument()
 
 
 class Taken(NamedTuple):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import Misuse, Place, ScriptTrouble
+from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
 from app.urscript.machine import expressions as make
 from app.urscript.machine.analysis import Routine, base, expressions, size
 from app.urscript.machine.expressions import Frame, Read
-from app.urscript.machine.operators import with_element, with_member
-from app.urscript.machine.values import SIMPLE, PoseValue, StructValue, Value
+from app.urscript.machine.stores import changed, cost_within, put_own, put_shared
+from app.urscript.machine.values import StructValue
 
 if TYPE_CHECKING:
     from app.urscript.machine.compiler import Compiler
@@ -36,7 +36,7 @@ class Statements:
         self._body(routine.body)
         self._add(lambda f: RETURN, routine.place)
 
-    def _add(self, step: Any, place: Place, cost: int = 1) -> int:
+    def _add(self, step: Any, place: Spot, cost: int = 1) -> int:
         routine = self._compiler.routine
         routine.code.append(step)
         routine.costs.append(cost)
@@ -60,14 +60,14 @@ class Statements:
             self._while(node)
         elif isinstance(node, tree.Return):
             self._return(node)
-        elif isinstance(node, tree.Hold):
+        elif isinstance(node, tree.OnThread):
             self._hold(node)
         elif isinstance(node, tree.Jump):
             self._jump(node)
 
     # steps that go elsewhere
 
-    def branch(self, condition: Read, place: Place, stay: bool, cost: int = 1) -> int:
+    def branch(self, condition: Read, place: Spot, stay: bool, cost: int = 1) -> int:
         """A step that goes on where the condition is `stay`, else to where `land` says."""
         at = self._add(None, place, cost)
         self._code[at] = (condition, stay)
@@ -129,7 +129,7 @@ class Statements:
         else:
             following, inside = len(self._code) + 1, node.word == "enter_critical"
 
-            def step(f: Frame) -> int:
+            def step(_: Frame) -> int:
                 held.critical(inside)
                 return following
 
@@ -147,7 +147,7 @@ class Statements:
 
         self._add(step, node.place, self._cost(node))
 
-    def _hold(self, node: tree.Hold) -> None:
+    def _hold(self, node: tree.OnThread) -> None:
         held, place = self._compiler.held, node.place
         thread = self._compiler.expression(node.thread)
         following = len(self._code) + 1
@@ -207,7 +207,7 @@ class Statements:
 
     # assignments
 
-    def store_slot(self, slot: int, value: Read, place: Place) -> None:
+    def store_slot(self, slot: int, value: Read, place: Spot) -> None:
         """Put a value into the frame."""
         following = len(self._code) + 1
 
@@ -223,20 +223,20 @@ class Statements:
         slot = None if node.scope == "global" else compiler.routine.slots.get(name)
         own = slot is not None
         number = slot if slot is not None else compiler.script.globals[name]
-        if isinstance(node.value, tree.Constant) and node.value.value is None and not isinstance(node.target, tree.Name):
+        if isinstance(node.value, tree.Literal) and node.value.value is None and not isinstance(node.target, tree.Name):
             raise ScriptTrouble(place, "a part of a value cannot be None")
         path = [] if isinstance(node.target, tree.Name) else self._path(node.target)
         value = compiler.expression(node.value)
         if path:
-            value = _changed(compiler.variable(tree.Name(place, name)), path, value, place)
+            value = changed(compiler.variable(tree.Name(place, name)), path, value, place)
         following, values, made = len(self._code) + 1, compiler.held.globals, compiler.held.made
 
         plain = node.value
-        if not path and (make.is_bool(plain) or (isinstance(plain, tree.Constant) and type(plain.value) is not str)):
+        if not path and (make.is_bool(plain) or (isinstance(plain, tree.Literal) and type(plain.value) is not str)):
             if own:
-                self._add(_put(number, value, following), place, cost)
+                self._add(put_own(number, value, following), place, cost)
             else:
-                self._add(_put_shared(values, number, value, following), place, cost)
+                self._add(put_shared(values, number, value, following), place, cost)
             return
 
         def to_own(f: Frame) -> int:
@@ -269,64 +269,5 @@ class Statements:
         routines = self._compiler.script.routines
         total = 1
         for part in parts:
-            total += size(part) + _within(part, routines)
+            total += size(part) + cost_within(part, routines)
         return total
-
-
-def _put(slot: int, value: Read, following: int) -> Any:
-    """Assign what needs no room to a function's variable."""
-
-    def step(f: Frame) -> int:
-        f[slot] = value(f)
-        return following
-
-    return step
-
-
-def _put_shared(values: list[Value], number: int, value: Read, following: int) -> Any:
-    """The same to a variable that all functions see."""
-
-    def step(f: Frame) -> int:
-        values[number] = value(f)
-        return following
-
-    return step
-
-
-def _within(node: tree.Node, routines: dict[str, Routine]) -> int:
-    """Steps of the functions that run within an expression."""
-    from app.urscript.machine.analysis import calls
-
-    called = (routines.get(call.name) for call in calls(node))
-    return sum(routine.cost for routine in called if routine is not None and not routine.by_steps)
-
-
-def _changed(read: Read, path: list[tuple[str, list[Read]]], value: Read, place: Place) -> Read:
-    """The variable's value with another part."""
-
-    def put(of: Value, rest: list[tuple[str, list[Value]]], new: Value) -> Value:
-        (name, numbers), *rest = rest
-        if name:
-            return with_member(of, name, put(of.members[name], rest, new) if rest else new)
-        if not rest:
-            return with_element(of, numbers, new)
-        inner = of
-        for number in numbers:
-            inner = inner[int(number)]
-        return with_element(of, numbers, put(inner, rest, new))
-
-    def result(f: Frame) -> Value:
-        new = value(f)
-        if new is None:
-            raise ScriptTrouble(place, "a part of a value cannot be None")
-        of, way = read(f), [(name, [number(f) for number in numbers]) for name, numbers in path]
-        try:
-            return put(of, way, new)
-        except (Misuse, TypeError, ValueError, IndexError, KeyError, AttributeError) as error:
-            text = str(error) if isinstance(error, Misuse) else "there is no such part of the value"
-            raise ScriptTrouble(place, text) from None
-
-    return result
-
-
-__all__ = ["SIMPLE", "PoseValue", "Statements"]

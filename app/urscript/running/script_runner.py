@@ -35,7 +35,7 @@ FREE_DRIVE = ticks(0.1)
 """The script's wish for free-drive lasts so long without it."""
 
 
-class Script(NamedTuple):
+class OfferedScript(NamedTuple):
     """A script that can run."""
 
     machine: Machine
@@ -53,11 +53,11 @@ class ScriptRunner:
     def __init__(self, cabinet: Cabinet) -> None:
         self._cabinet = cabinet
         self._lock = threading.Lock()
-        self._next: Script | None = None
+        self._next: OfferedScript | None = None
         self._stop = False
-        self._waiting: list[Script] = []  # secondary programs
-        self._beside: list[tuple[Script, int]] = []  # and how many ticks each has run
-        self._running: Script | None = None
+        self._waiting: list[OfferedScript] = []  # secondary programs
+        self._beside: list[tuple[OfferedScript, int]] = []  # and how many ticks each has run
+        self._running: OfferedScript | None = None
         self._listeners: tuple[Callable[[Told], None], ...] = ()
         self._history: deque[tuple[float, ...]] = deque(maxlen=HISTORY + 1)
         self._seen: dict[str, tuple[object, int]] = {}  # of the watched input: its count of writes, and when it changed
@@ -152,7 +152,7 @@ class ScriptRunner:
         """Of the script that runs."""
         return {} if self._running is None else self._running.machine.variables()
 
-    def _made(self, text: str, hosts: frozenset[str]) -> Script:
+    def _made(self, text: str, hosts: frozenset[str]) -> OfferedScript:
         state = self._cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
@@ -160,7 +160,7 @@ class ScriptRunner:
         robot = ScriptRobot(self._cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self._cabinet.simulation.scenario.seed)
         secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
         machine = Machine(body, builtins_of(robot, self._history, secondary))
-        return Script(machine, robot, text)
+        return OfferedScript(machine, robot, text)
 
     # on the loop's thread
 
@@ -263,7 +263,7 @@ class ScriptRunner:
         self._close(running, trouble)
         self.tell(Told(Telling.ENDED, "", running.machine.script.name))
 
-    def _close(self, script: Script, trouble: ScriptTrouble | None) -> None:
+    def _close(self, script: OfferedScript, trouble: ScriptTrouble | None) -> None:
         script.machine.stop()
         script.robot.sockets.end()
         if trouble is not None:

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-from app.urscript.language.trouble import NOWHERE, Place
+from app.urscript.language.trouble import NOWHERE, Spot
 
 
 class Telling(StrEnum):
@@ -22,7 +22,7 @@ class Told(NamedTuple):
     kind: Telling
     text: str
     name: str = ""  # of the program
-    place: Place = NOWHERE  # in its text
+    place: Spot = NOWHERE  # in its text
     title: str = ""  # of a popup
     level: str = ""  # of a popup: "", "warning", "error"
 

@@ -266,7 +266,7 @@ def test_an_error_is_told_with_line_and_column(cell: Cell) -> None:
     say(session, "def f():\n  sync()\n  x = [1][2]\nend\n")
     cell.robot.step(5)
     told = kinds(theirs)[messages.MessageType.RUNTIME_EXCEPTION]
-    assert [each[:8] for each in told if b"syntax error" in each][0] == struct.pack(">ii", 2, 7)
+    assert next(each[:8] for each in told if b"syntax error" in each) == struct.pack(">ii", 2, 7)
     assert told[-1] == struct.pack(">ii", 3, 7) + b"index 2 out of range: there are 1 elements, counted from 0"
 
 
