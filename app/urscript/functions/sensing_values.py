@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.language.trouble import Misuse
+from app.urscript.machine.limits import NODES_A_TICK
+from app.urscript.machine.operators import effort
 from app.urscript.machine.signature import (
     Builtin,
     Taken,
@@ -29,6 +31,9 @@ from sim.motion.line import rotation_vector
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
+
+SEARCH = NODES_A_TICK
+"""What a search for joint angles counts as, in steps of the evaluator."""
 
 STEADY = 0.01
 """Joint speed below which the arm counts as steady [rad/s]."""
@@ -58,6 +63,7 @@ class Kinematics:
     def inverse(self, x: PoseValue, near: tuple[float, ...], tcp: tuple[float, ...] | None) -> tuple[float, ...] | None:
         """Joint angles for a pose of the tool centre point, the nearest that steps from `near` lead to; None: none is found."""
         simulation = self._robot.simulation
+        effort[0] += SEARCH
         at, R_FT = _placed(self.tcp if tcp is None else tcp)
         p, R = _placed(x)
         R_F = R @ R_FT.T
@@ -77,17 +83,16 @@ def _placed(x: tuple[float, ...]) -> tuple[Array, Array]:
 def _guesses(near: tuple[float, ...]) -> Iterator[Array]:
     """Other postures to start from: elbow up or down, wrist turned, shoulder on the other side."""
     a, b, c, d, e, f = near
-    for shoulder in (0.0, math.pi, -math.pi):
-        for elbow in (1.2, -1.2):
-            for wrist in (1.57, -1.57):
-                yield np.array((a + shoulder, -1.2 if elbow > 0 else -1.9, elbow, -1.57, wrist, f))
+    for elbow in (1.2, -1.2):
+        for wrist in (1.57, -1.57):
+            yield np.array((a, -1.2 if elbow > 0 else -1.9, elbow, -1.57, wrist, f))
     yield np.array((a, b, c + 0.3, d, e + 0.3, f))
 
 
 def _newton(dynamics: Dynamics, target: tuple[Array, Array], q: Array) -> Array | None:
     p_wanted, R_wanted = target
     q = q.copy()
-    for _ in range(40):
+    for _ in range(20):
         p, R, jacobian = dynamics.update(q)
         error = np.concatenate((p_wanted - p, rotation_vector(R_wanted @ R.T)))
         size = math.sqrt(float(error @ error))

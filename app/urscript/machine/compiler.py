@@ -14,10 +14,10 @@ from app.urscript.machine import expressions as make
 from app.urscript.machine.analysis import MAIN, Routine, ScriptOutline, calls, children, size
 from app.urscript.machine.expressions import Frame, Read
 from app.urscript.machine.held import Held
-from app.urscript.machine.limits import HEAVY
+from app.urscript.machine.limits import HEAVY, LONGEST_LIST
 from app.urscript.machine.signature import Builtin, NeededArgument
 from app.urscript.machine.statements import Statements
-from app.urscript.machine.values import UNSET, StructValue, Value
+from app.urscript.machine.values import UNSET, StructValue, Value, weight
 from app.urscript.machine.worked import as_it_is, kept, named_check, worked
 
 
@@ -210,9 +210,6 @@ class Compiler:
         reads = self.given(node, routine)
         if not reads:
             return lambda f: [None] + [UNSET] * (routine.size - 1)
-        if len(reads) == 1:
-            (read,) = reads
-            return lambda f: [None, read(f)] + [UNSET] * (routine.size - 2)
 
         def made(f: Frame) -> Frame:
             g: Frame = [None]
@@ -266,7 +263,15 @@ class Compiler:
         if node.arguments or not node.named:
             raise ScriptTrouble(node.place, "struct() has members by name")
         parts = [(name, self._plain(value)) for name, value in node.named]
-        return lambda f: StructValue({name: part(f) for name, part in parts})
+        place = node.place
+
+        def made(f: Frame) -> Value:
+            found = StructValue({name: part(f) for name, part in parts})
+            if weight(found) > LONGEST_LIST:
+                raise ScriptTrouble(place, f"a struct of {weight(found)} values, allowed: {LONGEST_LIST}")
+            return found
+
+        return made
 
     def _run(self, node: tree.Run) -> Read:
         routine = self.script.routines.get(node.call.name)

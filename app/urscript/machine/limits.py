@@ -6,7 +6,7 @@ NODES_A_TICK = 3000
 NODES_WITHOUT_TIME = 500 * NODES_A_TICK
 """Steps of one thread in a row in which no time passes for the robot: a second of its clock when it runs alone."""
 
-HEAVY = 200
+HEAVY = 80
 """Steps that are done without looking at the clock; longer statements are done in parts."""
 
 MOST_THREADS = 50
@@ -17,9 +17,9 @@ LONGEST_TEXT = 1023
 """Characters; longer ones are an error on the robot, too (URScript manual, str_cat)."""
 MOST_SLOTS = 8000
 """Variables of all running functions."""
-MOST_MEMORY = 1_000_000
+MOST_MEMORY = 100_000
 """Numbers and characters that all variables hold together."""
-MEMORY_LOOK = 200_000
+MEMORY_LOOK = 50_000
 """Numbers and characters that are made between two looks at what is held."""
 MOST_FUNCTIONS = 2000
 MOST_MESSAGES = 100

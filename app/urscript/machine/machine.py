@@ -18,9 +18,10 @@ from app.urscript.machine.limits import (
     NODES_A_TICK,
     NODES_WITHOUT_TIME,
 )
+from app.urscript.machine.operators import effort
 from app.urscript.machine.signature import Builtin
 from app.urscript.machine.statements import CALL, JOIN, RETURN, SYNC, WAIT
-from app.urscript.machine.values import UNSET, Value, shown, weight
+from app.urscript.machine.values import UNSET, Value, safely_shown, weight
 
 TOO_LONG = "the program used too much time without instructing the robot what to do; use sleep() or sync() in long loops"
 """As a UR says it (ros-industrial/universal_robot#330)."""
@@ -88,7 +89,7 @@ class Machine:
     def variables(self) -> dict[str, str]:
         """All variables that every function sees, as text."""
         found = zip(self.script.globals, list(self.globals), strict=False)
-        return {name: _as_text(value) for name, value in found if value is not UNSET}
+        return {name: safely_shown(value) for name, value in found if value is not UNSET}
 
     def tick(self, budget: int = NODES_A_TICK) -> bool:
         """Run until every thread waits, or the budget is used up. Returns whether it has ended, by itself or by an error."""
@@ -168,7 +169,9 @@ class Machine:
 
     def made(self, value: Value, place: Spot) -> None:
         """A list or a text is kept."""
-        self._fresh += weight(value)
+        size = weight(value)
+        effort[0] += size
+        self._fresh += size
         if self._fresh > MEMORY_LOOK:
             self._fresh = 0
             frames = [strand.frame for strand in self._strands] + [
@@ -223,6 +226,8 @@ class Machine:
             while budget > 0:
                 budget -= costs[pc]
                 following = code[pc](frame)
+                if effort[0] > 20:
+                    budget, effort[0] = budget - effort[0], 0
                 if following >= 0:
                     pc = following
                     continue
@@ -269,10 +274,3 @@ class Machine:
             strand.spent += begun - budget
             if strand.spent > NODES_WITHOUT_TIME and budget <= 0:
                 raise ScriptTrouble(routine.places[pc], TOO_LONG)
-
-
-def _as_text(value: Value) -> str:
-    try:
-        return shown(value)
-    except Misuse:
-        return "(too long)"

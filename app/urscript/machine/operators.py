@@ -8,6 +8,9 @@ from app.urscript.machine.values import PoseValue, StructValue, Value, kind, num
 
 NUMBERS = frozenset({int, float})
 
+effort = [0]
+"""Elements that operators have gone through since the machine looked: steps that no count of nodes knows."""
+
 Work = Callable[[Value, Value], Value]
 
 
@@ -49,9 +52,13 @@ def compute(operator: str, a: Value, b: Value) -> Value:
             raise Misuse(f"{operator}: the result is too great") from None
         return number_made(found) if type(found) is int else found
     lists = (tuple, PoseValue)
+    if left in lists or right in lists:
+        effort[0] += len(a) * (left in lists) + len(b) * (right in lists)
     if left in lists and right in lists and operator in "+-":
         if len(a) != len(b):
             raise Misuse(f"{operator} of lists of {len(a)} and {len(b)} elements")
+        if set(map(type, a)) | set(map(type, b)) == {float}:
+            return _like(a if left is PoseValue else b, list(map(work, a, b)))
         return _like(a if left is PoseValue else b, [compute(operator, x, y) for x, y in zip(a, b, strict=True)])
     if left in lists and right in NUMBERS and operator in "*/":
         return _like(a, [compute(operator, x, b) for x in a])

@@ -61,6 +61,14 @@ def shown(value: Value) -> str:
     return text
 
 
+def safely_shown(value: Value) -> str:
+    """The same, for pictures: what is too long is said to be."""
+    try:
+        return shown(value)
+    except Misuse:
+        return "(too long)"
+
+
 def _parts(value: Value) -> Iterator[str]:
     kind_ = type(value)
     if kind_ is str:
