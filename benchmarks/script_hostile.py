@@ -1,4 +1,4 @@
-"""Whether any script can hold up the robot: damaged programs, and programs that ask for all there is of time, memory and threads."""
+"""Whether any script can hold up the robot: damaged programs, and programs that ask for all there is."""
 
 import random
 import resource

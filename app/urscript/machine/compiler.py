@@ -37,8 +37,6 @@ class Compiler:
             self.routine = routine
             self._statements.whole(routine)
 
-    # expressions
-
     def expression(self, node: tree.Node) -> Read:
         """The value of an expression; steps for what has to be done first are added to the present function."""
         if self._steps_in(node) or size(node) > HEAVY:

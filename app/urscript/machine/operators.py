@@ -53,7 +53,7 @@ def compute(operator: str, a: Value, b: Value) -> Value:
         return number_made(found) if type(found) is int else found
     lists = (tuple, PoseValue)
     if left in lists or right in lists:
-        effort[0] += len(a) * (left in lists) + len(b) * (right in lists)
+        effort[0] += (len(a) if left in lists else 0) + (len(b) if right in lists else 0)
     if left in lists and right in lists and operator in "+-":
         if len(a) != len(b):
             raise Misuse(f"{operator} of lists of {len(a)} and {len(b)} elements")
