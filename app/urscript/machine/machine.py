@@ -114,7 +114,9 @@ class Machine:
         self._ticks = ticks = self._ticks + 1
         waiting = len(self._strands)
         while waiting:
-            strand = next((each for each in self._strands if each.ran != ticks), None)
+            strand = self._strands[0] if self._strands else None
+            if strand is None or strand.ran == ticks:
+                strand = next((each for each in self._strands if each.ran != ticks), None)
             if strand is None:
                 return
             if budget <= 0:

@@ -34,6 +34,18 @@ def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Ca
 
         return one
 
+    if len(arguments) == 2:
+        (first, check_first), (second, check_second) = arguments
+
+        def two(f: Frame) -> Value:
+            a, b = first(f), second(f)
+            try:
+                return work(check_first(a), check_second(b))
+            except Misuse as misuse:
+                raise failed(misuse) from None
+
+        return two
+
     def several(f: Frame) -> Value:
         values = [x(f) for x, _ in arguments]
         try:
