@@ -13,7 +13,7 @@ import uvicorn
 
 from app.files.bad_input import BadInput
 from app.log.live import LiveRecording
-from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession
+from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession, Talking
 from app.robot_interface.client_ports.primary_packages import RobotState
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
@@ -26,6 +26,7 @@ from app.robot_interface.rtde.rtde_session import RtdeSession
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import Conversation, TcpPort
+from app.urscript.running.script_runner import ScriptRunner
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
 
@@ -69,6 +70,7 @@ class RobotInterfaces:
         self.token = token or secrets.token_urlsafe(16)
         self.peers = Peers()
         self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs), lambda: loop.desk.high)
+        self.scripts = ScriptRunner(self.cabinet)
         self._sockets = {name: _listening(host, number) for name, number in self.ports.items()}
         self._tcp = self._conversations(arm)
         hosts = frozenset(f"{name}:{self.ports[CONTROL]}" for name in (host.lower(), "localhost", "127.0.0.1"))
@@ -118,6 +120,7 @@ class RobotInterfaces:
         cabinet, peers = self.cabinet, self.peers
         commands = DashboardCommands(cabinet, arm.name.upper().removesuffix("E"))
         inputs, state = RtdeInputs(cabinet), RobotState(cabinet, arm)
+        talking = Talking(cabinet, commands, peers, self.scripts)
 
         def dashboard(peer: Peer, outbox: Outbox) -> Conversation:
             return DashboardSession(cabinet, commands, peers, peer, outbox=outbox)
@@ -127,14 +130,12 @@ class RobotInterfaces:
 
         def stream(messages: bool, writable: bool) -> Callable[[Peer, Outbox], StreamSession]:
             def open_(peer: Peer, outbox: Outbox) -> StreamSession:
-                return PrimarySession(
-                    cabinet, commands, peers, peer, outbox=outbox, writable=writable, state=state, messages=messages
-                )
+                return PrimarySession(talking, peer, outbox=outbox, writable=writable, state=state, messages=messages)
 
             return open_
 
         def realtime(writable: bool) -> Callable[[Peer, Outbox], StreamSession]:
-            return lambda peer, outbox: RealtimeSession(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
+            return lambda peer, outbox: RealtimeSession(talking, peer, outbox=outbox, writable=writable)
 
         opened: dict[str, Callable[[Peer, Outbox], Conversation]] = {DASHBOARD: dashboard, RTDE: rtde}
         for name, writable in (("", True), (READ_ONLY, False)):

@@ -9,6 +9,7 @@ from app.log.recorder import Recorder
 from app.runs.runner import run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
+from app.urscript.language.reading import read_script
 
 
 def warm_up() -> None:
@@ -24,3 +25,4 @@ def warm_up() -> None:
         with Recorder(out / "log.mcap", simulation, session.title) as recorder:
             run(session, prepared, simulation, out, see=lambda decision: recorder.see(simulation, decision))
     simulation.snapshot()
+    read_script("")

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from app.session.expectations import Value
-from app.session.measures import ValueWatch, point_of
+from app.session.measures import ValueWatch
 from app.session.triggers import Trigger
 from app.studies.study_measures import (
     AnyMeasure,

@@ -1,9 +1,13 @@
-"""Text that clients send to the client interfaces: lines that a controller knows by themselves; programs are not run here."""
+"""Lines that a controller knows by themselves, and the programs that clients send to the client interfaces."""
 
+import asyncio
 from collections.abc import Callable
 
 from app.robot_interface.controller.cabinet import Ask
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands, Pending
+from app.urscript.language.program_text import LONGEST, ProgramText
+from app.urscript.language.trouble import ScriptTrouble
+from app.urscript.running.script_runner import ScriptRunner
 
 LINES = {
     "power on": ("power on",),
@@ -14,10 +18,10 @@ LINES = {
 }
 """What each line does, in the dashboard's words."""
 
-LONGEST = 1 << 20
-"""Of a program [bytes]."""
+UNFINISHED = 2.0
+"""Time without anything more after which a program without its end is read as it is [s]."""
 
-NO_SCRIPT = "URScript is not run by this version: load a program by name (dashboard), or use the control channel"
+__all__ = ["LINES", "LONGEST", "TextCommands"]
 
 
 class TextCommands:
@@ -27,43 +31,68 @@ class TextCommands:
         commands: what the lines do.
         ask: hands a wish to the robot.
         complain: tells the client what cannot be done: line, column, text.
+        scripts: runs programs.
+        hosts: that the client's programs may connect to: where it is.
     """
 
     def __init__(
-        self, commands: DashboardCommands, ask: Callable[[Ask], object], complain: Callable[[int, int, str], None]
+        self,
+        commands: DashboardCommands,
+        ask: Callable[[Ask], object],
+        complain: Callable[[int, int, str], None],
+        *,
+        scripts: ScriptRunner,
+        hosts: frozenset[str],
     ) -> None:
-        self._commands, self._ask, self._complain = commands, ask, complain
-        self._left = b""
-        self._inside = False  # of a program: its lines are passed over up to its end
+        self._commands, self._ask, self._scripts, self._hosts, self._complain = commands, ask, scripts, hosts, complain
+        self._text = ProgramText()
+        self._heard = 0
+        self._waiting: asyncio.Task[None] | None = None
 
-    def hear(self, data: bytes, remote: bool) -> bool:
-        """Do the lines that are whole; False: the text is too long.
+    async def hear(self, data: bytes, remote: Callable[[], bool]) -> bool:
+        """Do the lines and programs that are whole; False: the text is too long.
 
         Args:
             data: as it came.
-            remote: the robot is in remote control; otherwise nothing is done.
+            remote: tells whether the robot is in remote control; otherwise nothing is done.
         """
-        *lines, self._left = (self._left + data).split(b"\n")
-        if len(self._left) > LONGEST:
+        self._heard += 1
+        found = self._text.hear(data)
+        if found is None:
             return False
-        for number, line in enumerate(lines, 1):
-            text = line.decode("utf-8", "replace").rstrip()
-            if text.strip():
-                self._do(text, number, remote)
+        for text in found:
+            await self._do(text, remote())
+        if self._text.unfinished and self._waiting is None:
+            self._waiting = asyncio.create_task(self._wait(remote))
         return True
 
-    def _do(self, text: str, number: int, remote: bool) -> None:
-        if self._inside:
-            self._inside = text != "end"
-            return
+    def over(self) -> None:
+        """The connection is over."""
+        if self._waiting is not None:
+            self._waiting.cancel()
+
+    async def _wait(self, remote: Callable[[], bool]) -> None:
+        """Read a program whose end does not come as it is, to say what is wrong with it."""
+        heard = -1
+        while self._text.unfinished and heard != self._heard:
+            heard = self._heard
+            await asyncio.sleep(UNFINISHED)
+        self._waiting = None
+        if self._text.unfinished:
+            await self._do(self._text.all(), remote())
+
+    async def _do(self, text: str, remote: bool) -> None:
+        line = text.strip()
         if not remote:
-            self._complain(number, 1, "the robot is in local control")
+            self._complain(1, 1, "the robot is in local control")
             return
-        if text.strip() in LINES:
-            for command in LINES[text.strip()]:
+        if line in LINES:
+            for command in LINES[line]:
                 answer = self._commands.answer(command, remote)
                 if isinstance(answer, Pending):
                     self._ask(answer.ask)
             return
-        self._inside = text.startswith(("def ", "sec "))
-        self._complain(number, 1, NO_SCRIPT)
+        try:
+            await asyncio.to_thread(self._scripts.offer, text, self._hosts)
+        except ScriptTrouble as trouble:
+            self._complain(trouble.place.line, trouble.place.column, trouble.text)

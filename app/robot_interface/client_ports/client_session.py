@@ -1,10 +1,13 @@
 """One connection to the primary, secondary or real-time interface."""
 
+from typing import NamedTuple
+
 from app.robot_interface.client_ports.bare_commands import LONGEST, TextCommands
 from app.robot_interface.client_ports.primary_messages import (
     error_message,
     exception_message,
     key_message,
+    popup_message,
     safety_message,
     text_of,
     version_message,
@@ -17,6 +20,8 @@ from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import Farewell
+from app.urscript.running.script_runner import ScriptRunner
+from app.urscript.running.told import Telling, Told
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
 from pendant.events.event_row import Severity
@@ -35,29 +40,40 @@ KEYS = {
 LEVELS = {Severity.NOTICE: 1, Severity.WARNING: 2, Severity.STOP: 3}
 
 
+class Talking(NamedTuple):
+    """What the connections of one robot share."""
+
+    cabinet: Cabinet
+    commands: DashboardCommands
+    peers: Peers
+    scripts: ScriptRunner
+
+
 class StreamSession:
     """What primary, secondary and real-time have in common: text in, packages out.
 
     See `app.robot_interface.transport.tcp_port.Conversation` and `app.robot_interface.controller.cabinet.Listener`.
     """
 
-    def __init__(
-        self, cabinet: Cabinet, commands: DashboardCommands, peers: Peers, peer: Peer, *, outbox: Outbox, writable: bool
-    ) -> None:
-        self.cabinet, self.outbox = cabinet, outbox
-        self._peers, self._peer, self._writable = peers, peer, writable
-        self._text = TextCommands(commands, cabinet.ask, self._complain)
-        cabinet.listen(self)
+    def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool) -> None:
+        self.cabinet, self.outbox = robot.cabinet, outbox
+        self._peers, self._peer, self._writable, self._scripts = robot.peers, peer, writable, robot.scripts
+        hosts = frozenset({peer.address.rpartition(":")[0]})
+        self._text = TextCommands(robot.commands, self.cabinet.ask, self._complain, scripts=robot.scripts, hosts=hosts)
+        self.cabinet.listen(self)
+        self._scripts.listen(self.script)
 
     async def hear(self, data: bytes) -> None:
         """Do what the text says; on the read-only port nothing."""
         if not self._writable:
             self._complain(1, 1, "C210: this port is read-only")
-        elif not self._text.hear(data, self.cabinet.state.remote):
+        elif not await self._text.hear(data, lambda: self.cabinet.state.remote):
             raise Farewell(f"a line of more than {LONGEST} bytes")
 
     def over(self) -> None:
         """The connection is over."""
+        self._text.over()
+        self._scripts.forget(self.script)
         self.cabinet.forget(self)
 
     def tick(self, number: int) -> None:
@@ -68,6 +84,9 @@ class StreamSession:
 
     def repeat(self) -> None:
         """No tick has been done for a while."""
+
+    def script(self, told: Told) -> None:
+        """A script tells something."""
 
     def complain(self, line: int, column: int, text: str) -> None:
         """Tell the client what cannot be done."""
@@ -80,22 +99,11 @@ class StreamSession:
 class PrimarySession(StreamSession):
     """Robot state ten times a second, and messages; `messages` False is the secondary interface."""
 
-    def __init__(
-        self,
-        cabinet: Cabinet,
-        commands: DashboardCommands,
-        peers: Peers,
-        peer: Peer,
-        *,
-        outbox: Outbox,
-        writable: bool,
-        state: RobotState,
-        messages: bool,
-    ) -> None:
+    def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool, state: RobotState, messages: bool) -> None:
         self._state, self._messages = state, messages
         self._safety: SafetyMode | None = None
-        super().__init__(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
-        outbox.send(version_message(cabinet.clock))
+        super().__init__(robot, peer, outbox=outbox, writable=writable)
+        outbox.send(version_message(self.cabinet.clock))
         self._tell_state()
 
     def tick(self, number: int) -> None:
@@ -111,11 +119,27 @@ class PrimarySession(StreamSession):
         """Messages: keys of programs, texts and errors of everything else that is more than a note."""
         if not self._messages:
             return
-        if event.kind in KEYS:
+        if event.kind in KEYS and self._scripts.state is None:
             self.outbox.send(key_message(self.cabinet.clock, KEYS[event.kind], str(event.values["name"])))
         level = LEVELS.get(TABLE[event.kind].severity)
         if level is not None:
             self.outbox.send(error_message(self.cabinet.clock, level, " ".join(render(event)).strip()))
+
+    def script(self, told: Told) -> None:
+        """Messages of scripts: keys, texts, popups, and what went wrong with line and column."""
+        if not self._messages:
+            return
+        clock = self.cabinet.clock
+        if told.kind is Telling.STARTED:
+            self.outbox.send(key_message(clock, "PROGRAM_XXX_STARTED", told.name))
+        elif told.kind is Telling.ENDED:
+            self.outbox.send(key_message(clock, "PROGRAM_XXX_STOPPED", told.name))
+        elif told.kind is Telling.TEXT:
+            self.outbox.send(text_of(clock, told.text))
+        elif told.kind is Telling.POPUP:
+            self.outbox.send(popup_message(clock, told.title, told.text, told.level))
+        else:
+            self.complain(told.place.line, told.place.column, told.text)
 
     def complain(self, line: int, column: int, text: str) -> None:
         """A runtime exception, and the text of it."""
@@ -133,11 +157,9 @@ class PrimarySession(StreamSession):
 class RealtimeSession(StreamSession):
     """A package every tick."""
 
-    def __init__(
-        self, cabinet: Cabinet, commands: DashboardCommands, peers: Peers, peer: Peer, *, outbox: Outbox, writable: bool
-    ) -> None:
-        self._package = RealtimePackage(cabinet)
-        super().__init__(cabinet, commands, peers, peer, outbox=outbox, writable=writable)
+    def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool) -> None:
+        self._package = RealtimePackage(robot.cabinet)
+        super().__init__(robot, peer, outbox=outbox, writable=writable)
 
     def tick(self, number: int) -> None:
         """Send the tick's package."""

@@ -61,5 +61,12 @@ def exception_message(clock: float, line: int, column: int, text: str) -> bytes:
     return _message(clock, MessageType.RUNTIME_EXCEPTION, struct.pack(">ii", line, column) + _ascii(text))
 
 
+def popup_message(clock: float, title: str, text: str, level: str) -> bytes:
+    """A message that the robot shows; `level` is "", "warning" or "error"."""
+    name = _ascii(title)[:255]
+    head = struct.pack(">IB???", 0, 3, level == "warning", level == "error", False)
+    return _message(clock, MessageType.POPUP, head + bytes([len(name)]) + name + _ascii(text))
+
+
 def _ascii(text: str) -> bytes:
     return text.encode("ascii", "replace")

@@ -10,6 +10,7 @@ from app.robot_interface.controller.controller_state import ControllerState
 from app.robot_interface.controller.field_record import BEGIN, FieldRecord
 from app.robot_interface.controller.measured_fields import MeasuredFields
 from app.robot_interface.controller.program_folder import ProgramFolder
+from app.robot_interface.controller.robot_words import RuntimeState
 from app.robot_interface.controller.status_fields import StatusFields
 from app.session.actions import Action
 from app.session.timeline import Timeline
@@ -45,6 +46,44 @@ class Listener(Protocol):
 
 AT_MOST = ticks(1.5)
 """Ticks that a wish waits for the arm to stand still; then the robot says itself that it moves."""
+
+
+class Scripts(Protocol):
+    """What runs scripts, beside everybody else who acts."""
+
+    @property
+    def state(self) -> RuntimeState | None:
+        """Of the script; None: none runs."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """Of the script that runs."""
+        ...
+
+    def wishes(self, tick: int) -> Wishes | None:
+        """What the script wants of the tick that begins; None: nothing."""
+        ...
+
+    def see(self, decision: Decision) -> None:
+        """Take in what the robot decided."""
+        ...
+
+    def begin(self) -> None:
+        """The simulation starts over."""
+        ...
+
+    def stop(self) -> None:
+        """End the script."""
+        ...
+
+    def pause(self) -> None:
+        """Let it wait."""
+        ...
+
+    def resume(self) -> None:
+        """Let it go on."""
+        ...
 
 
 @dataclass(slots=True)
@@ -101,6 +140,13 @@ class Cabinet:
         self._settled = False  # the robot has been brought into remote control
         self.free_drive_until = 0  # tick up to which the remote controller asks for free-drive: its signal, kept alive
         self._wanted = False  # in the last tick
+        self.script: Scripts | None = None  # runs scripts
+        self.writes: dict[str, int] = {}  # how often each input of RTDE was written
+
+    @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        return self._simulation()
 
     @property
     def clock(self) -> float:
@@ -155,6 +201,7 @@ class Cabinet:
         if self.state.remote and not self._settled:
             commands.append(Command.REMOTE)
         self._settled = True
+        scripted = None if self.script is None else self.script.wishes(tick)
         wanted = self.ticks < self.free_drive_until
         if self._wanted and not wanted:
             commands.append(Command.LEAVE_FREE_DRIVE)
@@ -168,7 +215,8 @@ class Cabinet:
                 load=ask.load or inputs.load,
                 remote_signal=inputs.remote_signal,
             )
-        return Wishes(inputs, (), ()).joined(self._timeline.wishes(tick, snapshot))
+        wishes = Wishes(inputs, (), ()).joined(self._timeline.wishes(tick, snapshot))
+        return wishes if scripted is None else scripted.joined(wishes)
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in what the robot decided, and tell everybody."""
@@ -176,10 +224,13 @@ class Cabinet:
         self._static = decision.static
         listeners = self._listeners
         self._timeline.see(tick, decision)
+        if self.script is not None:
+            self.script.see(decision)
+            self.state.script = self.script.state
         self._understand(tick, decision)
         self.record.put("timestamp", self.clock)
         self.record.put("control_step", self.ticks)
-        if listeners:
+        if listeners or self.script is not None:
             self._measured.fill(self._simulation(), decision)
             self._status.fill(self.state, decision, self._high() | self._timeline.high)
             for listener in listeners:
@@ -205,6 +256,8 @@ class Cabinet:
         self.events = []
         self._settled = self._static = False
         self.free_drive_until, self._wanted = 0, False
+        if self.script is not None:
+            self.script.begin()
 
     def _understand(self, tick: int, decision: Decision) -> None:
         state = self.state

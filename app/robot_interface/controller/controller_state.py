@@ -57,6 +57,7 @@ class ControllerState:
     operational: OperationalMode = OperationalMode.NONE
     failure: str = ""  # why nothing is simulated
     switched_off: bool = False  # it stands because its drives were switched off, or are after an emergency stop
+    script: RuntimeState | None = None  # of a script; None: none runs, and the robot's own programs count
     refusal: str = ""  # why free-drive was refused last; "" once it was entered
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -110,7 +111,7 @@ class ControllerState:
     @property
     def runtime(self) -> RuntimeState:
         """Of the program."""
-        return RUNTIME[self.program_state]
+        return RUNTIME[self.program_state] if self.script is None else self.script
 
     @property
     def joint_mode(self) -> JointMode:

@@ -45,6 +45,13 @@ class FieldRecord:
         """The value of an output field, a vector as a list."""
         return self._fields[name].tolist()
 
+    def field(self, name: str) -> Array:
+        """The place of an output field itself: it shows what is put there later, and can be written.
+
+        KeyError: there is none of this name.
+        """
+        return self._fields[name]
+
     def where(self, names: Sequence[str]) -> NDArray[np.int64]:
         """Places of the bytes of some fields, in this order: what `taken` wants."""
         spans = [np.arange(self._at[name], self._at[name] + SIZES[OUTPUTS[name]]) for name in names]

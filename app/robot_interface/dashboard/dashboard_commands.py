@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from app.files.bad_input import BadInput
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Ask, Cabinet, Scripts
 from app.robot_interface.controller.robot_words import SERIAL, VERSION, OperationalMode, RobotMode, RuntimeState, SafetyMode
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command
@@ -110,6 +110,11 @@ class DashboardCommands:
         return self._cabinet.state.runtime is RuntimeState.PLAYING
 
     @property
+    def _scripted(self) -> Scripts | None:
+        """What runs a script now."""
+        return None if self._cabinet.state.script is None else self._cabinet.script
+
+    @property
     def _program(self) -> str:
         """Base name of the loaded program."""
         name = self._cabinet.state.program
@@ -139,14 +144,23 @@ class DashboardCommands:
         kind = Kind.PROGRAM_RESUMED if paused else Kind.PROGRAM_STARTED
         if state.robot_mode is not RobotMode.RUNNING:
             return "Failed to execute: play"
+        if self._scripted is not None:
+            self._scripted.resume()
+            return "Starting program"
         return _when(Ask((command,), standing=True), kind, "Starting program", "Failed to execute: play")
 
     def _stop(self) -> Answer:
         if self._cabinet.state.runtime is RuntimeState.STOPPED:
             return "Failed to execute: stop"
+        if self._scripted is not None:
+            self._scripted.stop()
+            return "Stopped"
         return _when(Ask((Command.STOP_PROGRAM,)), Kind.PROGRAM_STOPPED, "Stopped", "Failed to execute: stop")
 
     def _pause(self) -> Answer:
+        if self._scripted is not None:
+            self._scripted.pause()
+            return "Pausing program" if self._plays else "Failed to execute: pause"
         return _when(Ask((Command.PAUSE_PROGRAM,)), Kind.PROGRAM_PAUSED, "Pausing program", "Failed to execute: pause")
 
     def _power_on(self) -> Answer:

@@ -91,8 +91,9 @@ class RtdeInputs:
 
     def write(self, values: dict[str, float | tuple[float, ...]]) -> None:
         """Take the inputs of one package."""
-        put = self._cabinet.record.put
+        put, writes = self._cabinet.record.put, self._cabinet.writes
         for name, value in values.items():
+            writes[name] = writes.get(name, 0) + 1
             if name in OUTPUTS:
                 put(name, value if OUTPUTS[name] != "BOOL" else bool(value))
         for name, (first, count) in OUTPUT_WORDS.items():

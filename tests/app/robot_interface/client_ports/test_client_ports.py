@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import pytest
 
 from app.robot_interface.client_ports import primary_messages as messages
-from app.robot_interface.client_ports.bare_commands import LINES, LONGEST, NO_SCRIPT
-from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession
+from app.robot_interface.client_ports.bare_commands import LINES, LONGEST
+from app.robot_interface.client_ports.client_session import PrimarySession, RealtimeSession, StreamSession, Talking
 from app.robot_interface.client_ports.primary_packages import ROBOT_TYPES, RobotState
 from app.robot_interface.client_ports.realtime_package import SIZE
 from app.robot_interface.controller.robot_words import SafetyMode
@@ -17,6 +17,7 @@ from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peers
 from app.robot_interface.transport.tcp_port import Farewell
+from app.urscript.running.script_runner import ScriptRunner
 from pendant.events.event import Kind
 from pendant.inputs import Command
 from tests.app.robot_interface.robot_bench import RobotBench
@@ -34,6 +35,7 @@ class Cell:
         self.robot.step(60)
         self.commands = DashboardCommands(self.robot.cabinet, "UR5")
         self.state = RobotState(self.robot.cabinet, UR5E)
+        self.scripts = ScriptRunner(self.robot.cabinet)
         self._sockets: list[socket.socket] = []
 
     def open(self, kind: str, writable: bool = True) -> tuple[StreamSession, socket.socket]:
@@ -42,7 +44,7 @@ class Cell:
         self._sockets += [ours, theirs]
         outbox = Outbox(ours)
         peer = self.peers.join(kind, "here", outbox)
-        common = (self.robot.cabinet, self.commands, self.peers, peer)
+        common = (Talking(self.robot.cabinet, self.commands, self.peers, self.scripts), peer)
         if kind == "real-time":
             return RealtimeSession(*common, outbox=outbox, writable=writable), theirs
         told = kind == "primary"
@@ -232,17 +234,64 @@ def test_the_read_only_port_does_nothing(cell: Cell) -> None:
     assert b"C210" in packages(theirs)[0]
 
 
-def test_a_program_is_refused_once_with_its_place_and_passed_over(cell: Cell) -> None:
+def kinds(theirs: socket.socket) -> dict[int, list[bytes]]:
+    """Bodies of the messages that have come, by their kind."""
+    found: dict[int, list[bytes]] = {}
+    for each in packages(theirs):
+        if each[0] == 20:
+            found.setdefault(each[10], []).append(each[11:])
+    return found
+
+
+@pytest.mark.parametrize("kind", ["primary", "secondary", "real-time"])
+def test_a_program_runs_and_primary_clients_are_told(cell: Cell, kind: str) -> None:
+    session, _ = cell.open(kind)
+    _, watching = cell.open("primary")
+    packages(watching)
+    for part in ("def hel", "lo():\n  textms", 'g("x=", 1)\n  sleep(0.01)\nen', "d\n"):
+        say(session, part)
+    cell.robot.step(2)
+    assert cell.robot.cabinet.state.runtime.name == "PLAYING"
+    cell.robot.step(10)
+    assert cell.robot.cabinet.state.runtime.name == "STOPPED"
+    told = kinds(watching)
+    assert told[messages.MessageType.TEXT] == [b"x=1"]
+    assert [each[9:] for each in told[messages.MessageType.KEY]] == [b"PROGRAM_XXX_STARTEDhello", b"PROGRAM_XXX_STOPPEDhello"]
+
+
+def test_an_error_is_told_with_line_and_column(cell: Cell) -> None:
     session, theirs = cell.open("primary")
     packages(theirs)
-    say(session, "def move():\n  power off\n movej([0,0,0,0,0,0])\nend\n")
-    exceptions = [each for each in packages(theirs) if each[10] == messages.MessageType.RUNTIME_EXCEPTION]
-    assert [each[11:] for each in exceptions] == [struct.pack(">ii", 1, 1) + NO_SCRIPT.encode()]
-    cell.robot.step()
-    assert Kind.POWERED_OFF not in cell.robot.kinds()
-    say(session, "power off\n")
-    cell.robot.step()
-    assert Kind.POWERED_OFF in cell.robot.kinds()
+    say(session, "def f():\n  x = = 1\nend\n")
+    say(session, "def f():\n  sync()\n  x = [1][2]\nend\n")
+    cell.robot.step(5)
+    told = kinds(theirs)[messages.MessageType.RUNTIME_EXCEPTION]
+    assert next(each[:8] for each in told if b"syntax error" in each) == struct.pack(">ii", 2, 7)
+    assert told[-1] == struct.pack(">ii", 3, 7) + b"index 2 out of range: there are 1 elements, counted from 0"
+
+
+def test_a_program_replaces_the_one_that_runs_and_a_secondary_one_runs_beside(cell: Cell) -> None:
+    session, theirs = cell.open("primary")
+    packages(theirs)
+    say(session, "def first():\n  while True:\n    sync()\n  end\nend\n")
+    cell.robot.step(2)
+    say(session, 'sec beside():\n  textmsg("beside")\nend\n')
+    cell.robot.step(2)
+    assert cell.scripts.name == "first"
+    say(session, 'def second():\n  textmsg("second")\n  sleep(1)\nend\n')
+    cell.robot.step(2)
+    assert cell.scripts.name == "second"
+    assert kinds(theirs)[messages.MessageType.TEXT] == [b"beside", b"second"]
+    say(session, "stop program\n")
+    cell.robot.step(2)
+    assert cell.scripts.state is None
+
+
+def test_a_line_alone_is_a_program(cell: Cell) -> None:
+    session, _ = cell.open("primary")
+    say(session, "set_digital_out(3, True)\n")
+    cell.robot.step(2)
+    assert int(cell.robot.cabinet.record.get("actual_digital_output_bits")) == 8
 
 
 def test_a_line_without_an_end_ends_the_connection(cell: Cell) -> None:

@@ -1,0 +1,75 @@
+"""What the functions of the language need of the robot that they run on."""
+
+from typing import Any, Protocol
+
+from app.robot_interface.controller.field_record import FieldRecord
+from app.urscript.functions.script_sockets import ScriptSockets
+from sim.simulation import Simulation
+
+
+class ArmSide(Protocol):
+    """The arm: one request at a time is done, and who waits for it asks every tick."""
+
+    def ask(self, request: Any) -> int:
+        """Ask for a motion or a stop from the next tick on, in place of what is done; its number.
+
+        Raises:
+            Misuse: it cannot be done.
+        """
+        ...
+
+    def done(self, number: int) -> bool:
+        """Whether a request is done, or another took its place.
+
+        Raises:
+            Misuse: it was refused.
+        """
+        ...
+
+    def drop(self, number: int) -> None:
+        """Nobody waits for a request any more: the arm comes to rest, unless another one follows in this tick."""
+        ...
+
+    def steps_back(self, direction: tuple[float, ...]) -> int:
+        """Ticks since the tool has been in contact against this direction, axes of B; zeros for any; 0 for none."""
+        ...
+
+    def free_drive_status(self) -> int:
+        """0 normal, 1 near a singularity, 2 too near one, as get_freedrive_status()."""
+        ...
+
+
+class RobotSide(Protocol):
+    """The robot."""
+
+    arm: ArmSide
+    sockets: ScriptSockets
+    record: FieldRecord
+    seed: int
+
+    @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        ...
+
+    @property
+    def clock(self) -> float:
+        """The controller's [s]."""
+        ...
+
+    def say(self, text: str) -> None:
+        """To the log, and to clients."""
+        ...
+
+    def popup(self, text: str, title: str, level: str, blocking: bool) -> None:
+        """Show a message; `level` is "", "warning" or "error"."""
+        ...
+
+    @property
+    def popup_shown(self) -> bool:
+        """A popup is there that nobody has closed."""
+        ...
+
+    def command(self, word: str, **values: Any) -> None:
+        """Something of the robot besides its motion: "payload", "tcp", "zero", "protective_stop", "gravity", "watchdog"."""
+        ...

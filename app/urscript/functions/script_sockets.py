@@ -1,0 +1,171 @@
+"""Connections that a script opens. Nothing here waits: a script looks every tick whether something has come."""
+
+import contextlib
+import ipaddress
+import re
+import socket
+import struct
+
+from app.urscript.language.trouble import Misuse
+
+MOST = 16
+"""Connections of a script."""
+FULL = 1 << 16
+"""Bytes that are kept, each way: the other side has to wait then."""
+CHUNK = 4096
+
+
+class ScriptSocket:
+    """One connection."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._socket = connection
+        self.open = False
+        self.broken = False
+        self.data = bytearray()  # came, and was not read
+        self._out = bytearray()  # was sent, and has not left
+
+    def connected(self, address: tuple[str, int]) -> bool:
+        """Whether the connection stands by now."""
+        if not self.open and not self.broken:
+            number = self._socket.connect_ex(address)
+            if number in (0, 106):  # done, EISCONN
+                self.open = True
+            elif number not in (11, 114, 115):  # EAGAIN, EALREADY, EINPROGRESS
+                self.broken = True
+        return self.open
+
+    def look(self) -> None:
+        """Take what has come, and send what waits."""
+        self._push()
+        while self.open and len(self.data) < FULL:
+            try:
+                found = self._socket.recv(CHUNK)
+            except BlockingIOError:
+                return
+            except OSError:
+                self.broken = True
+                return
+            if not found:
+                self.broken = True
+                return
+            self.data += found
+            if len(found) < CHUNK:
+                return
+
+    def send(self, data: bytes) -> bool:
+        """Send; False: the connection is broken, or the other side does not read."""
+        if not self.open or self.broken or len(self._out) + len(data) > FULL:
+            return False
+        self._out += data
+        self._push()
+        return not self.broken
+
+    def _push(self) -> None:
+        while self._out and not self.broken:
+            try:
+                count = self._socket.send(self._out)
+            except BlockingIOError:
+                return
+            except OSError:
+                self.broken = True
+                return
+            del self._out[:count]
+
+    def close(self) -> None:
+        """End it."""
+        with contextlib.suppress(OSError):
+            self._push()
+            self._socket.close()
+        self.open = False
+
+    def integers(self, count: int) -> list[int] | None:
+        """So many integers of four bytes, big-endian, or None as long as they have not all come."""
+        if len(self.data) < 4 * count:
+            return None
+        found = struct.unpack(f">{count}i", self.data[: 4 * count])
+        del self.data[: 4 * count]
+        return list(found)
+
+    def octets(self, count: int) -> list[int] | None:
+        """So many bytes, or None."""
+        if len(self.data) < count:
+            return None
+        found = list(self.data[:count])
+        del self.data[:count]
+        return found
+
+    def floats(self) -> list[float] | None:
+        """The numbers between the next pair of brackets, or None."""
+        end = self.data.find(b")")
+        if end < 0:
+            return None
+        text = bytes(self.data[:end]).decode("ascii", "replace")
+        del self.data[: end + 1]
+        found = text[text.rfind("(") + 1 :] if "(" in text else ""
+        try:
+            return [float(word) for word in re.split(r"[,\s]+", found.strip()) if word]
+        except ValueError:
+            return []
+
+    def text(self, prefix: bytes, suffix: bytes) -> str | None:
+        """Up to a suffix, from a prefix on; without a suffix all that has come; None: not yet."""
+        start = self.data.find(prefix) if prefix else 0
+        if start < 0 or (not suffix and len(self.data) <= start + len(prefix)):
+            return None
+        begun = start + len(prefix)
+        end = self.data.find(suffix, begun) if suffix else len(self.data)
+        if end < 0:
+            return None
+        found = bytes(self.data[begun : min(end, begun + 1023)]).decode("utf-8", "replace")
+        del self.data[: end + len(suffix)]
+        return found
+
+
+class ScriptSockets:
+    """All connections of a script.
+
+    Args:
+        hosts: addresses that it may connect to, besides those of this machine: whoever sent the script.
+    """
+
+    def __init__(self, hosts: frozenset[str] = frozenset()) -> None:
+        self.hosts = hosts
+        self._sockets: dict[str, ScriptSocket] = {}
+
+    def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]]:
+        """Begin a connection; one of the same name is ended.
+
+        Raises:
+            Misuse: there are too many, or the address is not allowed.
+        """
+        address = "127.0.0.1" if host == "localhost" else host
+        try:
+            found = ipaddress.ip_address(address)
+        except ValueError:
+            raise Misuse(f"address: {host[:50]!r} is no IP address; names are not looked up") from None
+        if not found.is_loopback and address not in self.hosts:
+            raise Misuse(f"address: {address} is not allowed: only this machine, and whoever sent the script")
+        self.close(name)
+        if len(self._sockets) >= MOST:
+            raise Misuse(f"more than {MOST} sockets")
+        connection = socket.socket(socket.AF_INET if found.version == 4 else socket.AF_INET6, socket.SOCK_STREAM)
+        connection.setblocking(False)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._sockets[name] = made = ScriptSocket(connection)
+        return made, (address, port)
+
+    def get(self, name: str) -> ScriptSocket | None:
+        """The connection of a name."""
+        return self._sockets.get(name)
+
+    def close(self, name: str) -> None:
+        """End one."""
+        found = self._sockets.pop(name, None)
+        if found is not None:
+            found.close()
+
+    def end(self) -> None:
+        """End all."""
+        for name in list(self._sockets):
+            self.close(name)

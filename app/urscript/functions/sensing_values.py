@@ -1,0 +1,253 @@
+"""Functions that tell what the arm measures, where it is and where it could be (URScript manual, module internals)."""
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.urscript.functions.pose_algebra import quaternion
+from app.urscript.functions.robot_side import RobotSide
+from app.urscript.language.trouble import Misuse
+from app.urscript.machine.limits import NODES_A_TICK
+from app.urscript.machine.operators import effort
+from app.urscript.machine.signature import (
+    Builtin,
+    Taken,
+    any_value,
+    builtin,
+    integer,
+    number,
+    numbers,
+    optional,
+    pose,
+    vector,
+    within,
+)
+from app.urscript.machine.values import PoseValue, Value
+from sim.arm.frames import matrix_from_quaternion
+from sim.motion.line import rotation_vector
+from sim.rigid_body.dynamics import Dynamics
+
+Array = NDArray[np.float64]
+
+SEARCH = NODES_A_TICK
+"""What a search for joint angles counts as, in steps of the evaluator."""
+
+STEADY = 0.01
+"""Joint speed below which the arm counts as steady [rad/s]."""
+HISTORY = 500
+"""Ticks that get_actual_joint_positions_history() remembers."""
+FLANGE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class Kinematics:
+    """Forward and inverse, of the arm that the controller believes in."""
+
+    def __init__(self, robot: RobotSide) -> None:
+        self._robot = robot
+
+    @property
+    def tcp(self) -> PoseValue:
+        """The tool centre point in use, in F."""
+        simulation = self._robot.simulation
+        return PoseValue((*simulation.tcp.tolist(), *rotation_vector(simulation.R_FT).tolist()))
+
+    def forward(self, q: tuple[float, ...], tcp: tuple[float, ...] | None) -> PoseValue:
+        """Pose of a tool centre point in B."""
+        p, R, _ = self._robot.simulation.dynamics.places(np.array(q))
+        at, R_FT = _placed(self.tcp if tcp is None else tcp)
+        return PoseValue((*(p + R @ at).tolist(), *rotation_vector(R @ R_FT).tolist()))
+
+    def inverse(self, x: PoseValue, near: tuple[float, ...], tcp: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        """Joint angles for a pose of the tool centre point, the nearest that steps from `near` lead to; None: none is found."""
+        simulation = self._robot.simulation
+        effort[0] += SEARCH
+        at, R_FT = _placed(self.tcp if tcp is None else tcp)
+        p, R = _placed(x)
+        R_F = R @ R_FT.T
+        target = (p - R_F @ at, R_F)
+        reach = np.array(simulation.arm.limits.position)
+        for start in (np.array(near), *_guesses(near)):
+            q = _newton(simulation.dynamics, target, start)
+            if q is not None and bool(np.all(np.abs(q) <= reach)):
+                return tuple(q.tolist())
+        return None
+
+
+def _placed(x: tuple[float, ...]) -> tuple[Array, Array]:
+    return np.array(x[:3]), matrix_from_quaternion(quaternion(tuple(x[3:])))
+
+
+def _guesses(near: tuple[float, ...]) -> Iterator[Array]:
+    """Other postures to start from: elbow up or down, wrist turned, shoulder on the other side."""
+    a, b, c, d, e, f = near
+    for elbow in (1.2, -1.2):
+        for wrist in (1.57, -1.57):
+            yield np.array((a, -1.2 if elbow > 0 else -1.9, elbow, -1.57, wrist, f))
+    yield np.array((a, b, c + 0.3, d, e + 0.3, f))
+
+
+def _newton(dynamics: Dynamics, target: tuple[Array, Array], q: Array) -> Array | None:
+    p_wanted, R_wanted = target
+    q = q.copy()
+    for _ in range(20):
+        p, R, jacobian = dynamics.update(q)
+        error = np.concatenate((p_wanted - p, rotation_vector(R_wanted @ R.T)))
+        size = math.sqrt(float(error @ error))
+        if size < 1e-10:
+            return q
+        damping = 1e-4 * min(size, 1.0) ** 2
+        step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping * np.eye(6), error)
+        longest = float(np.abs(step).max())
+        q += step * min(1.0, 0.5 / longest) if longest > 0.0 else step
+    return None
+
+
+def of_measurement(robot: RobotSide) -> Iterator[Builtin]:
+    """What the arm measures and is asked to do."""
+    record = robot.record
+    read = record.get
+
+    def field(name: str, posed: bool = False) -> Callable[[], Value]:
+        return (lambda: PoseValue(vector(_tuple(read(name))))) if posed else (lambda: _tuple(read(name)))
+
+    plain = {
+        "get_actual_joint_positions": "actual_q",
+        "get_joint_positions": "actual_q",
+        "get_target_joint_positions": "target_q",
+        "get_actual_joint_speeds": "actual_qd",
+        "get_joint_speeds": "actual_qd",
+        "get_target_joint_speeds": "target_qd",
+        "get_target_joint_accelerations": "target_qdd",
+        "get_actual_tcp_speed": "actual_TCP_speed",
+        "get_target_tcp_speed": "target_TCP_speed",
+        "get_tcp_force": "actual_TCP_force",
+        "get_target_payload": "payload",
+        "get_target_payload_mass": "payload",
+        "get_target_payload_cog": "payload_cog",
+        "get_target_payload_inertia": "payload_inertia",
+        "get_tool_accelerometer_reading": "actual_tool_accelerometer",
+        "get_target_speed_fraction": "target_speed_fraction",
+        "get_target_gravity": "target_gravity",
+    }
+    for name, source in plain.items():
+        yield builtin(name, field(source))
+    yield builtin("get_joint_torques", lambda: _tuple(robot.simulation.estimate.tau_ext))
+    for name, source in {
+        "get_actual_tcp_pose": "actual_TCP_pose",
+        "get_target_tcp_pose": "target_TCP_pose",
+        "get_tcp_offset": "tcp_offset",
+        "get_target_waypoint": "target_TCP_pose",
+    }.items():
+        yield builtin(name, field(source, posed=True))
+    yield builtin("force", field("tcp_force_scalar"))
+    joint = Taken("j", within(integer, 0, 5))
+    yield builtin("get_joint_temp", lambda j: read("joint_temperatures")[j], joint)  # pyright: ignore[reportIndexIssue]
+    yield builtin("get_controller_temp", lambda: 30.0)
+    yield builtin("is_steady", lambda: bool(np.abs(robot.simulation.estimate.qd).max() < STEADY))
+    yield builtin("get_gravity", lambda: tuple((-robot.simulation.estimate.g_B).tolist()))
+    yield builtin("powerdown", lambda: robot.command("power_off"))
+
+
+def of_history(robot: RobotSide, history: deque[tuple[float, ...]]) -> Iterator[Builtin]:
+    """What the joints' angles were; `history` has the newest first."""
+
+    def before(steps: int) -> Value:
+        if steps < len(history):
+            return history[steps]
+        return history[-1] if history else _tuple(robot.record.get("actual_q"))
+
+    steps = Taken("steps", within(integer, 0, HISTORY), 0)
+    yield builtin("get_actual_joint_positions_history", before, steps)
+
+
+def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
+    """Forward, inverse, limits, and the matrices of the model."""
+    arm = Kinematics(robot)
+    joints = Taken("q", optional(numbers(6)), None)
+    tcp = Taken("tcp", _tool_point, None)
+
+    def forward(q: tuple[float, ...] | None, point: tuple[float, ...] | None) -> PoseValue:
+        return arm.forward(_tuple(robot.record.get("actual_q")) if q is None else q, point)
+
+    def flange() -> PoseValue:
+        return arm.forward(_tuple(robot.record.get("actual_q")), FLANGE)
+
+    def found(*given: Value) -> Value:
+        x, near, _, _, point = given
+        return arm.inverse(x, _tuple(robot.record.get("target_q")) if near is None else near, point)
+
+    def inverse(*given: Value) -> Value:
+        q = found(*given)
+        if q is None:
+            raise Misuse("no joint angles reach this pose")
+        return q
+
+    given = (
+        Taken("x", pose),
+        Taken("qnear", optional(numbers(6)), None),
+        Taken("maxPositionError", number, 1e-10),
+        Taken("maxOrientationError", number, 1e-10),
+        tcp,
+    )
+    yield builtin("get_forward_kin", forward, joints, tcp)
+    yield builtin("get_actual_tool_flange_pose", flange)
+    yield builtin("get_inverse_kin", inverse, *given)
+    yield builtin("get_inverse_kin_has_solution", lambda *all_: found(*all_) is not None, *given)
+    yield builtin("is_within_safety_limits", lambda x: _within(robot, arm, x), Taken("pose", any_value))
+
+    def q_now(q: Value) -> Array:
+        return np.array(robot.record.get("actual_q") if q is None else q)
+
+    def matrix(values: Array) -> Value:
+        return tuple(map(tuple, values.tolist()))
+
+    def jacobian(q: Value, point: Value) -> Value:
+        _, R, J = robot.simulation.dynamics.update(q_now(q))
+        lever = R @ np.array((arm.tcp if point is None else point)[:3])
+        moved = J.copy()
+        moved[:3] += np.cross(J[3:].T, lever).T
+        return matrix(moved)
+
+    def mass(q: Value, _rotors: bool) -> Value:
+        found = np.array(robot.simulation.dynamics.mass(q_now(q)))
+        found = np.triu(found) + np.triu(found, 1).T
+        return matrix(found)
+
+    def coriolis(q: Value, qd: Value) -> Value:
+        angles = q_now(q)
+        speeds = np.array(robot.record.get("actual_qd") if qd is None else qd)
+        dynamics = robot.simulation.dynamics
+        return _tuple(dynamics.inverse(angles, speeds, np.zeros(6)) - dynamics.gravity(angles))
+
+    def jacobian_rate(q: Value, qd: Value, point: Value) -> Value:
+        angles = q_now(q)
+        speeds = np.array(robot.record.get("actual_qd") if qd is None else qd)
+        step = 1e-5
+        ahead = np.array(jacobian(tuple((angles + step * speeds).tolist()), point))
+        behind = np.array(jacobian(tuple((angles - step * speeds).tolist()), point))
+        return matrix((ahead - behind) / (2.0 * step))
+
+    speeds = Taken("qd", optional(numbers(6)), None)
+    yield builtin("get_jacobian", jacobian, joints, tcp)
+    yield builtin("get_jacobian_time_derivative", jacobian_rate, joints, speeds, tcp)
+    yield builtin("get_mass_matrix", mass, joints, Taken("include_rotors_inertia", any_value, False))
+    yield builtin("get_coriolis_and_centrifugal_torques", coriolis, joints, speeds)
+
+
+def _tool_point(value: Value) -> tuple[float, ...] | None:
+    """A pose in F; a name, or None, is the tool centre point in use."""
+    return None if value is None or type(value) is str else pose(value)
+
+
+def _tuple(value: Value) -> Value:
+    found = value.tolist() if isinstance(value, np.ndarray) else value
+    return tuple(found) if isinstance(found, list) else found
+
+
+def _within(robot: RobotSide, arm: Kinematics, x: Value) -> bool:
+    """Whether a posture, or a pose, is in reach; walls are for hands that guide, and are not asked."""
+    q = arm.inverse(pose(x), _tuple(robot.record.get("target_q")), None) if type(x) is PoseValue else numbers(6)(x)
+    return q is not None and all(abs(angle) <= most for angle, most in zip(q, robot.simulation.arm.limits.position, strict=True))

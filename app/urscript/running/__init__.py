@@ -1,0 +1,4 @@
+"""A script in the robot: where it comes from, what it asks of the arm, how it ends.
+
+Uses robot_interface/controller/, urscript/functions/, urscript/language/, urscript/machine/.
+"""

@@ -1,0 +1,136 @@
+"""The robot, as the functions of one script see it."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.urscript.functions.pose_algebra import quaternion
+from app.urscript.functions.robot_side import ArmSide
+from app.urscript.functions.script_sockets import ScriptSockets
+from app.urscript.language.trouble import Misuse
+from app.urscript.machine.limits import MOST_MESSAGES
+from app.urscript.running.told import Telling, Told, printable
+from pendant.equipment.load import Load
+from pendant.equipment.tools import Tool, tool_problem
+from pendant.inputs import Command
+from pendant.tick.modes import TICK_RATE
+from sim.arm.frames import matrix_from_quaternion
+from sim.simulation import Simulation
+
+TOOL_NAME = "script"
+"""Of the tool that set_tcp() changes to."""
+
+
+class ScriptRobot:
+    """See `app.urscript.functions.robot_side.RobotSide`.
+
+    Args:
+        cabinet: the robot.
+        arm: moves it.
+        sockets: of this script.
+        tell: takes what the script tells.
+        seed: of random().
+    """
+
+    def __init__(
+        self, cabinet: Cabinet, arm: ArmSide, sockets: ScriptSockets, tell: Callable[[Told], None], *, seed: int
+    ) -> None:
+        self._cabinet, self._tell = cabinet, tell
+        self.arm, self.sockets, self.record, self.seed = arm, sockets, cabinet.record, seed
+        self.watchdog: tuple[str, int, str] | None = None  # variable, ticks that it may be silent, action
+        self.asks: list[Ask] = []  # for the tick that begins
+        self.tool: Tool | None = None  # to be used from now on
+        self._said, self._second = 0, -1
+
+    @property
+    def simulation(self) -> Simulation:
+        """What runs now."""
+        return self._cabinet.simulation
+
+    @property
+    def clock(self) -> float:
+        """The controller's [s]."""
+        return self._cabinet.clock
+
+    def say(self, text: str) -> None:
+        """To the log, and to clients; too many in a second are left out."""
+        second = self._cabinet.ticks // TICK_RATE
+        if second != self._second:
+            self._said, self._second = 0, second
+        self._said += 1
+        if self._said <= MOST_MESSAGES:
+            self._tell(Told(Telling.TEXT, printable(text)))
+        elif self._said == MOST_MESSAGES + 1:
+            self._tell(Told(Telling.TEXT, f"(more than {MOST_MESSAGES} messages in a second: the others are left out)"))
+
+    def popup(self, text: str, title: str, level: str, blocking: bool) -> None:
+        """Show a message."""
+        self._cabinet.state.popup = printable(text)
+        self._tell(Told(Telling.POPUP, printable(text), title=printable(title), level=level))
+
+    @property
+    def popup_shown(self) -> bool:
+        """A popup is there that nobody has closed."""
+        return bool(self._cabinet.state.popup)
+
+    def command(self, word: str, **values: Any) -> None:
+        """Something of the robot besides its motion."""
+        if word == "payload":
+            self._payload(**values)
+        elif word == "tcp":
+            self._tcp(values["pose"])
+        elif word == "zero":
+            self.asks.append(Ask((Command.ZERO_SENSOR,)))
+        elif word == "protective_stop":
+            self.asks.append(Ask((Command.EMERGENCY_STOP,)))
+        elif word == "power_off":
+            self.asks.append(Ask((Command.POWER_OFF,)))
+        elif word == "gravity":
+            self._gravity(values["gravity"])
+        elif word == "watchdog":
+            self._watch(**values)
+        elif word == "external_sensor" and values["enable"]:
+            raise Misuse("an external force sensor is not simulated; the robot's own is used")
+
+    def _payload(self, mass: float, cog: Any, inertia: Any, transition: float) -> None:
+        """What UR calls payload is the tool and what it carries; the tool in use keeps its part."""
+        fitting = self.simulation.supervisor.fitting
+        tool = fitting.tool
+        load = mass - tool.mass
+        if load < -1e-6:
+            raise Misuse(f"m: the tool {tool.name} alone has {tool.mass:g} kg")
+        if load < 1e-6:
+            self.asks.append(Ask(load=Load(mass=0.0, com=[0.0, 0.0, 0.0])))
+            return
+        com = [(mass * c - tool.mass * t) / load for c, t in zip(cog, tool.com, strict=True)]
+        moments = list(inertia) if inertia is not None and any(inertia) else None
+        self.asks.append(Ask(load=Load(mass=load, com=com, inertia=moments)))
+
+    def _tcp(self, pose: Any) -> None:
+        """A tool like the one in use, with another tool centre point."""
+        tool = self.simulation.supervisor.fitting.tool
+        R = matrix_from_quaternion(quaternion(tuple(pose[3:])))
+        pitch = math.asin(max(-1.0, min(1.0, -float(R[2, 0]))))
+        rpy = [math.atan2(float(R[2, 1]), float(R[2, 2])), pitch, math.atan2(float(R[1, 0]), float(R[0, 0]))]
+        made = Tool(name=TOOL_NAME, mass=tool.mass, com=tool.com, tcp=list(pose[:3]), rpy=rpy, inertia=tool.inertia)
+        problem = tool_problem(made, self.simulation.arm.payload)
+        if problem is not None:
+            raise Misuse(f"pose: {problem.field} = {problem.value}, allowed: {problem.allowed}")
+        self.tool = made
+
+    def _gravity(self, gravity: Any) -> None:
+        now = -self.simulation.estimate.g_B
+        if math.dist(gravity, now.tolist()) > 0.5:
+            x, y, z = now.tolist()
+            raise Misuse(
+                f"the simulated arm is mounted with gravity [{x:.3f}, {y:.3f}, {z:.3f}]; set it where the cell is set up"
+            )
+
+    def _watch(self, name: str, frequency: float, action: str) -> None:
+        if action not in ("pause", "stop", "ignore"):
+            raise Misuse(f'action: {action!r}; expected "pause", "stop" or "ignore"')
+        if not isinstance(name, str) or not name.startswith("input_"):
+            raise Misuse(f"variable_name: {name!r} is no input of RTDE")
+        silent = 0 if frequency == 0.0 else math.ceil(TICK_RATE / frequency)
+        self.watchdog = None if action == "ignore" or not silent else (name, silent, action)

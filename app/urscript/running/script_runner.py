@@ -1,0 +1,276 @@
+"""Runs scripts in the robot's ticks: one program, and secondary programs beside it."""
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
+from app.urscript.functions.library_of_functions import builtins_of
+from app.urscript.functions.script_sockets import ScriptSockets
+from app.urscript.functions.sensing_values import HISTORY
+from app.urscript.language.reading import read_script
+from app.urscript.language.trouble import NOWHERE, ScriptTrouble
+from app.urscript.machine.machine import Machine
+from app.urscript.running.script_robot import ScriptRobot
+from app.urscript.running.step_arm import StepArm
+from app.urscript.running.told import Telling, Told, printable
+from pendant.decision import Decision
+from pendant.inputs import NOTHING, Inputs
+from pendant.settings.schema import ticks
+from pendant.tick.modes import Mode
+from sim.exchange.desk import Wishes
+
+MOST_WAITING = 8
+"""Secondary programs that wait or run."""
+
+KEPT = 200
+"""Messages that are remembered."""
+
+SECONDARY_TICKS = 5
+"""A secondary program that runs longer takes time, which it must not."""
+
+FREE_DRIVE = ticks(0.1)
+"""The script's wish for free-drive lasts so long without it."""
+
+
+class OfferedScript(NamedTuple):
+    """A script that can run."""
+
+    machine: Machine
+    robot: ScriptRobot
+    text: str
+
+
+class ScriptRunner:
+    """Beside the cabinet, in its ticks. `offer`, `stop`, `pause` and `resume` may be called from any thread.
+
+    Args:
+        cabinet: the robot.
+    """
+
+    def __init__(self, cabinet: Cabinet) -> None:
+        self._cabinet = cabinet
+        self._lock = threading.Lock()
+        self._next: OfferedScript | None = None
+        self._stop = False
+        self._waiting: list[OfferedScript] = []  # secondary programs
+        self._beside: list[tuple[OfferedScript, int]] = []  # and how many ticks each has run
+        self._running: OfferedScript | None = None
+        self._listeners: tuple[Callable[[Told], None], ...] = ()
+        self._history: deque[tuple[float, ...]] = deque(maxlen=HISTORY + 1)
+        self._seen: dict[str, tuple[object, int]] = {}  # of the watched input: its count of writes, and when it changed
+        self.told: deque[Told] = deque(maxlen=KEPT)
+        self.count = 0  # of messages so far
+        self.paused = False
+        self.text = ""  # of the script that ran last
+        self.trouble: ScriptTrouble | None = None  # of the one that ran last
+        self.arm = StepArm(cabinet.simulation.arm)
+        cabinet.script = self
+
+    # from any thread
+
+    def listen(self, listener: Callable[[Told], None]) -> None:
+        """Tell somebody what scripts tell, on the thread where it happens."""
+        with self._lock:
+            self._listeners = (*self._listeners, listener)
+
+    def forget(self, listener: Callable[[Told], None]) -> None:
+        """Tell somebody no more."""
+        with self._lock:
+            self._listeners = tuple(each for each in self._listeners if each != listener)
+
+    def offer(self, text: str, hosts: frozenset[str] = frozenset()) -> str:
+        """Run a script from the next tick on, in place of the one that runs; a secondary one beside it.
+
+        Args:
+            text: of the script.
+            hosts: addresses that its sockets may connect to, besides this machine.
+
+        Returns:
+            Its name.
+
+        Raises:
+            ScriptTrouble: it cannot be read, or the robot cannot run it now.
+        """
+        try:
+            script = self._made(text, hosts)
+        except ScriptTrouble as trouble:
+            self.tell(Told(Telling.TROUBLE, trouble.text, place=trouble.place))
+            raise
+        outline = script.machine.script
+        with self._lock:
+            if not outline.secondary:
+                self._next = script
+            elif len(self._waiting) + len(self._beside) < MOST_WAITING:
+                self._waiting.append(script)
+            else:
+                raise ScriptTrouble(NOWHERE, f"more than {MOST_WAITING} secondary programs at once")
+        return outline.name
+
+    def stop(self) -> None:
+        """End the script that runs, and the one that waits."""
+        with self._lock:
+            self._next, self._stop = None, True
+
+    def pause(self) -> None:
+        """Let it wait; the arm comes to rest."""
+        if self._running is not None and not self.paused:
+            self.paused = True
+            self.arm.end()
+
+    def resume(self) -> None:
+        """Let it go on."""
+        self.paused = False
+
+    def tell(self, told: Told) -> None:
+        """Tell everybody."""
+        self.told.append(told)
+        self.count += 1
+        for listener in self._listeners:
+            listener(told)
+
+    @property
+    def state(self) -> RuntimeState | None:
+        """Of the script; None: there is none, and the robot's own programs count."""
+        if self._running is None:
+            return None
+        return RuntimeState.PAUSED if self.paused else RuntimeState.PLAYING
+
+    @property
+    def name(self) -> str:
+        """Of the script that runs."""
+        return "" if self._running is None else self._running.machine.script.name
+
+    @property
+    def line(self) -> int:
+        """Of the script that runs; 0: none does."""
+        return 0 if self._running is None else self._running.machine.line
+
+    def variables(self) -> dict[str, str]:
+        """Of the script that runs."""
+        return {} if self._running is None else self._running.machine.variables()
+
+    def _made(self, text: str, hosts: frozenset[str]) -> OfferedScript:
+        state = self._cabinet.state
+        if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
+            raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
+        body = read_script(text)
+        robot = ScriptRobot(self._cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self._cabinet.simulation.scenario.seed)
+        secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
+        machine = Machine(body, builtins_of(robot, self._history, secondary))
+        return OfferedScript(machine, robot, text)
+
+    # on the loop's thread
+
+    def wishes(self, tick: int) -> Wishes | None:
+        """What the script wants of the tick that begins; None: nothing."""
+        self._change()
+        inputs = NOTHING
+        running = self._running
+        if running is not None and not self.paused:
+            over = running.machine.tick()
+            inputs = self._taken(running.robot)
+            if over:
+                self._end(running.machine.trouble)
+            elif running.robot.watchdog is not None:
+                self._watch(running.robot)
+        for k, (script, age) in enumerate(self._beside):
+            over = script.machine.tick()
+            inputs = _joined(inputs, self._taken(script.robot))
+            if not over and age >= SECONDARY_TICKS:
+                script.machine.trouble = ScriptTrouble(NOWHERE, "a secondary program must not take time")
+                over = True
+            if over:
+                self._close(script, script.machine.trouble)
+            self._beside[k] = (script, -1 if over else age + 1)
+        if self._beside:
+            self._beside = [each for each in self._beside if each[1] >= 0]
+        inputs = _joined(inputs, self.arm.inputs())
+        if self.arm.freeing:
+            self._cabinet.free_drive_until = self._cabinet.ticks + FREE_DRIVE
+        return None if inputs is NOTHING else Wishes(inputs, (), ())
+
+    def see(self, decision: Decision) -> None:
+        """Take in what the robot decided."""
+        self.arm.see(decision, self._cabinet.simulation)
+        if self._running is None:
+            return
+        self._history.appendleft(tuple(self._cabinet.simulation.estimate.q.tolist()))
+        if decision.mode is Mode.STOP:
+            self._end(None)
+
+    def begin(self) -> None:
+        """The simulation starts over: no script runs."""
+        self._end(None)
+        self.arm = StepArm(self._cabinet.simulation.arm)
+
+    def _change(self) -> None:
+        """Do what others asked for since the last tick."""
+        if self._next is None and not self._stop and not self._waiting:
+            return
+        with self._lock:
+            next_, self._next = self._next, None
+            stop, self._stop = self._stop, False
+            waiting, self._waiting = self._waiting, []
+        if next_ is not None or stop:
+            self._end(None)
+        if next_ is not None:
+            self._running, self.text, self.trouble, self.paused = next_, next_.text, None, False
+            self._history.clear()
+            self._seen.clear()
+            self.tell(Told(Telling.STARTED, "", next_.machine.script.name))
+        self._beside += [(script, 0) for script in waiting]
+
+    def _taken(self, robot: ScriptRobot) -> Inputs:
+        """What its functions asked of the robot besides motion."""
+        if not robot.asks and robot.tool is None:
+            return NOTHING
+        inputs = NOTHING
+        asks, robot.asks = robot.asks, []
+        for ask in asks:
+            inputs = _joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
+        if robot.tool is not None:
+            made, robot.tool = robot.tool, None
+            table = tuple(each for each in self._cabinet.simulation.tools if each.name != made.name)
+            inputs = _joined(inputs, Inputs(tools=(*table, made), tool=made.name))
+        return inputs
+
+    def _watch(self, robot: ScriptRobot) -> None:
+        """End or pause a script whose client is silent for longer than it said."""
+        assert robot.watchdog is not None
+        name, silent, action = robot.watchdog
+        count = self._cabinet.writes.get(name, 0)
+        seen = self._seen.get(name)
+        now = self._cabinet.ticks
+        if seen is None or seen[0] != count:
+            self._seen[name] = (count, now)
+        elif now - seen[1] > silent:
+            self.tell(Told(Telling.TEXT, f"RTDE watchdog: {name} was not written in time; {action}"))
+            if action == "stop":
+                self._end(None)
+            else:
+                self.pause()
+
+    def _end(self, trouble: ScriptTrouble | None) -> None:
+        running = self._running
+        if running is None:
+            return
+        self._running, self.trouble = None, trouble
+        running.machine.stop()
+        self.arm.end()
+        self._close(running, trouble)
+        self.tell(Told(Telling.ENDED, "", running.machine.script.name))
+
+    def _close(self, script: OfferedScript, trouble: ScriptTrouble | None) -> None:
+        script.machine.stop()
+        script.robot.sockets.end()
+        if trouble is not None:
+            self.tell(Told(Telling.TROUBLE, printable(trouble.text), script.machine.script.name, trouble.place))
+
+
+def _joined(a: Inputs, b: Inputs) -> Inputs:
+    if a is NOTHING or b is NOTHING:
+        return b if a is NOTHING else a
+    return Wishes(a, (), ()).joined(Wishes(b, (), ())).inputs
