@@ -7,11 +7,13 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.haptics import Shake
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
 from sim.motion.force_move import ForceTrajectory
+from sim.motion.jog import JogTrajectory
 from sim.motion.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
 from sim.rigid_body.dynamics import Dynamics
@@ -104,6 +106,9 @@ class References:
             if begins:
                 self._pace.begin(motion, decision.speed_limits, decision.speed)
             self.now = motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
+        elif isinstance(motion, JogTrajectory):
+            self.now = motion.step(decision.speed, decision.speed_limits)
+            self.refusal = motion.problem
         else:
             self.now = motion.step()
         if isinstance(self._motion, ForceTrajectory):
@@ -141,6 +146,8 @@ class References:
                 self._motion = JointTrajectory(q, move, self._limits, self._strength)
             elif isinstance(move, LinearMove):
                 self._motion = LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
+            elif isinstance(move, JogMove):
+                self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
                 self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
             else:
