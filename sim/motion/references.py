@@ -101,16 +101,7 @@ class References:
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
             self.refusal = self._motion.problem
-        motion = self._motion
-        if isinstance(motion, JointTrajectory | LinearTrajectory):
-            if begins:
-                self._pace.begin(motion, decision.speed_limits, decision.speed)
-            self.now = motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
-        elif isinstance(motion, JogTrajectory):
-            self.now = motion.step(decision.speed, decision.speed_limits)
-            self.refusal = motion.problem
-        else:
-            self.now = motion.step()
+        self.now = self._advance(self._motion, decision, begins)
         if isinstance(self._motion, ForceTrajectory):
             self.push = self._motion.push
         elif self.fresh:
@@ -123,6 +114,18 @@ class References:
             self.move_done = self._move.id
         self._law = law
         return answer
+
+    def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
+        """The next reference of a motion, at the speed that is allowed."""
+        if isinstance(motion, JointTrajectory | LinearTrajectory):
+            if begins:
+                self._pace.begin(motion, decision.speed_limits, decision.speed)
+            return motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
+        if isinstance(motion, JogTrajectory):
+            reference = motion.step(decision.speed, decision.speed_limits)
+            self.refusal = motion.problem
+            return reference
+        return motion.step()
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
