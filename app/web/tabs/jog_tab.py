@@ -28,7 +28,7 @@ STEPS = {"While held": 0.0, "1 mm, 1°": 1.0, "10 mm, 10°": 10.0, "50 mm, 50°"
 """How far one press goes [mm or degrees]; 0: as long as it is held."""
 
 
-class Press(NamedTuple):
+class JogPress(NamedTuple):
     """A button that is held: by whom, which, and when it last said so."""
 
     client: int
@@ -41,7 +41,7 @@ class JogTab:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._names = loop, [name.replace("_", " ").capitalize() for name in arm.chain.joints]
-        self._press: Press | None = None
+        self._press: JogPress | None = None
         self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
         self.frame = gui.add_dropdown("Move by", tuple(FRAMES), initial_value="Joints")
         self.chosen: Literal["joint", "base", "tool"] = "joint"
@@ -104,7 +104,7 @@ class JogTab:
                 self.let_go(before.client)  # a press that fell silent needs a real pointer-up first
                 if before.client == client:
                     return
-            self._press = Press(client, which, tick)
+            self._press = JogPress(client, which, tick)
             axis, sign = which
             length = STEPS[self.steps.value]
             turns = self.chosen == "joint" or axis >= TURNS
