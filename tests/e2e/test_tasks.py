@@ -28,7 +28,7 @@ def choose(page: Page, label: str, option: str) -> None:
     page.get_by_role("option", name=option, exact=True).click()
 
 
-@pytest.mark.parametrize(("width", "height"), [(1440, 900)])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (820, 1180)])
 def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: int, height: int) -> None:
     page = visit(width, height)
     tab = cell.served.docks.jog
@@ -39,7 +39,7 @@ def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: i
     cell.wait(lambda: tab.steps.value == "50 mm, 50°", "the step is chosen")
     cell.pass_time(0.5)
     button = page.get_by_role("button", name="Z −", exact=True)
-    button.wait_for()
+    button.scroll_into_view_if_needed()
     box = button.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)

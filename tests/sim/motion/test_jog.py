@@ -32,6 +32,7 @@ def tool(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def test_fifty_millimetres_along_an_axis_are_fifty_millimetres(frame: str, sign: int) -> None:
     start, R = tool(HOME)
     motion = jog(frame, 2, sign, 0.05)
+    now = motion.step()
     fastest = 0.0
     for _ in range(1000):
         now = motion.step()
@@ -50,6 +51,7 @@ def test_fifty_millimetres_along_an_axis_are_fifty_millimetres(frame: str, sign:
 def test_about_an_axis_of_the_base_the_tool_turns_on_the_spot() -> None:
     start, R = tool(HOME)
     motion = jog("base", 5, 1, 0.2)
+    now = motion.step()
     for _ in range(1000):
         now = motion.step()
     end, S = tool(now.q)
@@ -60,6 +62,7 @@ def test_about_an_axis_of_the_base_the_tool_turns_on_the_spot() -> None:
 
 def test_the_speed_share_slows_it_down_and_zero_halts_it() -> None:
     motion = jog("joint", 5, 1)
+    now = motion.step()
     for _ in range(500):
         now = motion.step(0.5)
     assert now.qd[5] == pytest.approx(0.5 * JOINT_SHARE * LIMITS[0][5])
@@ -70,7 +73,7 @@ def test_the_speed_share_slows_it_down_and_zero_halts_it() -> None:
 
 def test_in_reduced_tool_elbow_and_joints_stay_below_its_limits() -> None:
     motion = jog("joint", 1, 1)
-    limits = SpeedLimits(0.1, 0.1, 0.2)
+    limits, speed = SpeedLimits(0.1, 0.1, 0.2), 0.0
     for _ in range(300):
         now = motion.step(1.0, limits)
         speed = float(np.linalg.norm(tool(now.q)[0] - tool(now.q - TICK * now.qd)[0])) / TICK
@@ -82,6 +85,7 @@ def test_before_the_end_of_its_range_a_joint_comes_to_rest() -> None:
     q = HOME.copy()
     q[5] = LIMITS[2][5] - 0.3
     motion = jog("joint", 5, 1, q=q)
+    now = motion.step()
     for _ in range(2000):
         now = motion.step()
         assert now.q[5] <= LIMITS[2][5]
