@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
 from pendant.tick.words import Word
 
@@ -64,6 +65,8 @@ class Inputs:
     load: Load | None = None  # the payload to configure, beyond the tool
     tools: tuple[Tool, ...] = ()  # the table of tools from now on; empty: as it was
     remote_signal: bool = False  # the remote controller asks for free-drive; a level
+    jog: JogMove | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
+    jog_released: bool = False  # that button was let go
 
 
 NOTHING = Inputs()

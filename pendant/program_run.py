@@ -1,4 +1,4 @@
-"""A program in the running robot: loading it, its commands, and its tick in mode RUN."""
+"""What moves the arm by itself: a program, with its commands and its tick in mode RUN, and jogging."""
 
 from pendant.all_settings import Settings
 from pendant.contact.contact_monitor import ContactMonitor
@@ -6,6 +6,7 @@ from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import JOINTS_SENSED, WrenchMean, joints_ok, motion_ok
 from pendant.program.steps import Program, ProgramState, misfit
+from pendant.robot.jogging import Jogging
 from pendant.robot.robot_mode import Robot
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
@@ -23,9 +24,9 @@ PROGRAM_COMMANDS = STARTS_FROM.keys() | {Command.PAUSE_PROGRAM, Command.RESUME_P
 
 
 class ProgramRun:
-    """Steers the robot's sequencer."""
+    """Steers the robot's sequencer, and jogs."""
 
-    __slots__ = ("_mean", "_n", "_origin", "_robot")
+    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot")
 
     def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int) -> None:
         """
@@ -35,6 +36,7 @@ class ProgramRun:
             n_joints: of the arm.
         """
         self._robot, self._mean, self._n = robot, mean, n_joints
+        self._jogging = Jogging(robot, n_joints)
         self._origin = Mode.TEACH  # where the program was started from
 
     def step(
@@ -69,6 +71,7 @@ class ProgramRun:
                     robot.refuse(command, estimate, why_not, events)
                 else:
                     self._steer(command, estimate.tick, events)
+        self._jogging.step(estimate, inputs, settings, events, changing=changing)
         if robot.mode is _FREE_DRIVE or (not sequencer.braked and (move is None or sequencer.move is not move)):
             return
         tool_on = sequencer.tool_on

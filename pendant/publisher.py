@@ -64,7 +64,7 @@ class Publisher:
             safety=robot.safety,
             phase=phase,
             law=law,
-            move=sequencer.move,
+            move=robot.move,
             gain=use.free_drive.gain if amplified else 0.0,
             force_cap=use.free_drive.force_cap,
             baseline=free.baseline,

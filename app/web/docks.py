@@ -12,6 +12,7 @@ from app.web.running import Running
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
 from app.web.tabs.contact_log import Contacts
+from app.web.tabs.jog_tab import JogTab
 from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
 from app.web.tabs.recording import RecordingSwitch
@@ -49,6 +50,8 @@ class Docks:
         self._upper = gui.add_panel()
         with self._upper.add_tab("Teach"):
             self.teach = Teach(server, loop, arm)
+        with self._upper.add_tab("Jog"):
+            self.jog = JogTab(gui, loop, arm)
         with self._upper.add_tab("Axes"):
             self.axes = AxesTab(gui, loop)
         with self._upper.add_tab("Lab"):
@@ -110,6 +113,7 @@ class Docks:
             self.journal.show(fresh),
             self.lab.show(snapshot),
             self.teach.show(snapshot),
+            self.jog.show(snapshot),
             self.axes.show(snapshot),
             self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),

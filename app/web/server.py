@@ -99,12 +99,14 @@ class Served(Site):
     async def _farewell(self, client: viser.ClientHandle) -> None:
         self.control.farewell(client.client_id)
         self.panel.holds.forget(client.client_id)
+        self.docks.jog.forget(client.client_id)
         self.preferences.farewell(client.client_id)
         self.keys.forget(client.client_id)
 
     def _let_go(self, client: int) -> None:
         self.hand.let_go(client)
         self.panel.let_go(client)
+        self.docks.jog.let_go(client)
         self.guard.operator.engage(client, False, self.guard.now())
 
     def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:

@@ -7,8 +7,9 @@ from pendant.events.event_row import Effect
 from pendant.freedrive.state_machine import ASKED_FOR, FreeDrive
 from pendant.inputs import Command
 from pendant.limits.validity import Stillness
+from pendant.program.jog_move import JogMove
 from pendant.program.sequencer import Sequencer
-from pendant.program.steps import ProgramState
+from pendant.program.steps import Move, ProgramState
 from pendant.robot.stopping import Stopping
 from pendant.signals.enabling_device import Grip, enables
 from pendant.tick.estimate import Estimate
@@ -38,6 +39,7 @@ class Robot:
         braking: since free-drive or a motion was ended, until static.
         static: the arm stands, in this tick.
         grip: of the enabling device in this tick, None where none is needed.
+        jog: the motion that is jogged, None for none.
     """
 
     __slots__ = (
@@ -46,6 +48,7 @@ class Robot:
         "braking",
         "free",
         "grip",
+        "jog",
         "mode",
         "safety",
         "sequencer",
@@ -64,6 +67,7 @@ class Robot:
         self.braking = False
         self.static = False
         self.grip: Grip | None = None
+        self.jog: JogMove | None = None
         self._remembered = Mode.TEACH  # where free-drive was entered from
         self._freed = False  # the law was FREE in the last tick
 
@@ -71,6 +75,11 @@ class Robot:
     def enabled(self) -> bool:
         """No enabling device forbids motion."""
         return enables(self.grip)
+
+    @property
+    def move(self) -> Move | None:
+        """That the arm follows: of the program, or jogged."""
+        return self.sequencer.move or self.jog
 
     @property
     def program_name(self) -> str:
@@ -149,7 +158,7 @@ class Robot:
             self._freed, self.braking = False, True
         if mode is Mode.STOP:
             return Law.OFF if self.stopping.off else Law.BRAKE
-        if self.sequencer.move is not None:
+        if self.move is not None:
             self.braking = False
             return Law.FOLLOW
         if self.static:

@@ -7,6 +7,7 @@ import msgspec
 
 from pendant.equipment.tools import Tool
 from pendant.inputs import Button, Command, Inputs
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
 from sim.arm.scenario import Load
 from sim.plant.changes import AnyChange
@@ -34,6 +35,8 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             theirs.load or ours.load,
             theirs.tools or ours.tools,
             ours.remote_signal or theirs.remote_signal,
+            theirs.jog or ours.jog,
+            ours.jog_released or theirs.jog_released,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 
@@ -54,6 +57,8 @@ class Desk:
     _tool: str = ""
     _load: Load | None = None
     _tools: tuple[Tool, ...] = ()
+    _jog: JogMove | None = None
+    _jog_released: bool = False
 
     def hold(self, button: Button) -> None:
         """Say that `button` is held now: a keep-alive (FD-23), good until the next tick."""
@@ -66,6 +71,16 @@ class Desk:
         with self._lock:
             self._held.discard(button)
             self._released.add(button)
+
+    def jog(self, move: JogMove) -> None:
+        """Say that the button of this motion is held now: a keep-alive, good until the next tick."""
+        with self._lock:
+            self._jog, self._jog_released = move, False
+
+    def stop_jogging(self) -> None:
+        """Say that the button was let go."""
+        with self._lock:
+            self._jog, self._jog_released = None, True
 
     def command(self, command: Command) -> None:
         """Queue a one-shot command."""
@@ -135,6 +150,8 @@ class Desk:
                 tool=self._tool,
                 load=self._load,
                 tools=self._tools,
+                jog=self._jog,
+                jog_released=self._jog_released,
             )
             wishes = Wishes(inputs, tuple(self._touches.values()), tuple(self._changes))
             self._held = set()
@@ -144,6 +161,7 @@ class Desk:
             self._program = None
             self._changes = []
             self._tool, self._load, self._tools = "", None, ()
+            self._jog, self._jog_released = None, False
             return wishes
 
     def clear(self) -> None:
@@ -153,4 +171,5 @@ class Desk:
             self._commands, self._settings, self._changes = [], {}, []
             self._program = self._load = None
             self._tool, self._tools, self._high = "", (), frozenset()
+            self._jog, self._jog_released = None, False
             self._touches.clear()

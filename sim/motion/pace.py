@@ -68,16 +68,18 @@ class Pace:
         worst = 0.0
         while not probe.done:
             q, qd, _ = probe.step(stride)
-            qd = qd / stride
-            tcp, elbow = self._places(q)
-            next_tcp, next_elbow = self._places(q + ASIDE * qd)
-            speeds = (
-                float(np.linalg.norm(next_tcp - tcp)) / ASIDE / limits.tcp,
-                float(np.linalg.norm(next_elbow - elbow)) / ASIDE / limits.elbow,
-                float(np.abs(qd).max()) / limits.joint,
-            )
-            worst = max(worst, *speeds)
+            worst = max(worst, self.over(q, qd / stride, limits))
         return worst
+
+    def over(self, q: Array, qd: Array, limits: SpeedLimits) -> float:
+        """The largest speed of tool, elbow and joints at angles and speeds (n,), over its limit."""
+        tcp, elbow = self._places(q)
+        next_tcp, next_elbow = self._places(q + ASIDE * qd)
+        return max(
+            float(np.linalg.norm(next_tcp - tcp)) / ASIDE / limits.tcp,
+            float(np.linalg.norm(next_elbow - elbow)) / ASIDE / limits.elbow,
+            float(np.abs(qd).max()) / limits.joint,
+        )
 
     def _places(self, q: Array) -> tuple[Array, Array]:
         """Tool centre point and elbow (3,) in B [m]."""

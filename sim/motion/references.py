@@ -7,11 +7,13 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.haptics import Shake
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
 from sim.motion.force_move import ForceTrajectory
+from sim.motion.jog import JogTrajectory
 from sim.motion.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
 from sim.rigid_body.dynamics import Dynamics
@@ -99,13 +101,7 @@ class References:
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
             self.refusal = self._motion.problem
-        motion = self._motion
-        if isinstance(motion, JointTrajectory | LinearTrajectory):
-            if begins:
-                self._pace.begin(motion, decision.speed_limits, decision.speed)
-            self.now = motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
-        else:
-            self.now = motion.step()
+        self.now = self._advance(self._motion, decision, begins)
         if isinstance(self._motion, ForceTrajectory):
             self.push = self._motion.push
         elif self.fresh:
@@ -118,6 +114,18 @@ class References:
             self.move_done = self._move.id
         self._law = law
         return answer
+
+    def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
+        """The next reference of a motion, at the speed that is allowed."""
+        if isinstance(motion, JointTrajectory | LinearTrajectory):
+            if begins:
+                self._pace.begin(motion, decision.speed_limits, decision.speed)
+            return motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
+        if isinstance(motion, JogTrajectory):
+            reference = motion.step(decision.speed, decision.speed_limits)
+            self.refusal = motion.problem
+            return reference
+        return motion.step()
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
@@ -141,6 +149,8 @@ class References:
                 self._motion = JointTrajectory(q, move, self._limits, self._strength)
             elif isinstance(move, LinearMove):
                 self._motion = LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
+            elif isinstance(move, JogMove):
+                self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
                 self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
             else:

@@ -11,6 +11,7 @@ from pendant.all_settings import Settings
 from pendant.event_table import TABLE, render
 from pendant.events.event import Kind
 from pendant.inputs import Button, Command, Inputs
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
@@ -18,6 +19,7 @@ from pendant.tick.modes import Law, Mode, Phase, Safety
 from tests.pendant.estimates import estimate
 
 PROGRAM = Program(name="two moves", steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
+JOG = JogMove(frame="joint", axis=0, sign=1)
 WRONG = Program(name="five joints", steps=(JointMove(q=(0.0,) * 5),))
 
 Seen = tuple[Mode, Safety, Phase, Law, ProgramState, int, tuple[Kind, ...]]
@@ -38,6 +40,8 @@ class Step:
     done: bool = False  # the FOLLOW law has finished the present move
     cannot: bool = False  # the FOLLOW law cannot do the move
     load: Program | None = None
+    jog: bool = False  # a jog button is held
+    jog_released: bool = False
     settings: dict[str, float | bool | str] = field(default_factory=dict)
 
 
@@ -117,6 +121,8 @@ def _given(step: Step) -> tuple[Estimate, Inputs]:
         step.commands,
         step.settings,
         step.load,
+        jog=JOG if step.jog else None,
+        jog_released=step.jog_released,
     )
 
 
@@ -144,6 +150,11 @@ class World:
     loaded: bool = False
     program: ProgramState = ProgramState.NONE
     at: int = 0
+    jog_refreshed: float = -inf
+    jog_let_go: float = -inf
+    jog_pressed: bool = False  # in the last tick
+    jogging: bool = False
+    jog_spent: bool = False  # the press does not count any more
     forces: list[float] = field(default_factory=list)  # of the last tenth of a second, the sensor being valid
     safeguard: bool = False  # open
     reduced: bool = False
@@ -191,6 +202,9 @@ def _law(w: World, t: int, s: Settings) -> Law:
     if moving_law:
         return moving_law
     if w.program is ProgramState.RUNNING:
+        w.brake = False
+        return Law.FOLLOW
+    if w.jogging:
         w.brake = False
         return Law.FOLLOW
     w.brake = w.brake and not _static(w, t, s)
@@ -248,7 +262,7 @@ def _tick(w: World, t: int, i: Step, s: Settings, kinds: list[Kind]) -> None:
 
     _safety(w, t, i, static, present, kinds)
     _modes(w, t, i, present, kinds)
-    _programs(w, t, i, static, present, kinds)
+    _programs(w, t, i, s, static, present, kinds)
     _free(w, t, i, s, present, pressed, let_go, static, kinds)
     if Command.DETECTION in i.commands:
         kinds.append(Kind.SETTING_CHANGED)
@@ -338,7 +352,28 @@ def _load(w: World, i: Step, kinds: list[Kind]) -> None:
             w.loaded, w.program = True, ProgramState.STOPPED
 
 
-def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[Kind]) -> None:
+def _jog(w: World, t: int, i: Step, s: Settings, static: bool, kinds: list[Kind]) -> None:
+    """In TEACH and NORMAL, free-drive off, the arm moves while a jog button is held; what ends that needs a new press."""
+    if i.jog:
+        w.jog_refreshed = t
+    if i.jog_released:
+        w.jog_let_go = t
+    held = w.jog_let_go < w.jog_refreshed and t - w.jog_refreshed <= _n(s.hold.silence)
+    may = w.mode in (Mode.NORMAL, Mode.TEACH) and w.phase is Phase.OFF and i.joints
+    if w.jogging and (not held or i.done or i.cannot or not may):
+        kinds.append(Kind.JOG_ENDED)
+        w.jogging, w.jog_spent, w.brake = False, True, True
+    elif held and not w.jogging and not (w.jog_pressed and w.jog_spent):
+        w.jog_spent = not may
+        if not may:
+            kinds.append(Kind.JOG_REFUSED)
+        elif static:
+            kinds.append(Kind.JOG_STARTED)
+            w.jogging = True
+    w.jog_pressed = held
+
+
+def _programs(w: World, t: int, i: Step, s: Settings, static: bool, present: bool, kinds: list[Kind]) -> None:
     _load(w, i, kinds)
     running_before = w.program is ProgramState.RUNNING
     fresh = False
@@ -368,6 +403,7 @@ def _programs(w: World, t: int, i: Step, static: bool, present: bool, kinds: lis
         else:
             kinds.append(Kind.PROGRAM_STOPPED)
             w.mode, w.program, w.brake = w.origin, ProgramState.STOPPED, True
+    _jog(w, t, i, s, static, kinds)
     if not running_before or fresh or w.program is not ProgramState.RUNNING:
         return
     if not i.joints:

@@ -40,10 +40,11 @@ class Parts:
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
         )  # fmt: skip
-        self.sequencer = SimpleNamespace(move=MOVE, state=ProgramState.PAUSED, index=2, tool_on=True)
+        self.sequencer = SimpleNamespace(state=ProgramState.PAUSED, index=2, tool_on=True)
         self.robot = SimpleNamespace(
             free=self.free,
             sequencer=self.sequencer,
+            move=MOVE,
             mode=Mode.FREE_DRIVE,
             safety=Safety.REDUCED,
             grip="in the middle",

@@ -56,6 +56,7 @@ REST = ticks_of(15)
 ON = REST + ticks_of(11, held=True)
 IN_PERIOD = ON + ticks_of(1, released=True) + ticks_of(5)
 IN_GUIDED = IN_PERIOD + ticks_of(3, qd=0.2)
+IN_JOG = REST + ticks_of(3, jog=True)
 IN_RUN = [*REST, Step(load=PROGRAM), Step(commands=(Command.START_PROGRAM,)), Step()]
 
 SITUATIONS = {
@@ -66,6 +67,9 @@ SITUATIONS = {
     "RUN moving": (IN_RUN + ticks_of(3, qd=0.5), Mode.RUN, Phase.OFF),
     "RUN paused": ([*IN_RUN, Step(commands=(Command.PAUSE_PROGRAM,))], Mode.RUN, Phase.OFF),
     "TEACH braking": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.STOP_PROGRAM,), qd=0.3)], Mode.TEACH, Phase.OFF),
+    "jogging": (IN_JOG, Mode.TEACH, Phase.OFF),
+    "jog refused": ([*ON, *ticks_of(2, jog=True, held=True)], Mode.FREE_DRIVE, Phase.HELD),
+    "jog spent": ([*IN_JOG, Step(jog=True, cannot=True)], Mode.TEACH, Phase.OFF),
     "emergency stop": ([*REST, Step(commands=(Command.EMERGENCY_STOP,))], Mode.STOP, Phase.OFF),
     "emergency stop, moving": ([*ON, Step(commands=(Command.EMERGENCY_STOP,), qd=0.4)], Mode.STOP, Phase.OFF),
     "safeguard stop": ([*REST, Step(commands=(Command.SAFEGUARD_OPEN,))], Mode.STOP, Phase.OFF),
@@ -114,6 +118,12 @@ INPUTS = {
     "move done": Step(done=True),
     "move not possible": Step(cannot=True),
     "move done and not possible": Step(done=True, cannot=True, qd=0.1),
+    "jog": Step(jog=True),
+    "jog and let go": Step(jog=True, jog_released=True),
+    "jog let go": Step(jog_released=True),
+    "jog, moving": Step(jog=True, qd=0.2),
+    "jog, held": Step(jog=True, held=True),
+    "jog without sensors": Step(jog=True, joints=False),
     "load": Step(load=PROGRAM),
     "load wrong": Step(load=WRONG),
     "start without sensors": Step(commands=(Command.START_PROGRAM,), joints=False),
@@ -137,6 +147,7 @@ FOR_OPTIONS = {
 AFTER = {
     "rest": ticks_of(270),
     "hold on": ticks_of(80, held=True) + ticks_of(55),
+    "jog on": ticks_of(20, jog=True) + ticks_of(55),
     "press again later": ticks_of(70) + ticks_of(15, held=True) + ticks_of(2),
 }
 
@@ -206,6 +217,8 @@ STEPS = st.builds(
     done=st.booleans(),
     cannot=st.sampled_from([False] * 9 + [True]),
     load=st.sampled_from([None, None, PROGRAM, WRONG]),
+    jog=st.sampled_from([False, False, True]),
+    jog_released=st.sampled_from([False, False, False, True]),
 )
 USUAL = st.sampled_from(
     [
@@ -214,6 +227,7 @@ USUAL = st.sampled_from(
         ticks_of(60, held=True),
         ticks_of(140, held=True),
         [Step(released=True)],
+        ticks_of(20, jog=True),
         ticks_of(60),
         ticks_of(152),
         ticks_of(20, qd=0.2),

@@ -59,6 +59,9 @@ class Panel:
         self.back = WayBack(server, arm)
         self.marks = ArmMarks(server, arm)
         self.numbers = Html(gui)
+        self.speed = gui.add_slider(
+            "Speed [%]", min=0, max=100, step=5, initial_value=100, hint="Of programs and of jogging, at once"
+        )
         self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self.activation = ActivationSwitches(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
@@ -138,6 +141,9 @@ class Panel:
         settings = self._loop.settings
         if settings is not self._settings:
             self._settings, self._digest = settings, limits_checksum(settings)
+            percent = round(100.0 * settings.program.speed)
+            if self.speed.value != percent:
+                self.speed.value = percent
         return [
             ("Speed of the tool", f"{1000 * seen.v_tcp:.0f} mm/s"),
             ("Speed of the elbow", f"{1000 * seen.v_elbow:.0f} mm/s"),
@@ -167,6 +173,11 @@ class Panel:
         sends(self.stop, Command.EMERGENCY_STOP)
         sends(self.reset, Command.RESET)
         sends(self.leave, Command.LEAVE_FREE_DRIVE)
+
+        @self.speed.on_update
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client_id is not None:  # a person, and not the page bringing itself up to date
+                desk.set({"program.speed": float(self.speed.value) / 100.0})
 
         @self.mode.on_click
         async def _(_: viser.GuiEvent) -> None:

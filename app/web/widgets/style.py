@@ -35,3 +35,15 @@ def beside(button: str) -> str:
         f'[id="{button}"]{{height:36px!important;font-size:13px;padding:0;border-radius:6px;{QUIET}}}'
         f':root [id="{button}"]:not(:disabled){{opacity:1!important}}</style>'
     )
+
+
+def pairs(buttons: list[str]) -> str:
+    """Put every two of these buttons beside each other, for a finger."""
+    left, right = (",".join(f'[id="{button}"]' for button in buttons[k::2]) for k in (0, 1))
+    both = f"{left},{right}"
+    return (
+        f"<style>div:has(>:is({left})){{width:calc(50% - 15px)!important;margin-right:0!important}}"
+        f"div:has(>:is({right})){{width:calc(50% - 15px)!important;margin-left:calc(50% + 3px)!important;"
+        "margin-top:-52px!important}"
+        f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:none;user-select:none;{QUIET}}}</style>"
+    )

@@ -1,0 +1,125 @@
+"""The jog tab: the arm moves while a button is held, joint by joint or along and about the axes of base or tool."""
+
+import math
+from collections.abc import Callable, Coroutine
+from typing import Any, Literal, NamedTuple
+
+import viser
+
+from app.web.running import Running
+from app.web.widgets import style, svg
+from app.web.widgets.html import Html, enable
+from pendant.program.jog_move import TURNS, JogMove
+from pendant.tick.modes import TICK_RATE, Mode, Phase
+from sim.arm.arm_file import Arm
+from sim.exchange.snapshot import Snapshot
+
+HOLD_RATE = 30.0
+"""How often a held button is asked to say so [Hz], as the free-drive button's."""
+
+FRAMES: dict[str, Literal["joint", "base", "tool"]] = {
+    "Joints": "joint",
+    "Axes of the base": "base",
+    "Axes of the tool": "tool",
+}
+AXES = ("X", "Y", "Z", "Turn about X", "Turn about Y", "Turn about Z")
+
+STEPS = {"While held": 0.0, "1 mm, 1°": 1.0, "10 mm, 10°": 10.0, "50 mm, 50°": 50.0}
+"""How far one press goes [mm or degrees]; 0: as long as it is held."""
+
+
+class JogPress(NamedTuple):
+    """A button that is held: by whom, which, and when it last said so."""
+
+    client: int
+    button: tuple[int, int]
+    tick: int
+
+
+class JogTab:
+    """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+        self._loop, self._names = loop, [name.replace("_", " ").capitalize() for name in arm.chain.joints]
+        self._press: JogPress | None = None
+        self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
+        self.frame = gui.add_dropdown("Move by", tuple(FRAMES), initial_value="Joints")
+        self.chosen: Literal["joint", "base", "tool"] = "joint"
+        self.steps = gui.add_dropdown("One press", tuple(STEPS), initial_value="While held")
+        self.buttons: dict[tuple[int, int], viser.GuiButtonHandle] = {}
+        for axis in range(max(len(self._names), 2 * TURNS)):
+            for sign in (-1, 1):
+                button = gui.add_button(self._label(axis, sign), color="gray", hint="Hold it")
+                self.buttons[axis, sign] = button
+                button.on_hold(callback_hz=HOLD_RATE)(self._held((axis, sign)))
+                button.on_click(self._lifted)
+        ids = [button._impl.uuid for button in self.buttons.values()]
+        Html(gui, style.pairs(ids))
+        self.pose = Html(gui)
+
+        @self.frame.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._stop()
+            self.chosen = FRAMES[self.frame.value]
+            for (axis, sign), button in self.buttons.items():
+                button.label = self._label(axis, sign)
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Show where the arm is; True if anything changed."""
+        decision = snapshot.decision
+        may = decision.mode in (Mode.TEACH, Mode.NORMAL) and decision.phase is Phase.OFF
+        count = len(self._names) if self.chosen == "joint" else 2 * TURNS
+        changed = [enable(button, may and axis < count) for (axis, _), button in self.buttons.items()]
+        return any([*changed, self.pose.show(svg.facts(self._facts(snapshot)))])
+
+    def let_go(self, client: int) -> None:
+        """Whatever `client` holds is released: it stalled, left, or gave control back. Its press is over."""
+        if self._press is not None and self._press.client == client:
+            self._over.add(client)
+            self._stop()
+
+    def forget(self, client: int) -> None:
+        """`client` has gone."""
+        self.let_go(client)
+        self._over.discard(client)
+
+    def _label(self, axis: int, sign: int) -> str:
+        names = self._names if self.chosen == "joint" else AXES
+        return f"{names[axis] if axis < len(names) else ''} {'−' if sign < 0 else '+'}"
+
+    def _facts(self, snapshot: Snapshot) -> list[tuple[str, str]]:
+        seen = snapshot.estimate
+        if self.chosen == "joint":
+            return [(name, f"{math.degrees(angle):.1f}°") for name, angle in zip(self._names, seen.q, strict=True)]
+        x, y, z = (1000.0 * value for value in seen.tcp[:3])
+        return [("Tool, in the base", f"{x:.1f}, {y:.1f}, {z:.1f} mm")]
+
+    def _held(self, which: tuple[int, int]) -> Callable[[viser.GuiEvent], Coroutine[Any, Any, None]]:
+        async def held(event: viser.GuiEvent) -> None:
+            client = event.client_id
+            if client is None or client in self._over:
+                return
+            tick, before = self._loop.latest().tick, self._press
+            if before is not None and tick - before.tick > self._loop.settings.hold.silence * TICK_RATE:
+                self.let_go(before.client)  # a press that fell silent needs a real pointer-up first
+                if before.client == client:
+                    return
+            self._press = JogPress(client, which, tick)
+            axis, sign = which
+            length = STEPS[self.steps.value]
+            turns = self.chosen == "joint" or axis >= TURNS
+            length = math.radians(length) if turns else length / 1000.0
+            self._loop.desk.jog(JogMove(frame=self.chosen, axis=axis, sign=1 if sign > 0 else -1, length=length))
+
+        return held
+
+    async def _lifted(self, event: viser.GuiEvent) -> None:
+        if event.client_id is None:
+            return
+        self._over.discard(event.client_id)
+        if self._press is not None and self._press.client == event.client_id:
+            self._stop()
+
+    def _stop(self) -> None:
+        self._press = None
+        self._loop.desk.stop_jogging()

@@ -1,0 +1,98 @@
+"""Jogging in TEACH and NORMAL: the arm moves while a button is held, and comes to rest when that is let go or silent."""
+
+from msgspec.structs import replace
+
+from pendant.all_settings import Settings
+from pendant.events.event import Event, Kind
+from pendant.inputs import Inputs
+from pendant.limits.validity import JOINTS_SENSED, motion_ok
+from pendant.program.jog_move import JogMove, unfit
+from pendant.robot.robot_mode import Robot
+from pendant.settings.schema import ticks
+from pendant.signals.keep_alive import KeepAlive
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import Mode, Phase, way_out
+
+JOGGED_IN = frozenset({Mode.NORMAL, Mode.TEACH})
+
+
+class Jogging:
+    """One press of a jog button at a time: what ends it needs a new press."""
+
+    __slots__ = ("_asked", "_begun", "_held", "_n", "_robot", "_spent")
+
+    def __init__(self, robot: Robot, n_joints: int) -> None:
+        self._robot, self._n = robot, n_joints
+        self._held = KeepAlive()
+        self._asked: JogMove | None = None  # of the press that lasts
+        self._spent = False  # this press has ended, and has to be let go first
+        self._begun = 0  # jogs so far; their ids are negative, those of a program's steps positive
+
+    def step(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event], *, changing: bool) -> None:
+        """One tick.
+
+        Args:
+            estimate: of this tick.
+            inputs: of this tick.
+            settings: as they are now.
+            events: of this tick; more are added.
+            changing: the configured payload is being changed.
+        """
+        held, wish = self._held, inputs.jog
+        if not held.held and wish is None:
+            return
+        pressed = not held.held
+        silence = ticks(settings.hold.silence)
+        silent = held.step(wish is not None, inputs.jog_released, silence)
+        if not held.held:
+            self._end("no word from the button" if silent else "let go", estimate.tick, events)
+            self._asked, self._spent = None, False
+            return
+        if wish is not None and wish != self._asked:
+            if not pressed:
+                self._end("another button", estimate.tick, events)
+            self._asked, self._spent = wish, False
+        if self._spent:
+            return
+        against = self._against(estimate, changing)
+        if self._robot.jog is not None:
+            done = estimate.move_done == self._robot.jog.id
+            reason = "done" if done else estimate.move_refused or against
+            if reason:
+                self._end(reason, estimate.tick, events)
+                self._spent = True
+        elif against:
+            assert self._asked is not None
+            self._spent = True
+            events.append(Event(Kind.JOG_REFUSED, estimate.tick, {"what": self._asked.what, "reason": against}))
+        elif self._robot.static:  # else it still comes to rest from what was before
+            self._begin(estimate.tick, events)
+
+    def _begin(self, tick: int, events: list[Event]) -> None:
+        assert self._asked is not None
+        self._begun += 1
+        self._robot.jog = replace(self._asked, id=-self._begun)
+        events.append(Event(Kind.JOG_STARTED, tick, {"what": self._asked.what}))
+
+    def _end(self, reason: str, tick: int, events: list[Event]) -> None:
+        """The arm comes to rest, if it was jogged."""
+        move, self._robot.jog = self._robot.jog, None
+        if move is not None:
+            self._robot.braking = True
+            events.append(Event(Kind.JOG_ENDED, tick, {"what": move.what, "reason": reason}))
+
+    def _against(self, estimate: Estimate, changing: bool) -> str:
+        """Why the arm must not be jogged now, or ""."""
+        robot, asked = self._robot, self._asked
+        assert asked is not None
+        if robot.mode not in JOGGED_IN:
+            return way_out(robot.mode)
+        if robot.free.phase is not Phase.OFF:
+            return "free-drive is being tried"
+        if not robot.enabled:
+            return f"enabling device {robot.grip}: hold it in its middle position"
+        if not motion_ok(estimate):
+            return f"check {JOINTS_SENSED}"
+        if changing:
+            return "the payload is being changed"
+        return unfit(asked, self._n) or ""
