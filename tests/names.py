@@ -16,7 +16,6 @@ from pendant.settings.renamed import RENAMED
 FILE = Path(__file__).parent / "names.json"
 
 GONE = {
-    "session expect=contact_delay": "never accepted: each session that named it was refused",
     "session control=confirm": "never accepted: each session that named it was refused",
     **{f"setting {old}": f"is called {new}, and who uses the old name is told so" for old, new in RENAMED.items()},
 }

@@ -31,7 +31,7 @@ def page() -> str:
     for claim in CLAIMS.values():
         for name, session in sessions.items():
             if claim.name in session.claims:
-                lines.append(_row(claim, name, checks[name], session.switch, _of(mutants, name, claim)))
+                lines.append(_row(claim, name, checks[name], switch=session.switch, mutants=_of(mutants, name, claim)))
     return HEAD + "\n".join(lines) + "\n"
 
 
@@ -45,7 +45,7 @@ def _of(mutants: list[Mutant], name: str, claim: Claim) -> list[str]:
     return [f"{mutant.what} (`{mutant.file}`) - not met: {mutant.fails}" for mutant in own]
 
 
-def _row(claim: Claim, name: str, checks: list[str], switch: str | None, mutants: list[str]) -> str:
+def _row(claim: Claim, name: str, checks: list[str], *, switch: str | None, mutants: list[str]) -> str:
     link = f"[{name}](../../assets/sessions/{name}.yaml)"
     cells = [claim.name, claim.text, claim.ids, link, "<br>".join(checks), switch or "-", "<br>".join(mutants) or "-"]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.session.expectation_watch import Watch, at
-from app.session.expectations import ContactDelay, Countdown, Happens, Heard, Never, Period, Range
+from app.session.expectations import ContactDelay, Countdown, Happens, Heard, Never, NumberRange, Period
 from app.session.triggers import Trigger
 from app.tones import tone_for
 from pendant.decision import Decision
@@ -14,7 +14,7 @@ from pendant.tick.modes import TICK
 from sim.exchange.scoring import Scored
 
 
-def _within(event: Event, name: str, span: Range) -> bool:
+def _within(event: Event, name: str, span: NumberRange) -> bool:
     value = event.values.get(name)
     return isinstance(value, int | float) and span.holds(value)
 

@@ -78,7 +78,7 @@ def bounds(least: float | None, most: float | None) -> str:
     return " and ".join(filter(None, (low, high)))
 
 
-class Range(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class NumberRange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Where a number lies, its bounds within."""
 
     min: Signed | None = None
@@ -107,7 +107,7 @@ class OfEvents(During, frozen=True, kw_only=True):
 
     kind: Kind
     values: dict[str, str | bool] = msgspec.field(default_factory=dict)
-    numbers: dict[str, Range] = msgspec.field(default_factory=dict)
+    numbers: dict[str, NumberRange] = msgspec.field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that events of the kind carry such values."""

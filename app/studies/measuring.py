@@ -11,11 +11,11 @@ from app.session.measures import ValueWatch
 from app.session.triggers import Trigger
 from app.studies.study_measures import (
     AnyMeasure,
-    ContactDelay,
     ContactForce,
     EventCount,
     EventTime,
     HasHappened,
+    MeasuredDelay,
     OfKinds,
     OfLog,
     Passed,
@@ -196,7 +196,7 @@ class PeriodTaker(Taker):
 class ContactTaker(Taker):
     """Takes what the true contacts of the arm say: the first one's beginning, and forces."""
 
-    def __init__(self, measure: ContactDelay | ContactForce, simulation: Simulation) -> None:
+    def __init__(self, measure: MeasuredDelay | ContactForce, simulation: Simulation) -> None:
         super().__init__(measure)
         self._measure, self._plant = measure, simulation.plant
         model = self._plant.model
@@ -247,7 +247,7 @@ def taker(measure: AnyMeasure, simulation: Simulation) -> Taker | None:
             return WayTaker(measure, simulation)
         case PeriodLength():
             return PeriodTaker(measure)
-        case ContactDelay() | ContactForce():
+        case MeasuredDelay() | ContactForce():
             return ContactTaker(measure, simulation)
         case Passed() | OfLog():
             return None

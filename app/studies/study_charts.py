@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from app.report.drawing import INK, empty_axes
-from app.studies.study_statistics import Index, Point, RocPoint, area
+from app.studies.study_statistics import Point, RocPoint, SobolIndex, area
 
 COLOURS = ("#1971c2", "#e8590c", "#2f9e44", "#9c36b5", "#c92a2a", "#0c8599", "#f08c00", "#495057")
 MARKS = "osD^vP*X"
@@ -115,7 +115,7 @@ def roc_chart(points: Sequence[RocPoint], limit: str) -> Figure:
     return figure
 
 
-def sensitivity(found: Mapping[str, Sequence[Index]]) -> Figure:
+def sensitivity(found: Mapping[str, Sequence[SobolIndex]]) -> Figure:
     """First-order indices with their intervals, a group of bars for each measure."""
     names = list(dict.fromkeys(index.factor for line in found.values() for index in line))
     figure, axes = empty_axes(0.9 + 0.3 * len(names) * len(found))

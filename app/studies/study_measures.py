@@ -90,7 +90,7 @@ class PeriodLength(StudyMeasure, tag="period", tag_field="measure", frozen=True,
     run: Annotated[int, Meta(ge=1)] = 1
 
 
-class ContactDelay(StudyMeasure, tag="contact_delay", tag_field="measure", frozen=True, kw_only=True):
+class MeasuredDelay(StudyMeasure, tag="contact_delay", tag_field="measure", frozen=True, kw_only=True):
     """Time from the true beginning of the first contact until the robot acts on it [ms]; nothing where it does not."""
 
     kinds: tuple[Kind, ...] = (Kind.CONTACT_GAINED, Kind.CONTACT_RESISTANCE, Kind.CONTACT_CLAMPING)
@@ -133,7 +133,7 @@ AnyMeasure = (
     | QuantityStatistic
     | WayMeasure
     | PeriodLength
-    | ContactDelay
+    | MeasuredDelay
     | ContactForce
     | Passed
     | OfLog

@@ -18,7 +18,7 @@ from app.studies.data_set import read_data_set, whole_file
 from app.studies.plan import Plan, plain, session_of
 from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity, short
 from app.studies.study_file import AnyShown, HeatMap, ResponseCurve, Roc, Sensitivity, Study
-from app.studies.study_statistics import Index, curve, first_order, levels, pivot, roc, worst
+from app.studies.study_statistics import SobolIndex, curve, first_order, levels, pivot, roc, worst
 
 
 class Rows:
@@ -53,7 +53,7 @@ def figures(study: Study, rows: Rows) -> list[tuple[str, Figure]]:
             figure = _figure(shown, study, rows)
             if figure is not None:
                 drawn.append((shown.caption or _caption(shown), figure))
-    indices: dict[str, list[Index]] = {}
+    indices: dict[str, list[SobolIndex]] = {}
     for shown in study.show:
         if isinstance(shown, Sensitivity):
             found = first_order({each.name: rows.column(each.name) for each in study.factors}, rows.measure(shown.of))

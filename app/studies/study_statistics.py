@@ -40,7 +40,7 @@ class RocPoint(NamedTuple):
     false: Point  # share of those that ought not
 
 
-class Index(NamedTuple):
+class SobolIndex(NamedTuple):
     """How much of the variance a factor explains by itself."""
 
     factor: str
@@ -121,7 +121,7 @@ def area(points: Sequence[RocPoint]) -> float:
     return float(np.trapezoid(y, x))
 
 
-def first_order(columns: dict[str, NDArray[Any]], y: Array) -> list[Index] | None:
+def first_order(columns: dict[str, NDArray[Any]], y: Array) -> list[SobolIndex] | None:
     """First-order indices of the factors; None with too few runs, or where nothing varies."""
     there = np.isfinite(y)
     y = y[there]
@@ -142,7 +142,7 @@ def first_order(columns: dict[str, NDArray[Any]], y: Array) -> list[Index] | Non
     }
     found = rbd_fast.analyze(problem, x, y[order], M=harmonics, num_resamples=30, seed=1)
     values = zip(found["names"], found["S1"], found["S1_conf"], strict=True)
-    return sorted((Index(name, float(s), float(c)) for name, s, c in values), key=lambda each: -each.first_order)
+    return sorted((SobolIndex(name, float(s), float(c)) for name, s, c in values), key=lambda each: -each.first_order)
 
 
 def worst(y: Array, failed: NDArray[np.bool_], largest: bool, count: int = 10) -> list[int]:

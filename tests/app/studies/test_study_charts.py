@@ -3,7 +3,7 @@ import pytest
 
 from app.report.drawing import svg_of
 from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity, short
-from app.studies.study_statistics import Index, Point, RocPoint
+from app.studies.study_statistics import Point, RocPoint, SobolIndex
 
 
 def points(*values: float | str) -> list[Point]:
@@ -46,7 +46,7 @@ def test_a_limit_is_a_point_with_two_shares() -> None:
 
 
 def test_bars_name_their_factors() -> None:
-    text = svg_of(sensitivity({"way": [Index("mass", 0.5, 0.1)], "time": [Index("mass", 0.2, 0.1), Index("gap", 0.1, 0.1)]}))
+    text = svg_of(sensitivity({"way": [SobolIndex("mass", 0.5, 0.1)], "time": both}))
     assert all(f">{word}<" in text for word in ("mass", "gap", "way", "time"))
 
 
