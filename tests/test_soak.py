@@ -56,21 +56,20 @@ def test_whoever_comes_back_knows_the_page() -> None:
     client.come()
     client.look(1.0)
     named = {thing.get("label"): thing for thing in client.things.values()}
-    section = client.called("Section")
-    client.set(section, "walls")
+    client.set(client.called("View"), "All settings")
     client.look(0.5)
     kept = {thing.get("label") for thing in client.things.values()}
     said, mode = first_use.page_text(client), first_use.mode(client)
     client.go()
     app.close()
     assert {"Take", "Release", "Clock", "Run", "Begin", "Reset", "Hand [N]", "True [kg]", "Configured"} <= set(named)
-    assert first_use.SCENARIO in named["Show"]["options"]
+    assert first_use.SCENARIO in named["Chosen"]["options"]
     assert client.things[first_use.FLANGE]["drag"]
     assert mode == first_use.READY
     assert said.startswith("TEACH Ready")
     assert "Drag the arm" in said
-    assert "push · threshold [N]" in named
-    assert "push · threshold [N]" not in kept, "a control that is taken from the page is not used any more"
+    assert "Hold-to-run free-drive" in named
+    assert "Hold-to-run free-drive" not in kept, "a control that is taken from the page is not used any more"
     ends = [render(Event(kind, 1, {"limit": 3.0}))[0] for kind in (Kind.LEFT_PERIOD, Kind.LEFT_RESTART)]
     assert tuple(ends) == first_use.BY_ITSELF
 

@@ -19,8 +19,8 @@ AHEAD = 3
 LOOK = 3.0
 """How often the processes of this machine are looked at [s]."""
 
-LIVES = 3
-"""Times that a piece is given out again after it was lost with all workers that tried it."""
+LIVES = 1
+"""Times that a piece is given out again, alone, after it was lost with all workers that tried it."""
 
 
 class Lost(Exception):
@@ -85,22 +85,26 @@ class _Spreading:
     def run(self, items: Iterator[tuple[int, T]], lost: Callable[[T], R] | None) -> Iterator[tuple[int, R]]:
         under_way: dict[int, T] = {}
         lives: dict[int, int] = {}
+        suspects: list[int] = []  # places of what was lost with its workers
         self._begin(under_way)
         while True:
             self._fill(items, under_way)
             if not under_way:
                 return
+            if not self._places:
+                self._give(suspects[0], under_way[suspects.pop(0)])
             future = self._next()
             place = -1 if future is None else self._places.pop(future)
             if future is None or future.status in ("cancelled", "lost"):  # with the scheduler
                 self._reconnect()
-                self._begin(under_way)
+                self._begin({place: item for place, item in under_way.items() if place not in suspects})
                 continue
             try:
                 result = self._result(future, under_way[place], lost, lives.setdefault(place, LIVES))
             except Lost:
+                # It, or one that a worker had beside it, ends workers: it is tried again when nothing else is under way.
                 lives[place] -= 1
-                self._give(place, under_way[place])
+                suspects.append(place)
                 continue
             del under_way[place]
             lives.pop(place)
@@ -142,7 +146,7 @@ class _Spreading:
         try:
             return future.result(timeout=PATIENCE)
         except KilledWorker:
-            if lives > 1:
+            if lives > 0:
                 raise Lost from None
             if lost is None:
                 raise BadInput("workers", "", ABSENT, "died each time that they did a piece of the work") from None

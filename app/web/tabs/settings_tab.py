@@ -45,7 +45,7 @@ class SettingsTab:
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
         self._texts: dict[str, Html] = {}
-        self.view = gui.add_button_group("Show", VIEWS)
+        self.view = gui.add_button_group("View", VIEWS)
         self._chosen = VIEWS[0]
         self._line = Html(gui)
         self.undo = gui.add_button("Undo", color="gray", disabled=True)

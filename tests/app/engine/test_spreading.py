@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from app.engine import spreading
 from app.engine.source import identity
 from app.engine.spreading import guarded, spread
 from app.files.bad_input import BadInput
@@ -70,8 +69,7 @@ def test_work_whose_worker_died_is_done_again(tmp_path: Path) -> None:
     assert [result for _, result in spread(dying, paths, workers=2)] == ["done", "done"]
 
 
-def test_work_that_ends_each_worker_is_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(spreading, "LIVES", 1)
+def test_work_that_ends_each_worker_is_given_up_and_what_was_beside_it_is_done(tmp_path: Path) -> None:
     (tmp_path / "there").write_text("")
     items = ["always", *[str(tmp_path / "there")] * 3]
     found = dict(spread(dying, items, workers=2, lost=lambda item: f"gave up {item}"))

@@ -67,8 +67,8 @@ def test_what_is_called_is_compiled_again() -> None:
         claims=["C 5"],
         file="sim/plant/joint_friction.py",
         find="out[i] = (curve * heat",
-        replace="out[i] = 0.0 * (curve * heat",
-        what="the true friction is gone",
+        replace="out[i] = 4.0 * (curve * heat",
+        what="four times the true friction",
         fails="friction error",
     )
     assert run_mutants([callee])[0].noticed

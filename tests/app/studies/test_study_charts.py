@@ -46,6 +46,7 @@ def test_a_limit_is_a_point_with_two_shares() -> None:
 
 
 def test_bars_name_their_factors() -> None:
+    both = [SobolIndex("mass", 0.2, 0.1), SobolIndex("gap", 0.1, 0.1)]
     text = svg_of(sensitivity({"way": [SobolIndex("mass", 0.5, 0.1)], "time": both}))
     assert all(f">{word}<" in text for word in ("mass", "gap", "way", "time"))
 
