@@ -111,7 +111,10 @@ def test_what_stops_or_frees_the_arm_is_found_by_a_finger(visit: Visit, cell: Ce
 
 def test_the_first_stop_of_the_keyboard_leads_to_the_stop_of_the_arm(visit: Visit, cell: Cell) -> None:
     page = ready(visit())
+    skip = page.locator(".pd-skip")
+    skip.wait_for(state="attached")
     page.keyboard.press("Tab")
+    expect(skip).to_be_focused()
     page.keyboard.press("Enter")
     expect(page.get_by_role("button", name="EMERGENCY STOP", exact=True)).to_be_focused()
     page.keyboard.press("Enter")

@@ -90,14 +90,17 @@ class Remembered:
             self.note = event
 
     def see(self, decision: Decision, tick: int) -> None:
-        """Forget what has no cause any more. A tick before the last one is another beginning."""
+        """Forget what has no cause any more. A tick before the last one is another beginning.
+
+        A state from before an event, which the page may take in first, says nothing about it.
+        """
         if tick < self.tick:
             self.stop = self.note = self.asking = None
             self.prevented = []
         self.tick = tick
-        if decision.mode is not Mode.STOP:
+        if self.stop is not None and tick >= self.stop.tick and decision.mode is not Mode.STOP:
             self.stop = None
-        if self.note is not None and self._over(self.note, decision):
+        if self.note is not None and tick >= self.note.tick and self._over(self.note, decision):
             self.note = None
 
     def _over(self, note: Event, decision: Decision) -> bool:

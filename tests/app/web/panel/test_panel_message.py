@@ -2,11 +2,12 @@
 
 import pytest
 
-from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, PASSING, PROGRAM_PAUSED
+from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, PASSING, PROGRAM_PAUSED, Remembered, said
 from app.web.server import Served
-from pendant.events.event import Kind
+from pendant.events.event import Event, Kind
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Safety
+from tests.app.fakes import decision
 from tests.app.web.fake_loop import FakeLoop
 
 LIMIT = {"parameter": "flange acceleration", "part": "flange", "value": 9.0, "limit": 8.0, "unit": "m/s²", "time": 0.1}
@@ -92,3 +93,15 @@ def test_a_busy_machine_hides_nothing(loop: FakeLoop, still: Served) -> None:
     loop.note(Kind.LEFT_PERIOD, limit=3.0)
     loop.note(Kind.OVERRUN, late=80.0, lost=0.08, often="once")
     assert "nobody moved" in headline(loop, still)
+
+
+def test_a_cause_is_kept_where_the_page_takes_in_the_state_before_it_first() -> None:
+    remembered = Remembered()
+    remembered.take(Event(Kind.STOPPED_LIMIT, 10, LIMIT))
+    remembered.see(decision(Mode.TEACH), 9)
+    remembered.see(decision(Mode.STOP), 10)
+    assert said(remembered, decision(Mode.STOP)).headline == "Stopped: flange acceleration"
+    remembered.see(decision(Mode.TEACH), 11)
+    assert said(remembered, decision(Mode.TEACH)).headline == HINTS[Mode.TEACH].headline
+    remembered.see(decision(Mode.STOP), 12)
+    assert said(remembered, decision(Mode.STOP)).headline == HINTS[Mode.STOP].headline
