@@ -3,6 +3,7 @@
 #   make run         the web app, opened in the browser
 #   make test        every check: lint, types, contracts, tests, browser tests, wheel (12 minutes at most)
 #   make test ROOM=pendant/walls   one room in some seconds: lint, its tests, what rooms may use
+#   make e2e-full    every browser test at every size of the window; make test has one size of what is the same at all
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
 #                    their results are in out/bench, and python -m tools.results makes docs/results of them
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
@@ -22,7 +23,7 @@ SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels unit e2e wheel browser pictures
+.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels unit e2e e2e-full wheel browser pictures
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -76,6 +77,9 @@ unit: $(VENV)/dev.stamp | pictures
 
 # Alone on the machine: these measure motion against the clock of a real browser.
 e2e: $(VENV)/dev.stamp | browser
+	$(BIN)/pytest -q -m "not every_size" tests/e2e
+
+e2e-full: $(VENV)/dev.stamp | browser
 	$(BIN)/pytest -q tests/e2e
 
 browser:

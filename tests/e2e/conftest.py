@@ -28,6 +28,7 @@ COARSE = "?fixedDpr=0.3"
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "e2e: drives a real browser")
+    config.addinivalue_line("markers", "every_size: a further size of the window, for `make e2e-full` alone")
 
 
 @pytest.fixture(scope="session")

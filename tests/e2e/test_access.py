@@ -13,7 +13,8 @@ pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
 
 TABS = ("Teach", "Axes", "Lab", "Tools", "Settings", "Contacts", "Plots", "Record", "Events")
-SIZES = [(1024, 768), (1440, 900), (1920, 1080), (820, 1180)]
+FURTHER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1440, 900), (1920, 1080))]
+SIZES = [(1024, 768), (820, 1180), *FURTHER]
 GRAVE = ("serious", "critical")
 
 CUT = """() => {

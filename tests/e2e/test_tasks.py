@@ -28,7 +28,7 @@ def choose(page: Page, label: str, option: str) -> None:
     page.get_by_role("option", name=option, exact=True).click()
 
 
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), (820, 1180)])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), pytest.param(820, 1180, marks=pytest.mark.every_size)])
 def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: int, height: int) -> None:
     page = visit(width, height)
     tab = cell.served.docks.jog
