@@ -13,10 +13,10 @@ from statistics import median
 
 import gymnasium
 import numpy as np
-from gymnasium.vector import AsyncVectorEnv
 
 from app.api import Push, session, step, stepped
 from app.learning.environments import GUIDE_TO_POINT
+from app.learning.in_processes import InProcesses
 from benchmarks.common import Report, main
 
 COUNT = 8
@@ -42,10 +42,10 @@ def _step(envs: gymnasium.Env | gymnasium.vector.VectorEnv, rng: np.random.Gener
         envs.step(rng.uniform(-8.0, 8.0, space.shape).astype(np.float32))
 
 
-def _used(envs: AsyncVectorEnv) -> tuple[float, float]:
+def _used(envs: InProcesses) -> tuple[float, float]:
     """Computing time so far [s]: of this process, and of those of the environments."""
     tick = os.sysconf("SC_CLK_TCK")
-    stats = [Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split() for process in envs.processes]
+    stats = [Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split() for pid in envs.pids]
     return time.process_time(), sum(int(stat[11]) + int(stat[12]) for stat in stats) / tick  # user and system time
 
 
@@ -77,14 +77,8 @@ def measure(report: Report) -> None:
     rng = np.random.default_rng(seed)
     endless = {"max_episode_steps": 10**6, "setup": {"settings": {"free_drive.ends_by_period": False}}}
     one = gymnasium.make(GUIDE_TO_POINT, **endless)
-    eight = gymnasium.make_vec(
-        GUIDE_TO_POINT,
-        num_envs=COUNT,
-        vectorization_mode="async",
-        vector_kwargs={"context": "spawn"},
-        **endless,
-    )
-    assert isinstance(eight, AsyncVectorEnv)
+    eight = gymnasium.make_vec(GUIDE_TO_POINT, num_envs=COUNT, **endless)
+    assert isinstance(eight, InProcesses)
     one.reset(seed=seed)
     eight.reset(seed=seed)
     ratios, shares, machine, singles = [], [], [], []

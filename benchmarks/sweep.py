@@ -21,6 +21,7 @@ def bundled_study(report: Report) -> None:
 
 def measure(report: Report) -> None:
     """Fill the report."""
+    cost(report)  # first: what others do on the machine costs the least while it is short
     with TemporaryDirectory() as folder:
         here = Path(folder)
         large(report, here)
@@ -32,7 +33,6 @@ def measure(report: Report) -> None:
         scheduler_killed(report, here, study, wanted)
         disk_full(report, here, study, wanted)
     memory(report)
-    cost(report)
     bundled_study(report)
 
 

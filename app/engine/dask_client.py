@@ -1,6 +1,7 @@
 """A Dask scheduler to give work to: an embedded one with processes of its own, or one that exists; its workers are checked."""
 
 import atexit
+import gc
 import importlib.util
 import logging
 import os
@@ -18,6 +19,9 @@ CONFIG = {
     "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
     "distributed.comm.timeouts.connect": "10s",
 }
+ANSWER = 10.0
+"""How long a scheduler may take to answer [s]."""
+
 PATIENCE = 60.0
 """How long a scheduler or its first worker is waited for [s]."""
 
@@ -77,13 +81,17 @@ def end_embedded(workers: int) -> None:
 def _remote(scheduler: str) -> Any:
     from distributed import Client
 
+    client, reason = None, ""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of packages whose versions differ: `check` names those that matter
-            client = Client(scheduler, set_as_default=False, timeout=10)
+            client = Client(scheduler, set_as_default=False, timeout=ANSWER)
     except (OSError, ValueError, ImportError) as error:
         reason = str(error).partition("\n")[0]
-        raise BadInput("--scheduler", "", scheduler, f"no Dask scheduler answers there ({reason})") from None
+    if client is None:
+        # What was half made ends here. Collected later in a thread that Dask starts, it would wait for who waits for that thread.
+        gc.collect()
+        raise BadInput("--scheduler", "", scheduler, f"no Dask scheduler answers there ({reason})")
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:
