@@ -1,4 +1,4 @@
-"""The safety inputs: emergency stop, safeguard, REDUCED, and the reset after a stop (FD-1)."""
+"""The safety inputs: emergency stop, safeguard, REDUCED, lost motor angles, and the reset after a stop (FD-1)."""
 
 from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind, Values
@@ -6,14 +6,18 @@ from pendant.inputs import Command
 from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
 from pendant.robot.reduced import Reduced, SpeedLimits
 from pendant.robot.robot_mode import Robot
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Safety
+
+BLIND = ticks(0.1)
+"""A motor angle that is out for so long is lost: the arm is stopped, and its brakes hold it. A shorter gap is one of the bus."""
 
 
 class SafetyInputs:
     """Their levels, and what they do to the robot."""
 
-    __slots__ = ("_joints", "_reduced", "_robot", "_safeguard")
+    __slots__ = ("_blind", "_joints", "_reduced", "_robot", "_safeguard")
 
     def __init__(self, robot: Robot, joints: tuple[str, ...]) -> None:
         """
@@ -24,6 +28,7 @@ class SafetyInputs:
         self._robot, self._joints = robot, joints
         self._reduced = Reduced()
         self._safeguard = False  # it is open
+        self._blind = 0  # ticks for which some motor angle has been out
 
     def speed_limits(self, settings: Settings) -> SpeedLimits | None:
         """What holds in REDUCED, None outside of it."""
@@ -48,7 +53,12 @@ class SafetyInputs:
             self._reset(estimate, settings, events, stop=stop, held=held)
 
     def watch(self, estimate: Estimate, settings: Settings, events: list[Event]) -> None:
-        """Every tick: what is too fast for REDUCED is stopped."""
+        """Every tick: what is too fast for REDUCED is stopped, and a joint whose motor angle is lost."""
+        unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
+        self._blind = self._blind + 1 if unseen else 0
+        if self._blind == BLIND:
+            event = Event(Kind.MOTOR_ANGLE_LOST, estimate.tick, {"joint": self._joints[unseen[0]]})
+            self._robot.happen(event, settings, events)
         if self._reduced.on and self._robot.mode is not Mode.STOP and motion_ok(estimate):
             excess = self._reduced.step(estimate, settings.reduced, self._joints)
             if excess is not None:

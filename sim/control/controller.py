@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.all_settings import JointControl
+from pendant.all_settings import FedBackTorque, JointControl
 from pendant.decision import Decision
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
@@ -13,7 +13,7 @@ from sim.control.feedback import Feedback, TorqueFeedback
 from sim.control.free_drive_law import FreeDriveLaw
 from sim.control.motor_controller import MotorController
 from sim.estimation.adaptive_friction import AdaptiveFriction
-from sim.estimation.transmission_torque import DEFLECTION
+from sim.estimation.transmission_torque import DEFLECTION, DYNAMICS, MOTOR
 from sim.motion.references import References
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -49,6 +49,8 @@ class Controller:
         self._followed = False  # a motion was followed before the arm was told to brake
         self._blind = False  # some joint had no motor angle in the last tick
         self._fed_back = False  # the torque feedback was on in the last tick
+        self._use: JointControl | None = None
+        self._lost: tuple[tuple[str, int], ...] = ()
         self._torque: Array | None = None  # of the last tick (n,) [N·m]; None: no power
 
     def update(
@@ -121,15 +123,12 @@ class Controller:
         start = torque.copy() if references.fresh else None
         if start is not None and self._law is _FREE:
             start += self.free_drive.balancing
-        # The deflection alone: the fused torque is noisier, and the rigid model's share in it knows nothing of a push.
-        feeding_back = use.torque_feedback and use.from_deflection
+        feeding_back = use.torque_feedback
         if feeding_back:
-            measured = estimate.tau_ways[DEFLECTION]
-            bent = _without("output_encoder", estimate)
-            if bent:
-                # Nobody sees their springs bend: the motor's own torque, fed back, would drive them.
-                measured = measured.copy()
-                measured[bent] = desired[bent]
+            if use is not self._use or estimate.lost != self._lost:
+                self._use, self._lost = use, estimate.lost
+                self.torque_feedback.take_from_motors(_of_motors_alone(estimate, use))
+            measured = _actual_torque(estimate, use)
             if references.fresh or not self._fed_back:
                 self.torque_feedback.start(measured, desired)
             self.torque_feedback.add(measured, desired, torque)
@@ -152,9 +151,31 @@ class Controller:
         return torque
 
 
+def _actual_torque(estimate: Estimate, use: JointControl) -> Array:
+    """Transmission torque (n,) [N·m] that is fed back: the chosen way, or the fused one where that way is off or lost."""
+    way = use.fed_back
+    if way is _DEFLECTION:
+        chosen = DEFLECTION if use.from_deflection else None
+    elif way is _MOTOR:
+        chosen = MOTOR if use.from_motor else None
+    else:
+        chosen = DYNAMICS if way is _DYNAMICS and use.from_dynamics else None
+    return estimate.tau_J if chosen is None else estimate.tau_ways[chosen]  # of a lost sensor it holds the fused one
+
+
+def _of_motors_alone(estimate: Estimate, use: JointControl) -> list[int]:
+    """Joints whose transmission torque that is fed back is known from the motor's side, without any deflection."""
+    if use.fed_back is _DYNAMICS and use.from_dynamics:
+        return []
+    if (use.fed_back is _MOTOR and use.from_motor) or not use.from_deflection:
+        return list(range(estimate.q.size))
+    return _without("output_encoder", estimate)
+
+
 def _without(sensor: str, estimate: Estimate) -> list[int]:
     """Joints that have lost that sensor."""
     return [joint for name, joint in estimate.lost if name == sensor]
 
 
+_DYNAMICS, _DEFLECTION, _MOTOR = FedBackTorque.DYNAMICS, FedBackTorque.DEFLECTION, FedBackTorque.MOTOR
 _OFF, _FREE, _BRAKE, _FOLLOW = Law.OFF, Law.FREE, Law.BRAKE, Law.FOLLOW  # looked up in every tick

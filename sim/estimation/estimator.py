@@ -183,7 +183,10 @@ class Estimator:
         if use is not self._use:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
-            self._ways[:] = [use.from_dynamics | ~both, use.from_deflection & both, use.from_motor & motor_known]
+            deflection, motor_side = use.from_deflection & both, use.from_motor & motor_known
+            # A joint that has lost the ways that are wanted of it goes on with the rigid model.
+            lost = ~(deflection | motor_side) & (use.from_deflection or use.from_motor)
+            self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
         surplus(self._record, rigid.torque)
         if self._lost:
             spent[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pendant.all_settings import FedBackTorque, Settings, apply
 from pendant.events.event import Kind
 from pendant.program.steps import JointMove
 from pendant.tick.modes import Mode
@@ -26,6 +27,15 @@ def missed(bench: Bench) -> float:
     reference = bench.simulation.controller.references.now
     assert reference is not None
     return float(np.abs(bench.plant.q - reference.q).max())
+
+
+def pushed(bench: Bench, force: float, seconds: float) -> float:
+    """How far a push downwards moves the flange [m]."""
+    start, far = bench.flange, 0.0
+    for _ in range(round(500 * seconds)):
+        bench.run(0.002, push("flange", (0.0, 0.0, -force)))
+        far = max(far, float(np.linalg.norm(bench.flange - start)))
+    return far
 
 
 @pytest.mark.parametrize("sensor", ["output_encoder", "current"])
@@ -114,3 +124,43 @@ def test_a_held_posture_is_kept_whatever_is_lost() -> None:
         start = bench.flange
         lose(bench, sensor, None)
         assert bench.drift(1.0, start) < 0.5e-3
+
+
+@pytest.mark.parametrize("sensor", [None, "output_encoder"])
+@pytest.mark.parametrize("fed_back", [FedBackTorque.FUSED, FedBackTorque.DEFLECTION, FedBackTorque.MOTOR])
+def test_every_torque_fed_back_takes_up_a_push_with_the_deflection_lost_or_not(
+    fed_back: FedBackTorque, sensor: str | None
+) -> None:
+    moved = []
+    for on in (True, False):
+        use = {"joint_control.fed_back": fed_back.value, "joint_control.torque_feedback": on}
+        bench = Bench(Scenario(seed=4), apply(Settings(), use))
+        bench.run(0.3)
+        if sensor is not None:
+            lose(bench, sensor, None)
+        moved.append(pushed(bench, 50.0, 0.15))
+    assert moved[0] < 0.7 * moved[1]
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_the_brakes_hold_an_arm_whose_motor_angles_are_lost(held: bool) -> None:
+    bench = Bench(Scenario(seed=4))
+    if not held:
+        bench.start(*STEPS)
+    bench.run(0.7)
+    lose(bench, "motor_encoder", 1)
+    bench.run(1.5)
+    assert bench.mode is Mode.STOP
+    assert pushed(bench, 80.0, 1.0) < 5e-3
+    kinds = [event.kind for event in bench.events]
+    assert (Kind.MOTOR_ANGLE_LOST in kinds) or not held
+
+
+def test_a_gap_of_the_bus_stops_no_held_arm() -> None:
+    bench = Bench(Scenario(seed=4))
+    bench.run(0.3)
+    lose(bench, "motor_encoder", 1)
+    bench.run(0.05)
+    bench.change(SensorFault(sensor="motor_encoder", channel=1))
+    bench.run(0.3)
+    assert bench.mode is not Mode.STOP

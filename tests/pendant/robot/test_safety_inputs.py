@@ -181,3 +181,41 @@ def test_power_off_brakes_a_moving_arm_first() -> None:
     laws += [bench.step(NOTHING, estimate(qd=0.3)).law for _ in range(3)]
     assert laws == [Law.BRAKE] * 4
     assert bench.run(100).law is Law.OFF
+
+
+def blind(joint: int = 2, sensor: str = "motor_encoder") -> Estimate:
+    """A tick in which a joint has lost a sensor."""
+    seen = estimate()
+    seen.degraded, seen.lost = True, ((sensor, joint),)
+    return seen
+
+
+def stops_of(bench: Bench) -> list[Event]:
+    return [event for event in bench.events if event.kind is Kind.MOTOR_ANGLE_LOST]
+
+
+def test_a_motor_angle_that_is_out_for_a_tenth_of_a_second_is_a_stop_on_the_brakes() -> None:
+    """Nothing else can hold such a joint; a shorter gap is one of the bus."""
+    bench = resting()
+    bench.run(49, NOTHING, blind())
+    assert (bench.last.mode, stops_of(bench)) == (Mode.TEACH, [])
+    bench.step(NOTHING, blind())
+    assert stops_of(bench) == [Event(Kind.MOTOR_ANGLE_LOST, bench.tick, {"joint": "elbow"})]
+    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.PROTECTIVE_STOP, Law.OFF)
+    bench.run(200, NOTHING, blind())
+    assert len(stops_of(bench)) == 1, "told once"
+
+
+def test_gaps_of_a_motor_angle_do_not_add_up() -> None:
+    bench = resting()
+    for _ in range(5):
+        bench.run(49, NOTHING, blind())
+        bench.step()
+    assert (bench.last.mode, stops_of(bench)) == (Mode.TEACH, [])
+
+
+@pytest.mark.parametrize("sensor", ["output_encoder", "current"])
+def test_other_joint_sensors_do_not_stop_an_arm_at_rest(sensor: str) -> None:
+    bench = resting()
+    bench.run(200, NOTHING, blind(sensor=sensor))
+    assert (bench.last.mode, stops_of(bench)) == (Mode.TEACH, [])

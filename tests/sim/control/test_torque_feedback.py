@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sim.control.feedback import SUPPORT, TorqueFeedback
+from sim.control.feedback import MOTOR_SIDE_BANDWIDTH, SUPPORT, TorqueFeedback
 from sim.control.feedback import TORQUE_BANDWIDTH as BANDWIDTH
 from tests.sim.laws import N
 
@@ -34,3 +34,18 @@ def test_begun_with_an_error_it_knows_it_at_once() -> None:
     torque = np.zeros(N)
     module.add(MEASURED, DESIRED, torque)
     np.testing.assert_allclose(torque, SUPPORT * (MEASURED - DESIRED))
+
+
+def test_torque_known_from_the_motors_is_fed_back_as_fast_as_the_position_loop() -> None:
+    module = TorqueFeedback(N)
+    module.take_from_motors([1])
+    torque = np.zeros(N)
+    module.add(MEASURED, DESIRED, torque)
+    rates = np.full(N, 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * 0.002))
+    rates[1] = 1.0 - math.exp(-2.0 * math.pi * MOTOR_SIDE_BANDWIDTH * 0.002)
+    np.testing.assert_allclose(torque, SUPPORT * rates * (MEASURED - DESIRED))
+    module.take_from_motors([])
+    assert rates[1] < rates[0]
+    second = np.zeros(N)
+    TorqueFeedback(N).add(MEASURED, DESIRED, second)
+    assert second[1] != torque[1]
