@@ -40,6 +40,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
     tool_on: bool = False  # what the program switches (CD-15)
+    outputs: frozenset[int] = frozenset()  # digital outputs that the program has switched on
     walls: tuple[WallState, ...] = ()  # that hold
     grip: Grip | None = None  # of the enabling device, None where none is used
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
@@ -57,6 +58,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     limits: str = ""  # checksum of all limits
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
+    script_done: int = 0  # number of the last motion of a script that is done
 
     @property
     def amplified(self) -> bool:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool
+from pendant.motion.script_requests import Scripted
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
 from pendant.tick.words import Word
@@ -67,6 +68,7 @@ class Inputs:
     remote_signal: bool = False  # the remote controller asks for free-drive; a level
     jog: JogMove | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
     jog_released: bool = False  # that button was let go
+    script: Scripted | None = None  # what the running script wants, said in this tick (a keep-alive)
 
 
 NOTHING = Inputs()

@@ -35,6 +35,12 @@ def axis_locks(axes: AxisSettings) -> AxisLocks | None:
     return AxisLocks(locked, axes.frame is LockFrame.TOOL, from_rpy(axes.roll, axes.pitch, axes.yaw), near, axes.too_near)
 
 
+def locks_of(free: tuple[bool, ...], R_BU: Rotation, axes: AxisSettings) -> AxisLocks:
+    """Locks of all but these axes of a frame; what the settings say of singularities holds."""
+    near = axes.near if axes.resistance else 0.0
+    return AxisLocks(tuple([not each for each in free]), False, R_BU, near, axes.too_near)
+
+
 def freeing(free: frozenset[str]) -> dict[str, float | bool | str]:
     """The changes of settings, by dotted name, that free these axes and lock the others."""
     return {f"axes.{axis}": axis in free for axis in AXES}

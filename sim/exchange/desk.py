@@ -37,6 +37,7 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             ours.remote_signal or theirs.remote_signal,
             theirs.jog or ours.jog,
             ours.jog_released or theirs.jog_released,
+            theirs.script or ours.script,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 

@@ -65,6 +65,23 @@ class Line:
         """Whether the tool cannot go everywhere from q."""
         return bool(np.linalg.svd(self._jacobian(q)[2], compute_uv=False)[-1] < SINGULAR)
 
+    def pose(self, q: Array) -> tuple[Array, Array]:
+        """Tool centre point (3,) and orientation of the flange (3, 3) at q, in B."""
+        p, R, _ = self._dynamics.places(q)
+        return p + R @ self._tcp, R.copy()
+
+    def twist(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        """Speed of the tool centre point (3,) and about it (3,) at q, in B [m/s, rad/s]."""
+        twist = self._jacobian(q)[2] @ qd
+        return twist[:3], twist[3:]
+
+    def speeds(self, q: Array, v: Array, w: Array) -> Array:
+        """Joint speeds (n,) at q for a speed of the tool centre point (3,) and about it (3,), in B; the line is no matter."""
+        place = self._dynamics.update(q)
+        p, R, _ = place
+        course = (self._tcp, p + R @ self._tcp, R, v, R.T @ w)
+        return np.asarray(_solve(place, course, 0.0, 1.0), dtype=np.float64)
+
     def torque(self, q: Array, force: Array) -> Array:
         """Of the joints (n,) at q for a force on the outside at the tool centre point (3,) in B [N]."""
         return self._jacobian(q)[2][:3].T @ force

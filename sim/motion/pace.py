@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
-from sim.motion.moves import JointTrajectory, LinearTrajectory
+from sim.motion.blend import Blended, Planned
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -44,12 +44,13 @@ class Pace:
         self._target = 1.0
         self.rate = 1.0
 
-    def begin(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None, share: float) -> None:
-        """A motion begins, at rest; `share` as for `step`."""
+    def begin(self, motion: Planned | Blended, limits: SpeedLimits | None, share: float, *, moving: bool = False) -> None:
+        """A motion begins, at rest, or from a `moving` arm, whose rate it then takes over; `share` as for `step`."""
         self._look(motion, limits)
-        self.rate = self._target * share
+        if not moving:
+            self.rate = self._target * share
 
-    def step(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None, share: float) -> float:
+    def step(self, motion: Planned | Blended, limits: SpeedLimits | None, share: float) -> float:
         """The rate of the next tick; `share`: of the rate that the limits allow (program.speed)."""
         if limits != self._limits:
             self._look(motion, limits)
@@ -57,11 +58,11 @@ class Pace:
         self.rate += min(max(self._target * share - self.rate, -most), most)
         return self.rate
 
-    def _look(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits | None) -> None:
+    def _look(self, motion: Planned | Blended, limits: SpeedLimits | None) -> None:
         self._limits = limits
         self._target = 1.0 if limits is None else min(SHARE / max(self._worst(motion, limits), 1e-9), 1.0)
 
-    def _worst(self, motion: JointTrajectory | LinearTrajectory, limits: SpeedLimits) -> float:
+    def _worst(self, motion: Planned | Blended, limits: SpeedLimits) -> float:
         """The largest speed of the rest of the motion at full rate, over its limit."""
         probe = copy.copy(motion)
         stride = max(1.0, motion.remaining / TICK / LOOKS)

@@ -7,15 +7,28 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.haptics import Shake
+from pendant.motion.script_requests import (
+    ScriptedArc,
+    ScriptedJoints,
+    ScriptedLine,
+    ScriptedStop,
+    ServoJoints,
+    ServoTool,
+    SpeedJoints,
+    SpeedTool,
+)
 from pendant.program.jog_move import JogMove
-from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move
+from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunScript
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
+from sim.motion.blend import Blended, Planned
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory
-from sim.motion.moves import JointTrajectory, LinearTrajectory, Motion, MoveRefused, Reference, Stop, Strength, stop_time
+from sim.motion.moves import Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
+from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.streams import JointStream, ServoStream, SpeedStream, ToolStream
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
 from sim.sensing.sensors import LATENCY
@@ -30,6 +43,7 @@ STANDING = 0.02  # [rad/s]
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
 GONE = 0.01  # [N·m]
+ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
 
 class References:
@@ -54,6 +68,7 @@ class References:
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
+        self._leaving = False  # the motion has come to where the next one may begin
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self._standing = np.zeros(arm.n)
         self.now: Reference | None = None
@@ -110,22 +125,38 @@ class References:
             self.push = None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
         answer = self.now if decision.shake is None else _shaken(self.now, decision.shake)
         self._past.append(answer)
-        if law is Law.FOLLOW and self._motion.done and self._move is not None and not self.refusal:
-            self.move_done = self._move.id
+        if law is Law.FOLLOW and self._move is not None and not self.refusal:
+            self._leaving = not self._motion.done and self._near_its_end(self._motion, self._move, self.now)
+            if self._motion.done or self._leaving:
+                self.move_done = self._move.id
         self._law = law
         return answer
 
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
-        if isinstance(motion, JointTrajectory | LinearTrajectory):
+        if isinstance(motion, JointTrajectory | LinearTrajectory | Blended):
             if begins:
-                self._pace.begin(motion, decision.speed_limits, decision.speed)
+                self._pace.begin(motion, decision.speed_limits, decision.speed, moving=isinstance(motion, Blended))
             return motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
-        if isinstance(motion, JogTrajectory):
+        if isinstance(motion, JogTrajectory | JointStream):
             reference = motion.step(decision.speed, decision.speed_limits)
-            self.refusal = motion.problem
+            self.refusal = self.refusal or motion.problem
             return reference
+        assert isinstance(motion, Stop | ForceTrajectory)
         return motion.step()
+
+    def _near_its_end(self, motion: Motion, move: Move, now: Reference) -> bool:
+        """The tool is within the blend radius of the end of a script's motion, which slows down there."""
+        if not (isinstance(move, BLENDED) and isinstance(motion, JointTrajectory | LinearTrajectory | Blended)):
+            return False
+        if move.blend == 0.0 or not motion.slowing:
+            return False
+        return float(np.linalg.norm(self._tool(now.q) - self._tool(motion.goal))) <= move.blend
+
+    def _tool(self, q: Array) -> Array:
+        """Tool centre point (3,) in B [m]."""
+        p, R, _ = self._dynamics.places(q)
+        return p + R @ self._tcp
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
@@ -141,23 +172,78 @@ class References:
         return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing)
 
     def _begin(self, move: Move | None) -> None:
-        assert self.now is not None
+        now = self.now
+        assert now is not None
         self._settling = 0
-        q = self.now.q
+        q = now.q
         try:
             if isinstance(move, JointMove):
                 self._motion = JointTrajectory(q, move, self._limits, self._strength)
+            elif isinstance(move, BLENDED):
+                self._motion = self._after(move, now)
+            elif isinstance(move, ServoJoints | SpeedJoints | SpeedTool | ServoTool):
+                self._motion = self._stream(move, now)
             elif isinstance(move, LinearMove):
-                self._motion = LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
+                self._motion = self._line(q, move)
             elif isinstance(move, JogMove):
                 self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
                 self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
+            elif isinstance(move, ScriptedStop | RunScript):
+                self._motion = self._slowed(now, move)
             else:
                 self._motion = Stop(q, self._standing)
         except MoveRefused as refusal:
             self.refusal = str(refusal)
-            self._motion = Stop(q, self._standing)
+            self._motion = self._slowed(now)
+
+    def _slowed(self, now: Reference, move: Move | None = None) -> Stop:
+        """To rest on the way that the arm is on, as hard as it can or as a script says."""
+        length = stop_time(self._dynamics, now.q, now.qd, rotor=self._rotor, torque=self._torque)
+        if isinstance(move, ScriptedStop):
+            speed = np.abs(now.qd).max()
+            if move.of == "tool":
+                speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
+            length = max(length, 0.5 * np.pi * float(speed) / move.deceleration)
+        return Stop(now.q, now.qd, length)
+
+    def _line(self, q: Array, move: LinearMove) -> LinearTrajectory:
+        return LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
+
+    def _after(self, move: ScriptedJoints | ScriptedLine | ScriptedArc, now: Reference) -> Planned | Blended:
+        """A script's motion from where the one before ends, or from where the arm comes to rest on its way."""
+        before = self._motion if self._leaving else self._slowed(now)
+        assert isinstance(before, JointTrajectory | LinearTrajectory | Blended | Stop)
+        moving = not before.done and float(np.abs(now.qd).max()) > STANDING
+        begin = before.goal if moving else now.q
+        planned = (
+            JointTrajectory(begin, move, self._limits, self._strength)
+            if isinstance(move, ScriptedJoints)
+            else self._line(begin, move)
+        )
+        return Blended(before, planned, begin, self._limits[0]) if moving else planned
+
+    def _stream(self, move: ServoJoints | SpeedJoints | SpeedTool | ServoTool, now: Reference) -> JointStream:
+        """The same stream goes on with another target; any other begins at the reference."""
+        before = self._motion
+        if isinstance(move, ServoJoints):
+            if isinstance(before, ServoStream):
+                before.renew(move)
+                return before
+            return ServoStream(now, move, self._limits, self._pace)
+        if isinstance(move, SpeedJoints):
+            if isinstance(before, SpeedStream):
+                before.renew(move)
+                return before
+            return SpeedStream(now, move, self._limits, self._pace)
+        if isinstance(before, ToolStream):
+            before.renew(move)
+            return before
+        return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits, pace=self._pace)
+
+
+BLENDED = ScriptedJoints | ScriptedLine | ScriptedArc
+"""Motions of a script that may go over into the next."""
 
 
 def _shaken(reference: Reference, shake: Shake) -> Reference:

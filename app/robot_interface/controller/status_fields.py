@@ -28,6 +28,7 @@ class StatusFields:
         self._told: tuple[object, ...] = ()
         self._high: frozenset[int] = frozenset()
         self._tool_on = False
+        self._outputs: frozenset[int] = frozenset()
 
     def fill(self, state: ControllerState, decision: Decision, high: frozenset[int]) -> None:
         """Write the tick done last; what seldom changes only when it does. `high`: digital inputs."""
@@ -44,6 +45,10 @@ class StatusFields:
         if decision.tool_on is not self._tool_on:
             self._tool_on = decision.tool_on
             set_outputs(self._record, TOOL_OUTPUT, TOOL_OUTPUT if decision.tool_on else 0)
+        if decision.outputs != self._outputs:
+            changed = sum(1 << number for number in decision.outputs ^ self._outputs)
+            self._outputs = decision.outputs
+            set_outputs(self._record, changed, sum(1 << number for number in decision.outputs))
         told = (
             state.robot_mode,
             state.safety_mode,

@@ -1,20 +1,9 @@
 """Functions that move the arm (URScript manual, module motion)."""
 
-import math
 from collections.abc import Callable, Generator, Iterator
-from typing import Any
+from typing import Literal, NamedTuple
 
-from app.urscript.functions.motion_asks import (
-    CircleServoAsk,
-    ForceAsk,
-    ForceEndAsk,
-    FreeDriveAsk,
-    FreeDriveEndAsk,
-    MoveAsk,
-    ServoAsk,
-    SpeedAsk,
-    StopAsk,
-)
+from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.functions.sensing_values import Kinematics
 from app.urscript.language.trouble import Misuse
@@ -22,7 +11,6 @@ from app.urscript.machine.signature import (
     Builtin,
     Taken,
     any_value,
-    boolean,
     builtin,
     integer,
     items,
@@ -32,16 +20,26 @@ from app.urscript.machine.signature import (
     within,
 )
 from app.urscript.machine.values import PoseValue, Value, kind
+from pendant.motion.script_requests import (
+    Guided,
+    ScriptedArc,
+    ScriptedJoints,
+    ScriptedLine,
+    ScriptedMove,
+    ScriptedStop,
+    ServoJoints,
+    ServoTool,
+    SpeedJoints,
+    SpeedTool,
+)
 from pendant.tick.modes import TICK_RATE
+from pendant.tick.pose import Quaternion, Vector, rotation
 
 Doing = Generator[None, None, Value]
 
 MOST = 1e6
 POSITIVE = within(number, 1e-6, MOST)
 ZERO_UP = within(number, 0.0, MOST)
-LIMITS = (0.1, 0.1, 0.1, 0.17, 0.34, 0.17)
-HELD = 1e-3
-"""A speed below it is none."""
 
 
 def target(value: Value) -> tuple[float, ...] | PoseValue:
@@ -53,12 +51,24 @@ def target(value: Value) -> tuple[float, ...] | PoseValue:
     raise Misuse(f"expected joint angles or a pose, this is {kind(value)}")
 
 
+class Placed(NamedTuple):
+    """A pose as the arm takes it."""
+
+    position: Vector
+    quaternion: Quaternion
+
+
+def placed(x: PoseValue) -> Placed:
+    """Of a pose of the language."""
+    return Placed((x[0], x[1], x[2]), quaternion(tuple(x[3:])))
+
+
 def of_moves(robot: RobotSide) -> Iterator[Builtin]:
     """movej, movel, movep, movec and the stops."""
     arm = Kinematics(robot)
 
-    def until_done(ask: Any) -> Doing:
-        number_ = robot.arm.ask(ask)
+    def until_done(move: ScriptedMove) -> Doing:
+        number_ = robot.arm.ask(move)
         try:
             while not robot.arm.done(number_):
                 yield
@@ -78,18 +88,23 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
 
     def movej(*given: Value) -> Doing:
         q, a, v, t, r = given
-        return until_done(MoveAsk("j", joints(q), a, v, t, r))
+        return until_done(ScriptedJoints(q=joints(q), acceleration=a, speed=v, time=t, blend=r))
 
     def movel(*given: Value) -> Doing:
         x, a, v, t, r = given
-        return until_done(MoveAsk("l", cartesian(x), a, v, t, r))
+        position, turned = placed(cartesian(x))
+        return until_done(ScriptedLine(position=position, quaternion=turned, acceleration=a, speed=v, time=t, blend=r))
 
     def movep(x: Value, a: float, v: float, r: float) -> Doing:
-        return until_done(MoveAsk("p", cartesian(x), a, v, 0.0, r))
+        return movel(x, a, v, 0.0, r)
 
     def movec(*given: Value) -> Doing:
         via, to, a, v, r, mode = given
-        return until_done(MoveAsk("c", cartesian(to), a, v, 0.0, r, cartesian(via), mode == 1))
+        position, turned = placed(cartesian(to))
+        on_the_way = placed(cartesian(via)).position
+        return until_done(
+            ScriptedArc(position=position, quaternion=turned, via=on_the_way, acceleration=a, speed=v, blend=r, fixed=mode == 1)
+        )
 
     a, v, t, r = (
         lambda default: Taken("a", POSITIVE, default),
@@ -114,49 +129,50 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
 
     yield builtin("optimovej", optimovej, q, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
     yield builtin("optimovel", optimovel, x, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
-    for name in ("stopj", "stopl"):
-        yield builtin(
-            name, _stopping(until_done, name[-1]), Taken("a", POSITIVE), Taken("aRot", any_value, None), takes_time=True
-        )
+    stops: tuple[tuple[str, Literal["joints", "tool"]], ...] = (("stopj", "joints"), ("stopl", "tool"))
+    for name, of in stops:
+        yield builtin(name, _stopping(until_done, of), Taken("a", POSITIVE), Taken("aRot", any_value, None), takes_time=True)
 
 
-def _stopping(until_done: Callable[[Any], Doing], kind_: str) -> Callable[..., Doing]:
-    return lambda a, turning: until_done(StopAsk(kind_, a))
+def _stopping(until_done: Callable[[ScriptedMove], Doing], of: Literal["joints", "tool"]) -> Callable[..., Doing]:
+    return lambda a, turning: until_done(ScriptedStop(of=of, deceleration=a))
 
 
 def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     """servoj, servoc, speedj, speedl: commands that are given again and again."""
 
-    def for_time(ask: Any, seconds: float) -> Doing:
-        robot.arm.ask(ask)
+    arm = Kinematics(robot)
+
+    def for_time(move: ScriptedMove, seconds: float) -> Doing:
+        robot.arm.ask(move)
         for _ in range(max(round(min(seconds, MOST) * TICK_RATE), 1)):
             yield
 
     def servoj(*given: Value) -> Doing:
         q, _, _, t, lookahead, gain = given
-        return for_time(ServoAsk(q, t, lookahead, gain), t)
+        return for_time(ServoJoints(q=q, time=t, lookahead=lookahead, gain=gain), t)
 
     def servoc(x: Value, a: float, v: float, r: float) -> Doing:
-        return for_time(CircleServoAsk(x, a, v, r), 0.0)
+        position, turned = placed(x if type(x) is PoseValue else arm.forward(x, None))
+        return for_time(ServoTool(position=position, quaternion=turned, acceleration=a, speed=v, blend=r), 0.0)
 
-    def until_reached(ask: SpeedAsk) -> Doing:
+    def until_reached(move: SpeedJoints | SpeedTool) -> Doing:
         """Without a time, until the speed is there."""
-        if ask.time > 0.0:
-            yield from for_time(ask, ask.time)
+        if move.time > 0.0:
+            yield from for_time(move, move.time)
             return
-        number_ = robot.arm.ask(ask)
-        field = "actual_qd" if ask.kind == "j" else "actual_TCP_speed"
-        for _ in range(5 * TICK_RATE):
-            now = robot.record.get(field)
-            if robot.arm.done(number_) or math.dist(now, ask.speed) < HELD * 20:  # pyright: ignore[reportArgumentType]
-                return
+        number_ = robot.arm.ask(move)
+        while not robot.arm.done(number_):
             yield
 
     def speedj(qd: Value, a: float, t: float) -> Doing:
-        return until_reached(SpeedAsk("j", qd, a, t))
+        return until_reached(SpeedJoints(qd=qd, acceleration=a, time=t))
 
     def speedl(xd: Value, a: float, t: float, turning: Value) -> Doing:
-        return until_reached(SpeedAsk("l", xd, a, t, a if turning is None else number(turning)))
+        about = a if turning is None else within(number, 1e-6, MOST)(turning)
+        return until_reached(
+            SpeedTool(speed=tuple(xd[:3]), turning=tuple(xd[3:]), acceleration=a, turning_acceleration=about, time=t)
+        )
 
     q = Taken("q", numbers(6))
     yield builtin(
@@ -181,14 +197,11 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
 
 def of_force(robot: RobotSide) -> Iterator[Builtin]:
     """force_mode and tool_contact."""
-    damping, scaling = [0.025], [1.0]
 
     def force_mode(*given: Value) -> None:
-        frame, selection, wrench, type_, limits = given
-        if any(each not in (0, 1) for each in selection):
+        if any(each not in (0, 1) for each in given[1]):
             raise Misuse("selection_vector: expected six of 0 and 1")
-        chosen = tuple(bool(each) for each in selection)
-        robot.arm.ask(ForceAsk(frame, chosen, wrench, type_, limits, damping[0], scaling[0]))
+        raise Misuse("this robot cannot do it yet (force mode)")
 
     yield builtin(
         "force_mode",
@@ -199,10 +212,10 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
         Taken("type", within(integer, 1, 3)),
         Taken("limits", numbers(6)),
     )
-    yield builtin("end_force_mode", lambda: _asked(robot, ForceEndAsk()))
-    yield builtin("force_mode_set_damping", lambda d: damping.__setitem__(0, d), Taken("damping", within(number, 0.0, 1.0)))
-    yield builtin("force_mode_set_gain_scaling", lambda s: scaling.__setitem__(0, s), Taken("scaling", within(number, 0.0, 2.0)))
-    yield builtin("tool_contact", lambda d: robot.arm.steps_back(tuple(d)), Taken("direction", numbers(6), (0.0,) * 6))
+    yield builtin("end_force_mode", lambda: None)  # none is on
+    yield builtin("force_mode_set_damping", lambda d: None, Taken("damping", within(number, 0.0, 1.0)))
+    yield builtin("force_mode_set_gain_scaling", lambda s: None, Taken("scaling", within(number, 0.0, 2.0)))
+    yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))
 
 
 def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
@@ -211,65 +224,22 @@ def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
     def free(axes: Value, feature: Value) -> None:
         if len(axes) != 6 or any(each not in (0, 1) for each in axes):
             raise Misuse("freeAxes: expected six of 0 and 1")
-        frame = None
+        chosen = tuple(bool(each) for each in axes)
         if type(feature) is str:
             if feature not in ("base", "tool"):
                 raise Misuse(f'feature: {feature!r}; expected "base", "tool" or a pose')
-            if feature == "tool":
-                frame = pose(PoseValue(robot.record.get("actual_TCP_pose")))  # pyright: ignore[reportArgumentType]
+            pose_ = robot.record.get("actual_TCP_pose") if feature == "tool" else (0.0,) * 6
         else:
-            frame = pose(feature)
-        robot.arm.ask(FreeDriveAsk(tuple(bool(each) for each in axes), frame))
+            pose_ = pose(feature)
+        robot.arm.ask(Guided(axes=chosen, R_BU=rotation(quaternion(tuple(pose_[3:])))))  # pyright: ignore[reportIndexIssue]
 
     axes = Taken("freeAxes", items, (1, 1, 1, 1, 1, 1))
     yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"))
-    yield builtin("teach_mode", lambda: _asked(robot, FreeDriveAsk()))
-    yield builtin("end_freedrive_mode", lambda: _asked(robot, FreeDriveEndAsk()))
-    yield builtin("end_teach_mode", lambda: _asked(robot, FreeDriveEndAsk()))
+    yield builtin("teach_mode", lambda: _guided(robot))
+    yield builtin("end_freedrive_mode", robot.arm.leave)
+    yield builtin("end_teach_mode", robot.arm.leave)
     yield builtin("get_freedrive_status", robot.arm.free_drive_status)
 
 
-def _asked(robot: RobotSide, ask: Any) -> None:
-    robot.arm.ask(ask)
-
-
-def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
-    """Payload, tool centre point, sensor, watchdog, stops."""
-    cog = Taken("cog", numbers(3))
-    mass = Taken("m", within(number, 0.0, 100.0))
-    now = Taken("transition_time", ZERO_UP, 0.0)
-
-    def payload(m: float, c: Value = None, inertia: Value = None, transition: float = 0.0) -> None:
-        centre = tuple(robot.record.get("payload_cog")) if c is None else c  # pyright: ignore[reportArgumentType]
-        robot.command("payload", mass=m, cog=centre, inertia=inertia, transition=transition)
-
-    yield builtin("set_payload", payload, mass, Taken("cog", _centre, None))
-    yield builtin("set_payload_mass", payload, mass)
-    yield builtin("set_payload_cog", lambda c: payload(float(robot.record.get("payload")), c), cog)  # pyright: ignore[reportArgumentType]
-    yield builtin("set_target_payload", payload, mass, cog, Taken("inertia", numbers(6), (0.0,) * 6), now)
-    name = Taken("tcp_name", any_value, "")
-    yield builtin("set_tcp", lambda x, n: robot.command("tcp", pose=x), Taken("pose", pose), name)
-    yield builtin("zero_ftsensor", lambda: robot.command("zero"))
-    yield builtin("protective_stop", lambda: robot.command("protective_stop"))
-    yield builtin("set_gravity", lambda d: robot.command("gravity", gravity=d), Taken("d", numbers(3)))
-    action = Taken("action", any_value, "pause")
-    yield builtin(
-        "rtde_set_watchdog",
-        lambda n, f, act: robot.command("watchdog", name=n, frequency=f, action=act),
-        Taken("variable_name", any_value),
-        Taken("min_frequency", within(number, 0.0, 500.0)),
-        action,
-    )
-    three = numbers(3)
-    sensor = (
-        Taken("enable", boolean),
-        Taken("sensor_mass", ZERO_UP, 0.0),
-        Taken("sensor_measuring_offset", three, (0.0,) * 3),
-        Taken("sensor_cog", three, (0.0,) * 3),
-    )
-    for each in ("ft_rtde_input_enable", "enable_external_ft_sensor"):
-        yield builtin(each, lambda *given: robot.command("external_sensor", enable=given[0]), *sensor)
-
-
-def _centre(value: Value) -> Value:
-    return None if value is None else numbers(3)(value)
+def _guided(robot: RobotSide) -> None:
+    robot.arm.ask(Guided())

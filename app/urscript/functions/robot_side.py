@@ -4,22 +4,22 @@ from typing import Any, Protocol
 
 from app.robot_interface.controller.field_record import FieldRecord
 from app.urscript.functions.script_sockets import ScriptSockets
+from pendant.motion.script_requests import ScriptedMove
 from sim.simulation import Simulation
+
+Axes = tuple[float, ...]
+"""Six numbers, or three: along x, y, z, then about them."""
 
 
 class ArmSide(Protocol):
-    """The arm: one request at a time is done, and who waits for it asks every tick."""
+    """The arm: one motion at a time is done, and who waits for it asks every tick."""
 
-    def ask(self, request: Any) -> int:
-        """Ask for a motion or a stop from the next tick on, in place of what is done; its number.
-
-        Raises:
-            Misuse: it cannot be done.
-        """
+    def ask(self, move: ScriptedMove) -> int:
+        """Ask for a motion or a stop from the next tick on, in place of what is done; its number."""
         ...
 
     def done(self, number: int) -> bool:
-        """Whether a request is done, or another took its place.
+        """Whether a motion is done, has come to where the next may begin, or another took its place.
 
         Raises:
             Misuse: it was refused.
@@ -27,10 +27,14 @@ class ArmSide(Protocol):
         ...
 
     def drop(self, number: int) -> None:
-        """Nobody waits for a request any more: the arm comes to rest, unless another one follows in this tick."""
+        """Nobody waits for a motion any more: the arm comes to rest, unless another one follows in this tick."""
         ...
 
-    def steps_back(self, direction: tuple[float, ...]) -> int:
+    def leave(self) -> None:
+        """Be guided by hand no more."""
+        ...
+
+    def steps_back(self, direction: Axes) -> int:
         """Ticks since the tool has been in contact against this direction, axes of B; zeros for any; 0 for none."""
         ...
 

@@ -11,14 +11,13 @@ from app.urscript.functions.library_of_functions import builtins_of
 from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language.reading import read_script
-from app.urscript.language.trouble import NOWHERE, ScriptTrouble
+from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
+from app.urscript.running.script_arm import ScriptArm
 from app.urscript.running.script_robot import ScriptRobot
-from app.urscript.running.step_arm import StepArm
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
 from pendant.inputs import NOTHING, Inputs
-from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 
@@ -30,9 +29,6 @@ KEPT = 200
 
 SECONDARY_TICKS = 5
 """A secondary program that runs longer takes time, which it must not."""
-
-FREE_DRIVE = ticks(0.1)
-"""The script's wish for free-drive lasts so long without it."""
 
 
 class OfferedScript(NamedTuple):
@@ -66,7 +62,7 @@ class ScriptRunner:
         self.paused = False
         self.text = ""  # of the script that ran last
         self.trouble: ScriptTrouble | None = None  # of the one that ran last
-        self.arm = StepArm(cabinet.simulation.arm)
+        self.arm = ScriptArm()
         cabinet.script = self
 
     # from any thread
@@ -118,11 +114,12 @@ class ScriptRunner:
         """Let it wait; the arm comes to rest."""
         if self._running is not None and not self.paused:
             self.paused = True
-            self.arm.end()
+            self.arm.pause()
 
     def resume(self) -> None:
-        """Let it go on."""
+        """Let it go on, as soon as the arm stands."""
         self.paused = False
+        self.arm.resume()
 
     def tell(self, told: Told) -> None:
         """Tell everybody."""
@@ -136,7 +133,7 @@ class ScriptRunner:
         """Of the script; None: there is none, and the robot's own programs count."""
         if self._running is None:
             return None
-        return RuntimeState.PAUSED if self.paused else RuntimeState.PLAYING
+        return RuntimeState.PAUSED if self.paused or self.arm.halted else RuntimeState.PLAYING
 
     @property
     def name(self) -> str:
@@ -169,11 +166,11 @@ class ScriptRunner:
         self._change()
         inputs = NOTHING
         running = self._running
-        if running is not None and not self.paused:
+        if running is not None and not (self.paused or self.arm.halted):
             over = running.machine.tick()
             inputs = self._taken(running.robot)
             if over:
-                self._end(running.machine.trouble)
+                self._end(running.machine.trouble, whole=running.machine.trouble is None)
             elif running.robot.watchdog is not None:
                 self._watch(running.robot)
         for k, (script, age) in enumerate(self._beside):
@@ -187,24 +184,30 @@ class ScriptRunner:
             self._beside[k] = (script, -1 if over else age + 1)
         if self._beside:
             self._beside = [each for each in self._beside if each[1] >= 0]
-        inputs = _joined(inputs, self.arm.inputs())
-        if self.arm.freeing:
-            self._cabinet.free_drive_until = self._cabinet.ticks + FREE_DRIVE
+        equips = inputs is not NOTHING and bool(inputs.load or inputs.tool or inputs.tools)
+        inputs = _joined(inputs, self.arm.inputs(equips))
         return None if inputs is NOTHING else Wishes(inputs, (), ())
 
     def see(self, decision: Decision) -> None:
         """Take in what the robot decided."""
-        self.arm.see(decision, self._cabinet.simulation)
+        refusal = self.arm.refusal
+        self.arm.see(decision)
         if self._running is None:
             return
         self._history.appendleft(tuple(self._cabinet.simulation.estimate.q.tolist()))
-        if decision.mode is Mode.STOP:
-            self._end(None)
+        if decision.mode is Mode.STOP or self.arm.gone:
+            self._end(self._unable(refusal or self.arm.refusal))
+        elif refusal and refusal == self.arm.refusal:  # nobody waits for what was refused
+            self._end(self._unable(refusal))
+
+    def _unable(self, reason: str) -> ScriptTrouble | None:
+        """Why the arm could not do what the script asked for, at the line that it has come to."""
+        return ScriptTrouble(Spot(max(self.line, 1), 1), reason) if reason else None
 
     def begin(self) -> None:
         """The simulation starts over: no script runs."""
         self._end(None)
-        self.arm = StepArm(self._cabinet.simulation.arm)
+        self.arm = ScriptArm()
 
     def _change(self) -> None:
         """Do what others asked for since the last tick."""
@@ -253,13 +256,13 @@ class ScriptRunner:
             else:
                 self.pause()
 
-    def _end(self, trouble: ScriptTrouble | None) -> None:
+    def _end(self, trouble: ScriptTrouble | None, *, whole: bool = False) -> None:
         running = self._running
         if running is None:
             return
         self._running, self.trouble = None, trouble
         running.machine.stop()
-        self.arm.end()
+        self.arm.end(whole=whole)
         self._close(running, trouble)
         self.tell(Told(Telling.ENDED, "", running.machine.script.name))
 

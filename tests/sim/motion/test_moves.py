@@ -11,15 +11,13 @@ from sim.motion.moves import (
     BRAKING_SHARE,
     MOVING_SHARE,
     SHORTEST_STOP,
-    JointTrajectory,
-    LinearTrajectory,
-    Motion,
     MoveRefused,
     Reference,
     Stop,
     Strength,
     stop_time,
 )
+from sim.motion.planned import JointTrajectory, LinearTrajectory
 from sim.rigid_body.dynamics import Dynamics
 from tests.sim.arms import UR5E
 
@@ -36,7 +34,7 @@ LIMITS = (SPEED, ACCELERATION, POSITION)
 TCP = np.array([0.01, -0.02, 0.15])
 
 
-def play(motion: Motion, ticks: int = 20000) -> list[Reference]:
+def play(motion: JointTrajectory | LinearTrajectory | Stop, ticks: int = 20000) -> list[Reference]:
     """All references until the motion is done, and three more."""
     rows = []
     for _ in range(ticks):

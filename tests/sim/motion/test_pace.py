@@ -8,8 +8,8 @@ from pendant.program.steps import JointMove, LinearMove
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK, Mode, Safety
 from sim.arm.frames import quaternion_from_matrix
-from sim.motion.moves import JointTrajectory, LinearTrajectory
 from sim.motion.pace import RAMP, SHARE, Pace
+from sim.motion.planned import JointTrajectory, LinearTrajectory
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench
 from tests.sim.laws import dynamics

@@ -13,11 +13,12 @@ from app.robot_interface.controller.status_fields import (
     REMAINING,
     RUNNING_OUT,
     TRYING,
+    set_outputs,
 )
 from app.session.actions import DigitalInput, Laboratory, Press, Pushing, Release, Tap
 from pendant.events.event import Kind
 from pendant.inputs import Command
-from pendant.program.steps import JointMove, Program
+from pendant.program.steps import JointMove, Program, SetOutput
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
 from sim.plant.changes import DropPayload
 from tests.app.robot_interface.robot_bench import RobotBench
@@ -232,3 +233,14 @@ def test_levels_of_the_safety_inputs_are_told(command: Command, safety: Safety) 
     bench.page(command)
     assert bench.cabinet.state.safety is safety
     assert bench.cabinet.record.get("safety_mode") == {Safety.SAFEGUARD_STOP: 5, Safety.REDUCED: 2}[safety]
+
+
+def test_outputs_that_a_program_switches_stand_in_the_image_beside_those_of_clients() -> None:
+    bench = RobotBench()
+    bench.step(60)
+    set_outputs(bench.cabinet.record, 0x0F, 0x05)
+    steps = (SetOutput(output=1, on=True), SetOutput(output=0, on=True), SetOutput(output=0, on=False))
+    bench.cabinet.ask(Ask((Command.START_REMOTELY,), program=Program(steps=steps)))
+    seen = [(bench.step(), bench.cabinet.record.get("actual_digital_output_bits"))[1] for _ in range(6)]
+    assert seen[0] == 0x05
+    assert seen[-1] == 0x06

@@ -1,0 +1,50 @@
+"""Functions that set the robot up: payload, tool centre point, sensor, watchdog, stops (URScript manual, module motion)."""
+
+from collections.abc import Iterator
+
+from app.urscript.functions.motions import ZERO_UP
+from app.urscript.functions.robot_side import RobotSide
+from app.urscript.machine.signature import Builtin, Taken, any_value, boolean, builtin, number, numbers, pose, within
+from app.urscript.machine.values import Value
+
+
+def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
+    """Payload, tool centre point, sensor, watchdog, stops."""
+    cog = Taken("cog", numbers(3))
+    mass = Taken("m", within(number, 0.0, 100.0))
+    now = Taken("transition_time", ZERO_UP, 0.0)
+
+    def payload(m: float, c: Value = None, inertia: Value = None, transition: float = 0.0) -> None:
+        centre = tuple(robot.record.get("payload_cog")) if c is None else c  # pyright: ignore[reportArgumentType]
+        robot.command("payload", mass=m, cog=centre, inertia=inertia, transition=transition)
+
+    yield builtin("set_payload", payload, mass, Taken("cog", _centre, None))
+    yield builtin("set_payload_mass", payload, mass)
+    yield builtin("set_payload_cog", lambda c: payload(float(robot.record.get("payload")), c), cog)  # pyright: ignore[reportArgumentType]
+    yield builtin("set_target_payload", payload, mass, cog, Taken("inertia", numbers(6), (0.0,) * 6), now)
+    name = Taken("tcp_name", any_value, "")
+    yield builtin("set_tcp", lambda x, n: robot.command("tcp", pose=x), Taken("pose", pose), name)
+    yield builtin("zero_ftsensor", lambda: robot.command("zero"))
+    yield builtin("protective_stop", lambda: robot.command("protective_stop"))
+    yield builtin("set_gravity", lambda d: robot.command("gravity", gravity=d), Taken("d", numbers(3)))
+    action = Taken("action", any_value, "pause")
+    yield builtin(
+        "rtde_set_watchdog",
+        lambda n, f, act: robot.command("watchdog", name=n, frequency=f, action=act),
+        Taken("variable_name", any_value),
+        Taken("min_frequency", within(number, 0.0, 500.0)),
+        action,
+    )
+    three = numbers(3)
+    sensor = (
+        Taken("enable", boolean),
+        Taken("sensor_mass", ZERO_UP, 0.0),
+        Taken("sensor_measuring_offset", three, (0.0,) * 3),
+        Taken("sensor_cog", three, (0.0,) * 3),
+    )
+    for each in ("ft_rtde_input_enable", "enable_external_ft_sensor"):
+        yield builtin(each, lambda *given: robot.command("external_sensor", enable=given[0]), *sensor)
+
+
+def _centre(value: Value) -> Value:
+    return None if value is None else numbers(3)(value)

@@ -1,0 +1,199 @@
+"""The arm of a script: what it wants is said to the pendant in every tick, and read back from what that decides."""
+
+from msgspec.structs import replace
+
+from app.urscript.functions.robot_side import Axes
+from app.urscript.functions.sensing_values import HISTORY
+from app.urscript.language.trouble import Misuse
+from pendant.contact.contact_change import Change, Contact
+from pendant.decision import Decision
+from pendant.events.event import Kind, Values
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.limits.nearness import Nearness
+from pendant.motion.script_requests import Guided, Scripted, ScriptedMove, ScriptedStop
+from pendant.program.steps import ProgramState, script_program
+from pendant.settings.schema import ticks
+from pendant.tick.modes import Mode, Phase
+
+NAME = "script"
+"""Of the program that the pendant runs for it."""
+
+PATIENCE = ticks(3.0)
+"""A motion waits so long for the arm to come to rest before the program begins."""
+
+AGAIN = ticks(0.1)
+"""Between attempts to begin or to go on."""
+
+STATUS = {Nearness.OK: 0, Nearness.NEAR: 1, Nearness.TOO_NEAR: 2}
+
+OWN_STOP = 4.0
+"""Deceleration of a motion that nobody waits for any more [rad/s²]."""
+
+REFUSED = frozenset({Kind.PROGRAM_REFUSED, Kind.PROGRAM_FAILED})
+
+
+class ScriptArm:
+    """See `app.urscript.functions.robot_side.ArmSide`.
+
+    Attributes:
+        refusal: why the arm cannot do what was asked for, until somebody takes it; "".
+        gone: somebody else ended the script's motion.
+    """
+
+    def __init__(self) -> None:
+        self._count = 0  # motions so far, of all scripts
+        self._wish = Scripted()
+        self._wanted = False  # the script wants something of the arm
+        self._state = ProgramState.NONE  # of the script's program in the pendant
+        self._over = False  # the script is, and its program is to end
+        self._ending: Command | None = None  # not at its own end, but by this
+        self._commands: tuple[Command, ...] = ()  # of the next tick
+        self._waited = 0  # ticks for the program to begin, or to go on
+        self._resuming = False
+        self._done = 0
+        self._mode, self._phase, self._static = Mode.TEACH, Phase.OFF, False
+        self._nearness = Nearness.OK
+        self._contact: tuple[int, Contact] | None = None  # that lasts, and the tick in which it began
+        self._tick = 0
+        self.refusal = ""
+        self.gone = False
+
+    # of the script
+
+    def ask(self, move: ScriptedMove) -> int:
+        """Ask for a motion or a stop, in place of what is done; its number."""
+        if isinstance(self._wish.move, Guided):
+            self.leave()
+        self._count += 1
+        self._want(replace(self._wish, move=replace(move, id=self._count)))
+        return self._count
+
+    def done(self, number: int) -> bool:
+        """Whether a request is done, or another took its place."""
+        if number == self._count and self.refusal:
+            refusal, self.refusal = self.refusal, ""
+            raise Misuse(refusal)
+        return number != self._count or self._done >= number
+
+    def drop(self, number: int) -> None:
+        """Nobody waits any more."""
+        if number == self._count and self._done < number:
+            self.ask(ScriptedStop(deceleration=OWN_STOP))
+
+    def leave(self) -> None:
+        """Be guided by hand no more."""
+        if self._phase is not Phase.OFF and Command.LEAVE_FREE_DRIVE not in self._commands:
+            self._commands += (Command.LEAVE_FREE_DRIVE,)
+        if isinstance(self._wish.move, Guided):
+            self._count += 1
+            self._wish = replace(self._wish, move=ScriptedStop(id=self._count))
+
+    def steps_back(self, direction: Axes) -> int:
+        """Ticks since the tool has been in contact against this direction."""
+        if not self._wish.feeling:
+            self._want(replace(self._wish, feeling=True))
+        if self._contact is None:
+            return 0
+        began, contact = self._contact
+        against = sum(a * b for a, b in zip(contact.force, direction, strict=False))
+        return self._tick - began if against > 0.0 or not any(direction[:3]) else 0
+
+    def free_drive_status(self) -> int:
+        """How near a singularity is, in free-drive."""
+        return STATUS[self._nearness]
+
+    def _want(self, wish: Scripted) -> None:
+        self._wish = wish
+        if not self._wanted:
+            self._wanted, self._waited, self.refusal = True, 0, ""
+
+    # of who runs it
+
+    def end(self, *, whole: bool) -> None:
+        """The script is over; `whole`: it has come to its own end. The arm comes to rest."""
+        if self._state in ACTIVE:
+            self._over = True
+            self._ending = None if whole and self._state is ProgramState.RUNNING else Command.STOP_PROGRAM
+        self._wish, self._wanted, self._resuming, self.refusal, self.gone, self._contact = (
+            Scripted(),
+            False,
+            False,
+            "",
+            False,
+            None,
+        )
+
+    def pause(self) -> None:
+        """The arm comes to rest, and what it does is begun again when it goes on."""
+        self._resuming = False
+        if self._state is ProgramState.RUNNING:
+            self._commands += (Command.PAUSE_PROGRAM,)
+
+    def resume(self) -> None:
+        """Go on as soon as the arm stands."""
+        self._resuming, self._waited = self._state is ProgramState.PAUSED, 0
+
+    @property
+    def halted(self) -> bool:
+        """The pendant has paused the script's program."""
+        return self._state is ProgramState.PAUSED
+
+    def inputs(self, equips: bool) -> Inputs:
+        """What the pendant gets for the tick that begins; `equips`: with tool or payload of the script."""
+        commands, self._commands = self._commands, ()
+        if self._over:
+            if self._ending is not None:
+                commands += (self._ending,)
+            self._ending = None
+            return Inputs(script=OVER, commands=commands)
+        if self._state in ACTIVE:
+            wish = replace(self._wish, equips=True) if equips else self._wish
+            if self._resuming and self._again():
+                commands += (Command.RESUME_PROGRAM,)
+            return Inputs(script=wish, commands=commands)
+        if self._wanted and not self.refusal and self._again():
+            start = Command.START_REMOTELY if self._mode is Mode.REMOTE else Command.START_PROGRAM
+            return Inputs(script=self._wish, program=script_program(NAME), commands=(*commands, start))
+        return Inputs(commands=commands) if commands else NOTHING
+
+    def _again(self) -> bool:
+        """Whether to try now to begin, or to go on: the arm stands, or will not within what is waited for."""
+        self._waited += 1
+        return (self._static and self._waited % AGAIN == 1) or self._waited >= PATIENCE
+
+    def see(self, decision: Decision) -> None:
+        """Take in a tick."""
+        self._tick += 1
+        self._mode, self._phase, self._static = decision.mode, decision.phase, decision.static
+        self._done = decision.script_done
+        if decision.singularity is not None:
+            self._nearness = decision.singularity
+        for contact in decision.contacts:
+            if contact.part == "tool":
+                lost = contact.change is Change.LOST
+                self._contact = None if lost else (self._tick - contact.steps, contact)
+        if self._contact is not None and self._tick - self._contact[0] > HISTORY:
+            self._contact = None
+        before = self._state
+        for event in decision.events:
+            self._take(event.kind, event.values)
+        if self._state in ACTIVE:
+            self._state = decision.program if decision.program in ACTIVE else ProgramState.STOPPED
+        if before in ACTIVE and self._state not in ACTIVE:
+            if not self._over:
+                self.gone, self._wish, self._wanted = True, Scripted(), False
+            self._over = False
+
+    def _take(self, kind: Kind, values: Values) -> None:
+        waiting = self._wanted and self._state not in ACTIVE
+        if kind is Kind.PROGRAM_STARTED and waiting and values["name"] == NAME:
+            self._state, self._waited = ProgramState.RUNNING, 0
+        elif kind is Kind.PROGRAM_RESUMED:
+            self._resuming = False
+        elif (kind in REFUSED and self._wanted) or (kind is Kind.COMMAND_REFUSED and waiting and self._waited >= PATIENCE):
+            self.refusal = str(values["reason"])
+
+
+OVER = Scripted(over=True)
+
+ACTIVE = frozenset({ProgramState.RUNNING, ProgramState.PAUSED})

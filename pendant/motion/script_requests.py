@@ -1,0 +1,136 @@
+"""What a script asks of the arm: its motion, guiding by hand. SI units; poses and directions in axes of B.
+
+Each motion takes the place of the one before: from a moving arm the next one begins without a stop where the one before has
+a blend radius, else the arm comes to rest on its way while the next begins.
+"""
+
+import math
+from typing import Literal
+
+import msgspec
+
+from pendant.program.steps import HandGuide, LinearMove, Move
+from pendant.tick.pose import UNTURNED, Rotation, Vector
+
+LOOKAHEAD = (0.03, 0.2)
+"""Of servoj [s] (URScript manual)."""
+
+GAIN = (100.0, 2000.0)
+"""Of servoj [1/s²] (URScript manual)."""
+
+
+class ScriptedJoints(Move, tag="movej", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """To joint angles, straight in joint angles; the joint with the longest way has the speed and the acceleration."""
+
+    q: tuple[float, ...]  # (n,) [rad]
+    acceleration: float  # [rad/s²]
+    speed: float  # [rad/s]
+    time: float = 0.0  # that it takes, in place of speed and acceleration; 0: they count [s]
+    blend: float = 0.0  # so near to its end it may go over into the next motion [m]
+
+    def __post_init__(self) -> None:
+        _finite(*self.q, self.acceleration, self.speed, self.time, self.blend)
+
+
+class ScriptedLine(LinearMove, tag="movel", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point along a straight line to a pose."""
+
+    time: float = 0.0  # as of ScriptedJoints [s]
+    blend: float = 0.0  # [m]
+
+
+class ScriptedArc(LinearMove, tag="movec", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point along the circle through where it is, `via` and its end."""
+
+    via: Vector  # [m]
+    fixed: bool = False  # the tool keeps its orientation to the tangent; else it turns evenly to that of the end
+    time: float = 0.0  # as of ScriptedJoints [s]
+    blend: float = 0.0  # [m]
+
+
+class ServoJoints(Move, tag="servoj", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Towards joint angles that are given again and again. Without a new one after its time the arm comes to rest."""
+
+    q: tuple[float, ...]  # (n,) [rad]
+    time: float  # for which it holds [s]
+    lookahead: float = 0.1  # [s]
+    gain: float = 300.0  # [1/s²]
+
+    def __post_init__(self) -> None:
+        _finite(*self.q, self.time)
+        _within("lookahead", self.lookahead, LOOKAHEAD)
+        _within("gain", self.gain, GAIN)
+
+
+class ServoTool(LinearMove, tag="servoc", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point towards a pose that is given again and again, at constant speed."""
+
+    blend: float = 0.0  # [m]
+
+
+class SpeedJoints(Move, tag="speedj", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Joint speeds."""
+
+    qd: tuple[float, ...]  # (n,) [rad/s]
+    acceleration: float  # of the joint whose speed changes most [rad/s²]
+    time: float = 0.0  # after which the arm comes to rest; 0: when something else is asked for [s]
+
+    def __post_init__(self) -> None:
+        _finite(*self.qd, self.acceleration, self.time)
+
+
+class SpeedTool(Move, tag="speedl", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A speed of the tool centre point, and one about it."""
+
+    speed: Vector  # [m/s]
+    turning: Vector  # [rad/s]
+    acceleration: float  # [m/s²]
+    turning_acceleration: float  # [rad/s²]
+    time: float = 0.0  # as of SpeedJoints [s]
+
+    def __post_init__(self) -> None:
+        _finite(*self.speed, *self.turning, self.acceleration, self.turning_acceleration, self.time)
+
+
+class ScriptedStop(Move, tag="stop", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Come to rest on the way that the arm is on."""
+
+    of: Literal["joints", "tool"] = "joints"  # whose deceleration it is: of the fastest joint, or of the tool centre point
+    deceleration: float = math.inf  # [rad/s²] or [m/s²]; not more than the arm can
+
+
+class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The arm is guided by hand, after the activation sequence, along and about the free axes of a frame."""
+
+    axes: tuple[bool, ...] = (True,) * 6  # x y z rx ry rz that are free
+    R_BU: Rotation = UNTURNED  # the frame
+
+
+ScriptedMove = (
+    ScriptedJoints | ScriptedLine | ScriptedArc | ServoJoints | ServoTool | SpeedJoints | SpeedTool | ScriptedStop | Guided
+)
+
+
+class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
+    """What the running script wants of the arm. It is said in every tick: without it the arm comes to rest (FD-23).
+
+    The motion's `id` is the script's own number of it, greater than that of every motion before: a new number is a new motion.
+    `Decision.script_done` is the number of the last motion that is done, or has come to where the next one may begin.
+    """
+
+    move: ScriptedMove | None = None  # None: none yet, the arm stands
+    feeling: bool = False  # changes in contact are to be looked for
+    over: bool = False  # the script has ended; the arm comes to rest
+    equips: bool = False  # tool and payload in the inputs of this tick are the script's
+
+
+def _finite(*values: float) -> None:
+    for value in values:
+        if not math.isfinite(value):
+            raise ValueError(f"{value!r} is not a finite number")
+
+
+def _within(what: str, value: float, allowed: tuple[float, float]) -> None:
+    least, most = allowed
+    if not least <= value <= most:
+        raise ValueError(f"{what}: {value:g}, allowed: {least:g} .. {most:g}")

@@ -1,0 +1,134 @@
+"""Scripts move the arm: what the commands of the language do, from the text to the simulated joints."""
+
+import pytest
+
+from pendant.events.event import Kind
+from pendant.inputs import Command, Inputs
+from pendant.tick.modes import Mode
+from tests.app.robot_interface.robot_bench import RobotBench
+from tests.app.urscript.script_bench import ScriptBench
+
+
+def told(text: str, ticks: int = 4000, bench: ScriptBench | None = None) -> tuple[list[float], str]:
+    """The numbers that a program tells, and the error that ends it."""
+    lines, trouble = (bench or ScriptBench()).run("def prog():\n" + text + "\nend\n", ticks)
+    return [float(line) for line in lines], trouble
+
+
+def test_a_joint_motion_ends_where_it_should() -> None:
+    (moved,), trouble = told(
+        "q = get_target_joint_positions()\n a = q[0]\n q[0] = a + 0.2\n movej(q, a=1.4, v=1.0)\n"
+        " sleep(0.3)\n x = get_actual_joint_positions()\n textmsg(x[0] - a)"
+    )
+    assert moved == pytest.approx(0.2, abs=5e-4)
+    assert trouble == ""
+
+
+@pytest.mark.parametrize(("blend", "least", "most"), [("", 0.0, 1e-6), (", r=0.02", 0.05, 0.101)])
+def test_with_a_blend_radius_the_tool_does_not_stop_between_two_lines(blend: str, least: float, most: float) -> None:
+    (speed, missed), _ = told(
+        "p = get_target_tcp_pose()\n"
+        f" movel(pose_trans(p, p[0.05,0,0,0,0,0]), a=1.2, v=0.1{blend})\n"
+        " s = get_target_tcp_speed()\n textmsg(norm(s))\n"
+        " movel(pose_trans(p, p[0.05,0.05,0,0,0,0]), a=1.2, v=0.1)\n"
+        " textmsg(point_dist(get_target_tcp_pose(), pose_trans(p, p[0.05,0.05,0,0,0,0])))"
+    )
+    assert least <= speed <= most
+    assert missed < 2e-4
+
+
+def test_servo_commands_are_followed_the_look_ahead_later() -> None:
+    """At 0.2 rad/s and 0.1 s of look-ahead the reference is 0.02 rad behind."""
+    (behind, turned), trouble = told(
+        "q = get_target_joint_positions()\n a = q[0]\n i = 0\n"
+        " while i < 1000:\n  i = i + 1\n  q[0] = q[0] + 0.0004\n  servoj(q, t=0.002, lookahead_time=0.1, gain=300)\n end\n"
+        " t = get_target_joint_positions()\n textmsg(q[0] - t[0])\n stopj(2.0)\n"
+        " x = get_actual_joint_positions()\n textmsg(x[0] - a)"
+    )
+    assert behind == pytest.approx(0.02, abs=1e-3)
+    assert 0.38 < turned < 0.4
+    assert trouble == ""
+
+
+def test_a_servo_target_out_of_range_ends_the_script_with_its_place() -> None:
+    _, trouble = told("while True:\n  servoj([9,0,0,0,0,0], t=0.002)\n end")
+    assert trouble.startswith("line 3, ")
+    assert trouble.endswith(": servoj: joint 1 would reach 9.0000 rad, allowed ±6.2832")
+
+
+def test_a_tool_speed_is_held_for_its_time() -> None:
+    (up, aside), _ = told(
+        "p = get_target_tcp_pose()\n speedl([0,0,0.05,0,0,0], 0.5, 1.0)\n stopl(1.0)\n"
+        " e = get_target_tcp_pose()\n textmsg(e[2] - p[2])\n textmsg(e[0] - p[0])"
+    )
+    assert up == pytest.approx(0.05 * (1.0 - 0.05) + 0.05**2 / 2, abs=0.003)
+    assert abs(aside) < 1e-4
+
+
+def test_a_joint_speed_that_nobody_renews_ends() -> None:
+    (speed,), _ = told("speedj([0.2,0,0,0,0,0], 0.5, 0.1)\n sleep(1.0)\n s = get_target_joint_speeds()\n textmsg(s[0])")
+    assert speed == 0.0
+
+
+def test_a_circle_ends_where_it_should() -> None:
+    (missed,), trouble = told(
+        "p = get_target_tcp_pose()\n"
+        " movec(pose_trans(p, p[0.05,0.05,0,0,0,0]), pose_trans(p, p[0.1,0,0,0,0,0]), a=1.0, v=0.1, mode=1)\n"
+        " textmsg(point_dist(get_target_tcp_pose(), pose_trans(p, p[0.1,0,0,0,0,0])))"
+    )
+    assert missed < 3e-4
+    assert trouble == ""
+
+
+def test_what_cannot_be_done_says_so() -> None:
+    _, trouble = told("force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,-10,0,0,0], 2, [0.1,0.1,0.1,0.1,0.1,0.1])")
+    assert "this robot cannot do it yet (force mode)" in trouble
+    _, trouble = told("force_mode(p[0,0,0,0,0,0], [0,0,2,0,0,0], [0,0,-10,0,0,0], 2, [0.1,0.1,0.1,0.1,0.1,0.1])")
+    assert "selection_vector: expected six of 0 and 1" in trouble
+
+
+def begun(text: str, **robot: float) -> ScriptBench:
+    """A script runs on a robot that is so."""
+    bench = ScriptBench()
+    if robot:
+        bench.robot = RobotBench(**robot)  # type: ignore[arg-type]
+        bench.runner = type(bench.runner)(bench.robot.cabinet)
+        bench.robot.step(150)
+    bench.runner.offer("def prog():\n" + text + "\nend\n")
+    return bench
+
+
+GUIDED = " freedrive_mode()\n sleep(60)\n end_freedrive_mode()"
+
+
+def test_a_script_frees_the_arm_through_the_whole_activation() -> None:
+    bench = begun(GUIDED)
+    modes = []
+    for _ in range(1500):
+        modes.append(bench.robot.step().mode)
+        if modes[-1] is Mode.FREE_DRIVE:
+            break
+    kinds = [event.kind for event in bench.robot.watcher.events]
+    assert modes[-1] is Mode.FREE_DRIVE
+    assert kinds.index(Kind.SEQUENCE_STARTED) < kinds.index(Kind.ENTERED)
+    bench.runner.stop()
+    bench.robot.step(10)
+    assert bench.robot.step().mode is not Mode.FREE_DRIVE
+
+
+def test_a_payload_that_nobody_told_of_is_refused_to_a_script_too() -> None:
+    bench = begun(GUIDED, true=2.0)
+    for _ in range(1500):
+        assert bench.robot.step().mode is not Mode.FREE_DRIVE
+    assert any(event.kind.value.startswith("refused_") for event in bench.robot.watcher.events)
+
+
+@pytest.mark.parametrize("command", [Command.EMERGENCY_STOP, Command.SAFEGUARD_OPEN])
+def test_a_stop_ends_the_motion_of_a_script(command: Command) -> None:
+    bench = begun(" while True:\n  speedj([0.2,0,0,0,0,0], 0.5, 0.5)\n end")
+    bench.robot.step(300)
+    bench.robot.step(1, Inputs(commands=(command,)))
+    assert bench.robot.step().mode is Mode.STOP
+    bench.robot.step(600)
+    assert bench.state is None or bench.robot.step().mode is Mode.STOP
+    assert abs(bench.robot.simulation.plant.qd).max() < 1e-3

@@ -1,0 +1,186 @@
+"""What a running script wants is done motion by motion, for as long as it says so in every tick (FD-23)."""
+
+import math
+
+import pytest
+
+from pendant.events.event import Event, Kind
+from pendant.inputs import NOTHING, Command, Inputs
+from pendant.motion.script_requests import (
+    Guided,
+    Scripted,
+    ScriptedJoints,
+    ScriptedMove,
+    ScriptedStop,
+    ServoJoints,
+    SpeedJoints,
+    SpeedTool,
+)
+from pendant.program.steps import ProgramState, RunScript, script_program
+from pendant.tick.modes import Law, Mode
+from tests.pendant.estimates import estimate
+from tests.pendant.freedrive.test_state_machine import Bench
+
+WORD = Scripted()
+SILENCE = 100
+"""Ticks of `hold.silence`."""
+
+
+def joints(number: int, angle: float = 0.1) -> ScriptedJoints:
+    return ScriptedJoints(id=number, q=(angle,) * 6, acceleration=1.0, speed=1.0)
+
+
+def running(**changes: float | bool) -> Bench:
+    """A script's program runs, and has asked for nothing."""
+    bench = Bench(activation__period=0.0, **changes)
+    bench.run(60)
+    bench.step(Inputs(program=script_program("mine"), commands=(Command.START_PROGRAM,), script=WORD))
+    assert (bench.last.mode, bench.last.program) == (Mode.RUN, ProgramState.RUNNING)
+    return bench
+
+
+def said(bench: Bench, move: ScriptedMove | None = None, done: int = 0, **more: bool) -> None:
+    """A tick in which the script says this, and the law has finished move `done`."""
+    seen = estimate()
+    seen.move_done = done
+    bench.step(Inputs(script=Scripted(move=move, **more)), seen)
+
+
+def test_until_it_asks_for_something_the_arm_stands() -> None:
+    bench = running()
+    said(bench)
+    assert isinstance(bench.last.move, RunScript)
+    assert (bench.last.law, bench.last.script_done) == (Law.FOLLOW, 0)
+
+
+def test_each_motion_is_told_as_done_once_the_law_has_finished_it() -> None:
+    bench = running()
+    said(bench, joints(1))
+    first = bench.last.move
+    assert isinstance(first, ScriptedJoints)
+    assert first.q == (0.1,) * 6
+    said(bench, joints(1))
+    assert (bench.last.move, bench.last.script_done) == (first, 0)
+    said(bench, joints(1), done=first.id)
+    assert bench.last.script_done == 1
+    said(bench, joints(2, 0.2), done=first.id)
+    second = bench.last.move
+    assert isinstance(second, ScriptedJoints)
+    assert (second.q, second.id > first.id, bench.last.script_done) == ((0.2,) * 6, True, 1)
+
+
+def test_a_motion_takes_the_place_of_one_that_is_not_done() -> None:
+    bench = running()
+    said(bench, joints(1))
+    said(bench, SpeedJoints(id=2, qd=(0.1,) * 6, acceleration=1.0))
+    assert isinstance(bench.last.move, SpeedJoints)
+    assert bench.last.script_done == 0
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_a_number_that_is_not_new_is_no_new_motion(number: int) -> None:
+    bench = running()
+    said(bench, joints(2))
+    first = bench.last.move
+    said(bench, joints(number, 0.3))
+    assert bench.last.move == first
+
+
+def test_a_script_that_falls_silent_is_ended_and_the_arm_braked() -> None:
+    bench = running(hold__silence=SILENCE * 0.002)
+    said(bench, joints(1))
+    bench.events.clear()
+    bench.run(SILENCE)
+    assert (bench.last.program, bench.events) == (ProgramState.RUNNING, [])
+    bench.step(NOTHING, estimate(qd=0.3))
+    values = {"name": "mine", "step": 1, "reason": "no word from the script"}
+    assert bench.events == [Event(Kind.PROGRAM_FAILED, bench.tick, values)]
+    assert (bench.last.mode, bench.last.law, bench.last.move) == (Mode.TEACH, Law.BRAKE, None)
+
+
+def test_a_word_in_between_begins_the_silence_anew() -> None:
+    bench = running(hold__silence=SILENCE * 0.002)
+    for _ in range(5):
+        bench.run(SILENCE)
+        said(bench)
+    assert bench.last.program is ProgramState.RUNNING
+
+
+def test_a_script_that_is_over_ends_its_program() -> None:
+    bench = running()
+    said(bench, joints(1))
+    bench.events.clear()
+    bench.step(Inputs(script=Scripted(move=joints(1), over=True)), estimate(qd=0.3))
+    assert bench.events == [Event(Kind.PROGRAM_FINISHED, bench.tick, {"name": "mine"})]
+    assert (bench.last.mode, bench.last.law) == (Mode.TEACH, Law.BRAKE)
+
+
+def test_a_stop_leaves_nothing_of_what_the_script_wanted() -> None:
+    bench = running()
+    said(bench, joints(1), feeling=True)
+    bench.step(Inputs(script=Scripted(move=joints(1)), commands=(Command.EMERGENCY_STOP,)))
+    assert (bench.last.mode, bench.last.move) == (Mode.STOP, None)
+    said(bench, joints(2))
+    assert (bench.last.mode, bench.last.move) == (Mode.STOP, None)
+
+
+def test_what_it_wanted_is_begun_again_after_a_pause() -> None:
+    bench = running()
+    said(bench, joints(1))
+    first = bench.last.move
+    assert first is not None
+    bench.step(Inputs(script=Scripted(move=joints(1)), commands=(Command.PAUSE_PROGRAM,)))
+    assert bench.last.move is None
+    bench.run(60)
+    bench.step(Inputs(script=Scripted(move=joints(1)), commands=(Command.RESUME_PROGRAM,)))
+    said(bench, joints(1))
+    again = bench.last.move
+    assert isinstance(again, ScriptedJoints)
+    assert again.id > first.id
+
+
+def test_an_arm_that_a_script_has_guided_leaves_free_drive_before_it_moves() -> None:
+    bench = running(free_drive__allowed_from__run=True)
+    said(bench, Guided(id=1, axes=(True, True, False, False, False, False)))
+    for _ in range(2000):
+        said(bench, Guided(id=1, axes=(True, True, False, False, False, False)))
+        if bench.last.mode is Mode.FREE_DRIVE:
+            break
+    assert bench.last.mode is Mode.FREE_DRIVE
+    assert bench.last.locks is not None
+    assert bench.last.locks.locked == (False, False, True, True, True, True)
+    said(bench, joints(2))
+    assert bench.last.mode is Mode.FREE_DRIVE
+    said(bench, joints(2), over=True)
+    assert bench.last.mode is not Mode.FREE_DRIVE
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_what_is_not_finite_is_refused(value: float) -> None:
+    for make in (
+        lambda: ScriptedJoints(q=(value,) * 6, acceleration=1.0, speed=1.0),
+        lambda: ServoJoints(q=(value,) * 6, time=0.002),
+        lambda: SpeedJoints(qd=(value,) * 6, acceleration=1.0),
+        lambda: SpeedTool(speed=(value, 0.0, 0.0), turning=(0.0,) * 3, acceleration=1.0, turning_acceleration=1.0),
+    ):
+        with pytest.raises(ValueError, match="is not a finite number"):
+            make()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        *[("lookahead", 0.0299, False), ("lookahead", 0.03, True), ("lookahead", 0.2, True), ("lookahead", 0.201, False)],
+        *[("gain", 99.9, False), ("gain", 100.0, True), ("gain", 2000.0, True), ("gain", 2000.1, False)],
+    ],
+)
+def test_servo_commands_keep_to_the_ranges_of_the_manual(name: str, value: float, allowed: bool) -> None:
+    if allowed:
+        assert getattr(ServoJoints(q=(0.0,) * 6, time=0.002, **{name: value}), name) == value
+    else:
+        with pytest.raises(ValueError, match=rf"{name}: .*, allowed: "):
+            ServoJoints(q=(0.0,) * 6, time=0.002, **{name: value})
+
+
+def test_a_stop_of_a_script_is_as_hard_as_the_arm_can_unless_it_says_so() -> None:
+    assert ScriptedStop().deceleration == math.inf
