@@ -15,6 +15,7 @@ from app.command_options import (
     AnyFile,
     Config,
     Host,
+    Keep,
     Offset,
     Out,
     Port,
@@ -25,6 +26,7 @@ from app.command_options import (
     Set,
     announce,
     announce_robot,
+    as_kept,
     example,
     setting,
 )
@@ -58,6 +60,7 @@ app = typer.Typer(
         "pendant serve --host 0.0.0.0",
         "pendant serve --record logs",
         "pendant serve --interfaces",
+        "pendant serve --fresh",
     )
 )
 def serve(
@@ -80,14 +83,30 @@ def serve(
     port_offset: Offset = 0,
     programs: Programs = None,
     any_file: AnyFile = False,
+    keep: Keep = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Begin as shipped, and keep nothing for the next start.")] = False,
 ) -> None:
-    """Serve the web app: push the arm, hold its free-drive button, read why it stopped."""
+    """Serve the web app: push the arm, hold its free-drive button, read why it stopped.
+
+    Set-up, settings and what was taught are kept for the next start with the same arm, unless --config says what to begin with.
+    """
     from app.serving import Network, serve_until_interrupted
 
     prepared = _set_up(robot, config, any_file, "serve")
+    keeper, lesson = None, None
+    if not fresh and (config is None or keep is not None):
+        prepared, keeper, lesson = as_kept(prepared, keep)
     network = Network(host, port_offset, programs) if interfaces else None
     with serve_until_interrupted(
-        prepared, host=host, port=port, usual=PORT, open_browser=open_browser, record=record, network=network
+        prepared,
+        host=host,
+        port=port,
+        usual=PORT,
+        open_browser=open_browser,
+        record=record,
+        network=network,
+        keeper=keeper,
+        lesson=lesson,
     ) as serving:
         announce(f"Serving the {prepared.arm.name}", serving.site.link, serving.site.access.token is not None)
         if serving.interfaces is not None:

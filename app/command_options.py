@@ -13,7 +13,10 @@ from pendant.settings.schema import SettingError
 from sim.arm.arm_file import Arm
 
 if TYPE_CHECKING:
+    from app.files.taught_program import Lesson
+    from app.kept_setup import Keeper
     from app.robot_interface.interfaces import RobotInterfaces
+    from app.session.prepare import Prepared
 
 PORT = 8080
 """Where the web app is, when this port is free and no other was asked for."""
@@ -42,6 +45,35 @@ Programs = Annotated[
 ]
 AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
+
+Keep = Annotated[
+    Path | None,
+    typer.Option(
+        help="Folder where set-up, settings and what was taught are kept; without it the user's own for such.",
+        file_okay=False,
+        show_default=False,
+    ),
+]
+
+
+def as_kept(prepared: "Prepared", folder: Path | None) -> tuple["Prepared", "Keeper | None", "Lesson | None"]:
+    """What was kept of the arm in place of what is shipped, with its keeper and what was taught. A file that cannot be used
+    is told of in a line, and stays as it is."""
+    from app.kept_setup import keeper_for, usual_folder
+    from app.session.prepare import prepare
+
+    keeper = keeper_for(prepared.arm, folder or usual_folder())
+    console = Console(soft_wrap=True)
+    try:
+        kept = None if keeper is None else keeper.read()
+        if keeper is None or kept is None:
+            return prepared, keeper, None
+        again = prepare(kept.setup, keeper.path.name)
+        console.print(escape(f"As kept in {keeper.path}; --fresh begins as shipped"))
+        return again, keeper, kept.taught
+    except BadInput as refusal:
+        console.print(escape(f"Not taken, and nothing is kept: {refusal}"))
+        return prepared, None, None
 
 
 def example(*lines: str) -> str:

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 from app.files.checked import BadInput
 from app.files.library import mesh_path
+from app.files.taught_program import Lesson
+from app.kept_setup import Keeper
 from app.log.live import LiveRecording
 from app.log.playback import Player
 from app.log.reader import read
@@ -44,6 +46,8 @@ def serve_until_interrupted(
     open_browser: bool,
     record: Path | None,
     network: Network | None = None,
+    keeper: Keeper | None = None,
+    lesson: Lesson | None = None,
 ) -> Iterator[Serving]:
     """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
 
@@ -55,6 +59,8 @@ def serve_until_interrupted(
         open_browser: open the page too.
         record: record from the start, into this folder.
         network: where the robot's network interfaces are to be; None for the page alone.
+        keeper: as `app.web.server.serve`.
+        lesson: as `app.web.server.serve`.
 
     Raises:
         BadInput: an address cannot be used.
@@ -65,7 +71,8 @@ def serve_until_interrupted(
     interfaces = None if network is None else open_interfaces(loop, prepared, network, recording)
     try:
         loop.start()
-        page = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
+        robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
+        page = partial(robot, keeper=keeper, lesson=lesson)
         served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
         try:
             yield Serving(served, interfaces)

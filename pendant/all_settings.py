@@ -23,10 +23,21 @@ from pendant.limits.settings import AxisSettings, JointLimits, LimitSettings, So
 from pendant.program.settings import ProgramUse
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
+from pendant.settings.schema import choice as _choice
 from pendant.settings.schema import switch as _switch
 from pendant.signals.settings import Handshake, LetGo, SignalSettings
+from pendant.tick.words import Word
 from pendant.tooling.settings import ToolUse
 from pendant.walls.settings import WallSettings
+
+
+class FedBackTorque(Word):
+    """Which transmission torque the torque feedback takes for the actual one: the fusion, or one way (AF-3, AF-5)."""
+
+    FUSED = "fused"
+    DYNAMICS = "dynamics"  # output side: from output angle and rigid model
+    DEFLECTION = "deflection"  # from the two angles
+    MOTOR = "motor"  # motor side: from motor angle and motor torque
 
 
 class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -38,6 +49,9 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     friction: Annotated[bool, _switch("AF-7", "the friction estimate compensates friction of motion and hand guiding")] = True
     adaptive: Annotated[bool, _switch("AF-2", "friction is learned while the robot works")] = True
     torque_feedback: Annotated[bool, _switch("AF-5", "the error of the transmission torque is fed back")] = True
+    fed_back: Annotated[FedBackTorque, _choice("AF-5", "the transmission torque that is fed back; without it the fused one")] = (
+        FedBackTorque.DEFLECTION
+    )
     theta: Annotated[bool, _switch("AF-5", "the error of the motor angle is fed back")] = True
     theta_speed: Annotated[bool, _switch("AF-5", "the error of the motor speed is fed back")] = True
     theta_acceleration: Annotated[bool, _switch("AF-5", "the error of the motor acceleration is fed back")] = False

@@ -5,9 +5,11 @@ from pendant.contact.contact_monitor import ContactMonitor
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import JOINTS_SENSED, WrenchMean, joints_ok, motion_ok
+from pendant.motion.scripting import Scripting
 from pendant.program.steps import Program, ProgramState, misfit
 from pendant.robot.jogging import Jogging
 from pendant.robot.robot_mode import Robot
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
 from pendant.tick.pose import Vector
@@ -26,7 +28,7 @@ PROGRAM_COMMANDS = STARTS_FROM.keys() | {Command.PAUSE_PROGRAM, Command.RESUME_P
 class ProgramRun:
     """Steers the robot's sequencer, and jogs."""
 
-    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot")
+    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot", "scripting")
 
     def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int) -> None:
         """
@@ -37,7 +39,13 @@ class ProgramRun:
         """
         self._robot, self._mean, self._n = robot, mean, n_joints
         self._jogging = Jogging(robot, n_joints)
+        self.scripting = Scripting(robot.sequencer)
         self._origin = Mode.TEACH  # where the program was started from
+
+    @property
+    def feels(self) -> bool:
+        """The running program waits for a change in contact, or looks for it."""
+        return self._robot.sequencer.until is not None or self.scripting.feeling
 
     def step(
         self,
@@ -61,6 +69,7 @@ class ProgramRun:
         """
         robot = self._robot
         sequencer = robot.sequencer
+        sequencer.high = inputs.high
         if inputs.program is not None:
             self._load(inputs.program, estimate.tick, events)
         move = sequencer.move
@@ -72,12 +81,29 @@ class ProgramRun:
                 else:
                     self._steer(command, estimate.tick, events)
         self._jogging.step(estimate, inputs, settings, events, changing=changing)
-        if robot.mode is _FREE_DRIVE or (not sequencer.braked and (move is None or sequencer.move is not move)):
-            return
-        tool_on = sequencer.tool_on
-        self._go_on(estimate, monitor, settings, events)
-        if sequencer.tool_on is not tool_on:
-            events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+        if robot.mode is not _FREE_DRIVE and (sequencer.braked or (move is not None and sequencer.move is move)):
+            tool_on, outputs = sequencer.tool_on, sequencer.outputs
+            self._go_on(estimate, monitor, settings, events)
+            if sequencer.tool_on is not tool_on:
+                events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+            for number in sorted(outputs ^ sequencer.outputs):
+                state = "on" if number in sequencer.outputs else "off"
+                events.append(Event(Kind.OUTPUT_SWITCHED, estimate.tick, {"number": number, "state": state}))
+        if move is not None and sequencer.scripted:
+            self._follow_script(estimate, inputs, settings, events)
+
+    def _follow_script(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event]) -> None:
+        """One tick of a step that is a script; without its word the arm comes to rest, also a guided one."""
+        robot, wish = self._robot, inputs.script
+        reason = self.scripting.step(estimate.move_done, wish, ticks(settings.hold.silence))
+        over = wish is not None and wish.over
+        if (reason or over) and robot.free.phase is not Phase.OFF:
+            robot.happen(Event(Kind.DEACTIVATED, estimate.tick), settings, events)
+        if reason:
+            self.fail(reason, estimate.tick, events)
+        elif over:
+            self._end()
+            events.append(Event(Kind.PROGRAM_FINISHED, estimate.tick, {"name": robot.program_name}))
 
     def _go_on(self, estimate: Estimate, monitor: ContactMonitor, settings: Settings, events: list[Event]) -> None:
         """One tick of a step, in the order of precedence."""
@@ -94,8 +120,8 @@ class ProgramRun:
             robot.pause_program(estimate.tick, events)
         elif estimate.move_refused:
             self.fail(estimate.move_refused, estimate.tick, events)
-        elif sequencer.missed(estimate.move_done):
-            self.fail("it ended without a contact", estimate.tick, events)
+        elif missed := sequencer.missed(estimate.move_done):
+            self.fail(missed, estimate.tick, events)
         elif sequencer.step(estimate.move_done, monitor.now, self._felt):
             self._finish(estimate.tick, events)
 
@@ -171,11 +197,13 @@ class ProgramRun:
         if command in STARTS_FROM:
             self._origin = robot.mode
             robot.mode = Mode.RUN
+            self.scripting.begin()
             sequencer.start(self._felt())
             events.append(Event(Kind.PROGRAM_STARTED, tick, {"name": robot.program_name}))
         elif command is Command.PAUSE_PROGRAM:
             robot.pause_program(tick, events)
         elif command is Command.RESUME_PROGRAM:
+            self.scripting.begin()
             sequencer.resume()
             events.append(Event(Kind.PROGRAM_RESUMED, tick, values))
         else:

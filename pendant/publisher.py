@@ -5,7 +5,8 @@ from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event
 from pendant.haptics import Shake
-from pendant.limits.axis_locks import axis_locks
+from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of
+from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState
 from pendant.robot.reduced import SpeedLimits
 from pendant.robot.robot_mode import Robot
@@ -17,10 +18,10 @@ from pendant.tooling.tool_in_use import Tooling
 class Publisher:
     """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
 
-    __slots__ = ("_checksum", "_locks", "_robot", "_settings", "_taring", "_tooling")
+    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_taring", "_tooling")
 
-    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, settings: Settings) -> None:
-        self._robot, self._tooling, self._taring = robot, tooling, taring
+    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting, settings: Settings) -> None:
+        self._robot, self._tooling, self._taring, self._scripting = robot, tooling, taring, scripting
         self.refresh(settings)
 
     def refresh(self, settings: Settings) -> None:
@@ -50,7 +51,7 @@ class Publisher:
         robot, tooling, taring, use = self._robot, self._tooling, self._taring, self._settings
         free, sequencer, mode = robot.free, robot.sequencer, robot.mode
         arm, phase, helping = free.arm, free.phase, free.helping
-        locks = self._locks if mode is _FREE_DRIVE else None
+        locks = self._free_axes() if mode is _FREE_DRIVE else None
         trying = phase is _SEQUENCE
         balance = free.balance if trying else None
         damping, singularity, doubtful = (None, None, False) if arm is None else (arm.damping, arm.singularity, arm.doubtful)
@@ -75,6 +76,7 @@ class Publisher:
             monitored=monitored,
             contacts=contacts,
             tool_on=sequencer.tool_on,
+            outputs=sequencer.outputs,
             walls=walls,
             grip=robot.grip,
             speed_limits=speeds,
@@ -92,7 +94,15 @@ class Publisher:
             limits=self._checksum,
             static=robot.static,
             speed=use.program.speed,
+            script_done=self._scripting.done,
         )
+
+    def _free_axes(self) -> AxisLocks | None:
+        """What free-drive keeps of the tool's pose: as the script says, else as the settings do."""
+        guided = self._scripting.guided
+        if guided is None or all(guided.axes):
+            return self._locks
+        return locks_of(guided.axes, guided.R_BU, self._settings.axes)
 
 
 _FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick

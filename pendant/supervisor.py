@@ -101,7 +101,7 @@ class Supervisor:
         self._tooling = Tooling(equipment or Equipment())
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
         self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
-        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, settings)
+        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting, settings=settings)
         self._turn_tool()
         self._refresh()
 
@@ -195,7 +195,7 @@ class Supervisor:
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
         sequencer, robot, use = self._sequencer, self._robot, self.settings.contact
-        on = (use.on or sequencer.until is not None) and not (self._tooling.changing or self._haptics.busy)
+        on = (use.on or self._run.feels) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"
@@ -240,7 +240,8 @@ class Supervisor:
 
     def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
         robot, tooling = self._robot, self._tooling
-        events += tooling.step(estimate, inputs, self.settings.tools, mode=robot.mode, phase=self._free.phase, still=robot.static)
+        mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else robot.mode
+        events += tooling.step(estimate, inputs, self.settings.tools, mode=mode, phase=self._free.phase, still=robot.static)
         if tooling.changing:
             self._calls.relearn()
             self._free.forget()

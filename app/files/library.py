@@ -1,9 +1,11 @@
 """What the product ships: arms and tools by name, and the meshes that go with them. A path in place of a name reads that file."""
 
+from functools import lru_cache
 from pathlib import Path
 
 import assets
 from app.files.checked import ABSENT, BadInput, load
+from app.files.yaml_text import read
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import ToolModel
 from sim.arm_problems import problems
@@ -28,10 +30,7 @@ def load_arm(name_or_path: str | Path, where: str = "robots") -> Arm:
         BadInput: no such arm, or its file does not make sense.
     """
     path = _path(name_or_path, "robots", "robot", where)
-    arm = load(path, Arm)
-    for field, value, allowed in problems(arm):
-        raise BadInput(path.name, field, value, allowed)
-    return arm
+    return _arm(path, read(path, path.name))
 
 
 def load_tool(name_or_path: str | Path, where: str = "tools") -> ToolModel:
@@ -59,6 +58,15 @@ def mesh_path(arm_name: str, link: str) -> Path:
 def shipped(name: str, folder: str) -> bool:
     """Whether `name` is one of those that the product ships in a folder of its library, "robots" or "tools"."""
     return name in _names(folder)
+
+
+@lru_cache(maxsize=16)
+def _arm(path: Path, _text: str) -> Arm:
+    """Read once a process, as every session needs it; `_text` is what the file says, so that a changed one is read anew."""
+    arm = load(path, Arm)
+    for field, value, allowed in problems(arm):
+        raise BadInput(path.name, field, value, allowed)
+    return arm
 
 
 def _names(folder: str) -> list[str]:

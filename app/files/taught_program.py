@@ -1,13 +1,29 @@
 """What a user teaches: waypoints and a program of steps between them, as one file."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta
+from msgspec.structs import replace
 
 from pendant.program.reaction import Until
-from pendant.program.steps import AnyStep, JointMove, LinearMove, Program, SwitchTool, Wait, WaitForContact, ZeroSensor
+from pendant.program.steps import (
+    MOST_RUNS,
+    AnyStep,
+    ContactMove,
+    InputLevel,
+    JointMove,
+    LinearMove,
+    LineNumber,
+    Program,
+    SetOutput,
+    SwitchTool,
+    Wait,
+    WaitForContact,
+    WaitForInput,
+    ZeroSensor,
+)
 from pendant.settings.bounds import MOST_JOINTS, Angle
 from sim.arm.scenario import Vector
 
@@ -16,17 +32,23 @@ Name = Annotated[str, Meta(min_length=1, max_length=40)]
 MOST = 200
 """Waypoints, and steps, in one file."""
 
-JOINT_SPEED, LINE_SPEED, TOUCH_SPEED = 0.4, 0.25, 0.05
+JOINT_SPEED, LINE_SPEED, TOUCH_SPEED = 0.33, 0.25, 0.05
 """At full speed: of a joint move, as a share of the joints' limits; of a line, and of a line until contact [m/s]."""
 
 MOVES = {"joint": "Move to", "line": "Line to", "touch": "Touch on the way to"}
-WAITS = {
-    "wait": "Wait 1 s",
+OTHERS = {
+    "until contact": "Move until contact",
+    "wait": "Wait",
     "contact": "Wait for a contact",
+    "input": "Wait for an input",
+    "output on": "Output on",
+    "output off": "Output off",
     "tool on": "Tool on",
     "tool off": "Tool off",
     "zero": "Zero the force sensor",
 }
+THEN: dict[str, Literal["contact_pose", "retract", "stop"]] = {"stay": "contact_pose", "retreat": "retract", "go on": "stop"}
+"""What follows a contact that ends a move, with what the program calls it."""
 
 
 class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -44,35 +66,87 @@ class Waypoint(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
             raise ValueError(f"quaternion: its length is {length:.4g}, allowed: 1 (wxyz)")
 
 
-class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """A step of the program: a move to a waypoint, or what needs none."""
+Do = Literal[
+    "joint",
+    "line",
+    "touch",
+    "until contact",
+    "wait",
+    "contact",
+    "input",
+    "output on",
+    "output off",
+    "tool on",
+    "tool off",
+    "zero",
+]
 
-    do: Literal["joint", "line", "touch", "wait", "contact", "tool on", "tool off", "zero"]
+
+class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True):
+    """A step of the program: a move to a waypoint, or what needs none. Files leave out what `do` does not use."""
+
+    do: Do
     to: Name | None = None  # the waypoint
+    seconds: Annotated[float, Meta(ge=0.1, le=3600.0)] = 1.0  # of a wait
+    number: LineNumber = 0  # of an input or output
+    high: bool = True  # the level that is waited for
+    frame: Literal["base", "tool"] = "base"  # until contact, from here on
+    along: Literal["x", "y", "z", "-x", "-y", "-z"] = "-z"
+    distance: Annotated[float, Meta(ge=0.001, le=1.0)] = 0.2  # at most [m]
+    speed: Annotated[float, Meta(ge=0.001, le=0.25)] = 0.03  # [m/s]
+    then: Literal["stay", "retreat", "go on"] = "stay"
+    back: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.05  # of a retreat [m]
+    when: InputLevel | None = None  # else it is left out
 
     def __post_init__(self) -> None:
-        """Check that a move, and only a move, has a waypoint."""
+        """Check that a move to a waypoint, and only that, has one."""
         if (self.to is not None) != (self.do in MOVES):
             raise ValueError(f"to: {self.do!r} {'needs' if self.do in MOVES else 'has no'} waypoint")
 
     @property
     def text(self) -> str:
         """The step in words."""
-        return WAITS[self.do] if self.to is None else f"{MOVES[self.do]} {self.to}"
+        return self._what() + ("" if self.when is None else f" if input {self.when.input} is {level(self.when.high)}")
+
+    def _what(self) -> str:
+        if self.to is not None:
+            return f"{MOVES[self.do]} {self.to}"
+        if self.do == "until contact":
+            way = f"{self.frame} {axis(self.along)}"
+            back = f" {1000.0 * self.back:g} mm" if self.then == "retreat" else ""
+            return f"Until contact, {way}, {1000.0 * self.distance:g} mm, {self.then}{back}"
+        if self.do == "wait":
+            return f"Wait {self.seconds:g} s"
+        if self.do == "input":
+            return f"Wait until input {self.number} is {level(self.high)}"
+        if self.do in ("output on", "output off"):
+            return f"Output {self.number} {self.do.removeprefix('output ')}"
+        return OTHERS[self.do]
+
+
+def axis(along: str) -> str:
+    """A direction in a word: "-Z"."""
+    return along.upper() if along[0] == "-" else f"+{along.upper()}"
+
+
+def level(high: bool) -> str:
+    """A level in a word."""
+    return "high" if high else "low"
 
 
 class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """All that was taught. Without steps, the program visits the waypoints in order."""
+    """All that was taught. Until it has steps of its own, the program visits the waypoints in order."""
 
     waypoints: Annotated[list[Waypoint], Meta(max_length=MOST)] = []
-    steps: Annotated[list[TaughtStep], Meta(max_length=MOST)] = []
+    steps: Annotated[list[TaughtStep], Meta(max_length=MOST)] | None = None
+    repeat: Annotated[int, Meta(ge=0, le=MOST_RUNS)] = 1  # times that the program runs; 0: until it is stopped
 
     def __post_init__(self) -> None:
         """Check that names are unique and known."""
         names = [waypoint.name for waypoint in self.waypoints]
         if len(set(names)) != len(names):
             raise ValueError("waypoints: two have the same name")
-        for step in self.steps:
+        for step in self.steps or []:
             if step.to is not None and step.to not in names:
                 raise ValueError(f"steps: there is no waypoint {step.to!r}")
 
@@ -86,7 +160,9 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     @property
     def plan(self) -> list[TaughtStep]:
         """The steps to run."""
-        return self.steps or [TaughtStep(do="joint", to=waypoint.name) for waypoint in self.waypoints]
+        if self.steps is not None:
+            return self.steps
+        return [TaughtStep(do="joint", to=waypoint.name) for waypoint in self.waypoints]
 
     def free_name(self) -> str:
         """A name that no waypoint has."""
@@ -94,54 +170,86 @@ class Lesson(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         return next(name for name in (f"P{number}" for number in range(1, MOST + 2)) if name not in names)
 
     def with_waypoint(self, waypoint: Waypoint) -> "Lesson":
-        """With one more waypoint at the end."""
-        return Lesson(waypoints=[*self.waypoints, waypoint], steps=self.steps)
+        """With one more waypoint at the end, and a move to it at the end of the program."""
+        more = [TaughtStep(do="joint", to=waypoint.name)]
+        steps = None if self.steps is None else [*self.steps, *more][:MOST]
+        return replace(self, waypoints=[*self.waypoints, waypoint], steps=steps)
+
+    def taught_again(self, name: str, waypoint: Waypoint) -> "Lesson":
+        """With another posture for the waypoint `name`."""
+        there = replace(waypoint, name=name)
+        return replace(self, waypoints=[there if one.name == name else one for one in self.waypoints])
 
     def without(self, name: str) -> "Lesson":
         """Without a waypoint and the steps that lead to it."""
-        steps = [step for step in self.steps if step.to != name]
-        return Lesson(waypoints=[waypoint for waypoint in self.waypoints if waypoint.name != name], steps=steps)
+        steps = None if self.steps is None else [step for step in self.steps if step.to != name]
+        return replace(self, waypoints=[one for one in self.waypoints if one.name != name], steps=steps)
 
     def renamed(self, name: str, new: str) -> "Lesson":
         """With another name for a waypoint."""
-        waypoints = [msgspec.structs.replace(w, name=new) if w.name == name else w for w in self.waypoints]
-        return Lesson(waypoints=waypoints, steps=[TaughtStep(do=s.do, to=new if s.to == name else s.to) for s in self.steps])
+        steps = None
+        if self.steps is not None:
+            steps = [replace(step, to=new) if step.to == name else step for step in self.steps]
+        return replace(self, waypoints=[replace(w, name=new) if w.name == name else w for w in self.waypoints], steps=steps)
 
     def moved(self, name: str, by: int) -> "Lesson":
         """With a waypoint moved up (-1) or down (1) in the list."""
-        waypoints = list(self.waypoints)
-        at = waypoints.index(self.find(name))
-        to = min(max(at + by, 0), len(waypoints) - 1)
-        waypoints.insert(to, waypoints.pop(at))
-        return Lesson(waypoints=waypoints, steps=self.steps)
+        return replace(self, waypoints=_moved(self.waypoints, self.waypoints.index(self.find(name)), by))
 
     def with_steps(self, steps: list[TaughtStep]) -> "Lesson":
         """With another program."""
-        return Lesson(waypoints=self.waypoints, steps=steps)
+        return replace(self, steps=steps)
+
+    def with_step_moved(self, at: int, by: int) -> "Lesson":
+        """With a step moved up (-1) or down (1) in the program."""
+        return self.with_steps(_moved(self.plan, at, by))
 
 
-def program(lesson: Lesson, steps: list[TaughtStep], speed: float, name: str = "taught") -> Program:
-    """The program of some steps at a share of full speed, 0 < speed <= 1."""
-    return Program(name=name, steps=tuple(_move(lesson, step, speed) for step in steps))
+T = TypeVar("T")
 
 
-def _move(lesson: Lesson, step: TaughtStep, speed: float) -> AnyStep:
-    if step.to is None:
-        if step.do == "wait":
-            return Wait(duration=1.0)
-        if step.do == "zero":
-            return ZeroSensor()
-        return WaitForContact() if step.do == "contact" else SwitchTool(on=step.do == "tool on")
-    target = lesson.find(step.to)
-    if step.do == "joint":
-        return JointMove(q=tuple(target.q), speed=JOINT_SPEED * speed, acceleration=0.25)
+def _moved(items: list[T], at: int, by: int) -> list[T]:
+    """A copy in which one item has gone up or down, as far as it can."""
+    there = items.copy()
+    there.insert(min(max(at + by, 0), len(items) - 1), there.pop(at))
+    return there
+
+
+def program(lesson: Lesson, steps: list[TaughtStep], repeat: int = 1, name: str = "taught") -> Program:
+    """The program of some steps, which are done `repeat` times."""
+    return Program(name=name, steps=tuple(replace(_move(lesson, step), when=step.when) for step in steps), repeat=repeat)
+
+
+def _move(lesson: Lesson, step: TaughtStep) -> AnyStep:
+    if step.to is not None:
+        return _way(lesson.find(step.to), step.do)
+    if step.do == "wait":
+        return Wait(duration=step.seconds)
+    if step.do == "zero":
+        return ZeroSensor()
+    if step.do == "contact":
+        return WaitForContact()
+    if step.do == "input":
+        return WaitForInput(level=InputLevel(input=step.number, high=step.high))
+    if step.do in ("output on", "output off"):
+        return SetOutput(output=step.number, on=step.do == "output on")
+    if step.do != "until contact":
+        return SwitchTool(on=step.do == "tool on")
+    until = Until(change="gained", then=THEN[step.then], distance=step.back)
+    return ContactMove(frame=step.frame, along=step.along, distance=step.distance, speed=step.speed, until=until)
+
+
+def _way(target: Waypoint, do: str) -> AnyStep:
+    """A move to a waypoint."""
+    if do == "joint":
+        return JointMove(q=tuple(target.q), speed=JOINT_SPEED, acceleration=0.25)
     x, y, z = target.position
     w, i, j, k = target.quaternion
-    touching = step.do == "touch"
+    touching = do == "touch"
     return LinearMove(
         position=(x, y, z),
         quaternion=(w, i, j, k),
-        speed=(TOUCH_SPEED if touching else LINE_SPEED) * speed,
+        speed=TOUCH_SPEED if touching else LINE_SPEED,
         acceleration=0.5,
         until=Until(then="retract") if touching else None,
     )

@@ -2,6 +2,7 @@
 
 import viser
 
+from app.kept_setup import Keeper
 from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.web.access.guard import Guard
@@ -19,7 +20,8 @@ from app.web.tabs.recording import RecordingSwitch
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
-from app.web.widgets import style
+from app.web.widgets import style, svg
+from app.web.widgets.svg import Colour
 from pendant.events.event import Event
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
@@ -41,8 +43,9 @@ class Docks:
         arm: Arm,
         recording: LiveRecording,
         interfaces: RobotInterfaces | None,
+        keeper: Keeper | None,
     ) -> None:
-        self._loop = loop
+        self._loop, self._arm, self._keeper = loop, arm, keeper
         self._read = 0
         gui = server.gui
         sheet = gui.add_html("")
@@ -55,7 +58,7 @@ class Docks:
         with self._upper.add_tab("Axes"):
             self.axes = AxesTab(gui, loop)
         with self._upper.add_tab("Lab"):
-            self.lab = Lab(gui, loop, hand, arm)
+            self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
         with self._upper.add_tab("Tools"):
             self.tools = ToolsTab(gui, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
@@ -83,8 +86,12 @@ class Docks:
             self.lab.restart,
             self.lab.drop,
             self.lab.setup.begin,
+            self.lab.setup.save,
+            self.lab.setup.load,
             self.settings.defaults,
             self.settings.undo,
+            self.settings.save,
+            self.settings.load,
             self.tools.use,
             self.tools.enter,
             self.tools.apply,
@@ -121,4 +128,14 @@ class Docks:
             self.recording.show(),
             self.network is not None and self.network.show(),
         ]
+        self.keep()
         return any(changed)
+
+    def keep(self, *, now: float | None = None) -> None:
+        """Have what changed kept for the next start; `now` is the clock, which says whether it is time to."""
+        keeper = self._keeper
+        if keeper is None or keeper.problem:
+            return
+        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, now=now)
+        if keeper.problem:
+            self.teach.message.show(svg.note("Not kept for the next start", keeper.problem, Colour.AMBER))

@@ -1,6 +1,7 @@
 """The web app as a whole: the page of a running loop."""
 
 import functools
+import math
 import time
 import webbrowser
 from collections.abc import Mapping
@@ -9,6 +10,8 @@ from pathlib import Path
 import viser
 
 from app.files.library import mesh_path
+from app.files.taught_program import Lesson
+from app.kept_setup import Keeper
 from app.log.live import LiveRecording, must_be_writable
 from app.robot_interface.interfaces import RobotInterfaces
 from app.web.access.control import Control
@@ -43,6 +46,7 @@ class Served(Site):
         port: int,
         recording: LiveRecording,
         interfaces: RobotInterfaces | None,
+        keeper: Keeper | None = None,
     ) -> None:
         super().__init__(access, port, brand_color=(25, 113, 194))
         self._loop = loop
@@ -52,7 +56,16 @@ class Served(Site):
         self.scene = Scene(self.server, arm, scenario, meshes=meshes, first=loop.latest())
         self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
         self.recording = recording
-        self.docks = Docks(self.server, self.guard, loop, hand=self.hand, arm=arm, recording=recording, interfaces=interfaces)
+        self.docks = Docks(
+            self.server,
+            self.guard,
+            loop,
+            hand=self.hand,
+            arm=arm,
+            recording=recording,
+            interfaces=interfaces,
+            keeper=keeper,
+        )
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
         self.preferences = Preferences(self.guard, self.docks.settings_dock, self._paint_page)
@@ -70,6 +83,7 @@ class Served(Site):
         """Stop serving; connections are closed, what they held is released, a recording is ended."""
         self.server.get_event_loop().call_soon_threadsafe(self.control.close)
         super().close()
+        self.docks.keep(now=math.inf)
         self.docks.recording.close()
         self.recording.close()
 
@@ -137,6 +151,8 @@ def serve(
     record: Path | None = None,
     recording: LiveRecording | None = None,
     interfaces: RobotInterfaces | None = None,
+    keeper: Keeper | None = None,
+    lesson: Lesson | None = None,
 ) -> Served:
     """Serve the web app of a running loop.
 
@@ -146,6 +162,8 @@ def serve(
         record: record from the start, into this folder; None: when it is switched on.
         recording: the switch of recordings; None for one of its own, into `record` or the working folder.
         interfaces: the robot on the network, for the page to show; None where there is none.
+        keeper: keeps set-up, settings and what is taught for the next start; None: nobody does.
+        lesson: what was taught before; None: nothing.
 
     Raises:
         BadInput: the host is no address of this machine, the port is taken, or `record` cannot be written.
@@ -157,7 +175,11 @@ def serve(
     if record is not None:
         must_be_writable(record)
         recording.start()
-    served = Served(loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording, interfaces=interfaces)
+    served = Served(
+        loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording, interfaces=interfaces, keeper=keeper
+    )
+    if lesson is not None:
+        served.docks.teach.begin_with(lesson)
     if open_browser:
         webbrowser.open(served.link)
     return served

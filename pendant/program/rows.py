@@ -48,6 +48,7 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_FINISHED: info("Program {name} finished", "", ("name",)),
     Kind.PROGRAM_FAILED: denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
+    Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
     Kind.JOG_ENDED: info("Jogging {what} ended", "{reason}.", ("what", "reason")),
     Kind.JOG_REFUSED: denied("Not jogged: {what}", "{reason}.", ("what", "reason")),

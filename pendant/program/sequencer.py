@@ -9,15 +9,19 @@ from pendant.program.reaction import REACTION_SPEED, Until, goal
 from pendant.program.steps import (
     UNFELT,
     ApplyForce,
+    ContactMove,
     HandGuide,
     JointMove,
     LinearMove,
     Move,
     Program,
     ProgramState,
+    RunScript,
+    SetOutput,
     SwitchTool,
     Wait,
     WaitForContact,
+    WaitForInput,
     ZeroSensor,
 )
 from pendant.settings.schema import ticks
@@ -35,11 +39,15 @@ class Sequencer:
         "_begun",
         "_from",
         "_left",
+        "_line",
+        "_runs",
         "_untouched",
         "contact",
         "guided",
+        "high",
         "index",
         "move",
+        "outputs",
         "program",
         "state",
         "tool_on",
@@ -53,10 +61,14 @@ class Sequencer:
         self._begun = 0  # how many moves were begun so far: the last id
         self._left = 0  # ticks left of a wait, or of the patience of a step that zeroes the sensor
         self._from: ArmPose | None = None  # where the present move began
+        self._line: LinearMove | None = None  # what the present step, a `ContactMove`, became where it began
         self.contact: Contact | None = None  # that ended the present move, until the arm has come to rest
         self.guided = False  # the arm was guided by hand, until it has come to rest
         self._untouched: Vector = UNFELT  # F_user when the arm last began to move [N]
+        self._runs = 0  # of the steps from first to last, done since the start
         self.tool_on = False
+        self.high: frozenset[int] = frozenset()  # digital inputs that are high now
+        self.outputs: frozenset[int] = frozenset()  # digital outputs that are on
         self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
 
     def load(self, program: Program) -> None:
@@ -66,8 +78,8 @@ class Sequencer:
 
     def start(self, felt: Vector = UNFELT) -> None:
         """Begin the first step; `felt` is the force of F_user now [N]."""
-        self.index = 0
-        self._left = 0
+        self.index = self._runs = self._left = 0
+        self._line = None
         self._untouched = felt
         self.resume()
 
@@ -85,6 +97,7 @@ class Sequencer:
         """Give the program up, and keep it loaded."""
         self.state = ProgramState.NONE if self.program is None else ProgramState.STOPPED
         self.index = 0
+        self._line = None
         self._drop()
 
     @property
@@ -92,10 +105,18 @@ class Sequencer:
         """The contact that the present step waits for."""
         return getattr(self.move, "until", None)
 
-    def missed(self, move_done: int) -> bool:
-        """The present move has ended without the contact that it should have gone on until."""
+    def missed(self, move_done: int) -> str:
+        """Why the present move has failed: it has ended without the contact that it should have gone on until; else ""."""
         move = self.move
-        return isinstance(move, JointMove | LinearMove) and move.until is not None and move.id == move_done
+        if not isinstance(move, JointMove | LinearMove) or move.until is None or move.id != move_done:
+            return ""
+        assert self.program is not None
+        step = self.program.steps[self.index]
+        return (
+            f"no contact within {1000.0 * step.distance:.0f} mm"
+            if isinstance(step, ContactMove)
+            else "it ended without a contact"
+        )
 
     def touch(self, contact: Contact) -> bool:
         """A contact changes while a step runs: True when it ends the step, so that the arm has to come to rest."""
@@ -104,6 +125,18 @@ class Sequencer:
             return False
         self.contact, self.move = contact, None
         return True
+
+    @property
+    def scripted(self) -> bool:
+        """A script says what the arm shall do."""
+        program = self.program
+        return program is not None and self.state is _RUNNING and isinstance(program.steps[self.index], RunScript)
+
+    def ask(self, move: Move) -> None:
+        """The script wants this motion, in place of what is done."""
+        self._drop()
+        self._begun += 1
+        self.move = replace(move, id=self._begun)
 
     @property
     def guiding(self) -> bool:
@@ -168,26 +201,48 @@ class Sequencer:
         """
         if self._from is None:
             self._from = where()
-            if isinstance(self.move, JointMove | LinearMove):
+            if isinstance(self.move, JointMove | LinearMove | ContactMove):
                 self._untouched = felt()
-        if isinstance(self.move, WaitForContact | HandGuide | ZeroSensor):
+        if self.scripted:
             return False
-        if isinstance(self.move, SwitchTool):
-            self.tool_on = self.move.on
-        elif isinstance(self.move, Wait):
-            self._left -= 1
-            if self._left > 0:
-                return False
-            self._left = 0
-        elif self.move is None or move_done != self.move.id:
+        if isinstance(self.move, ContactMove):
+            if self._from is not None:
+                self._begun += 1
+                self.move = self._line = self.move.line(self._from, self.R_FT, self._begun)
             return False
-        return self._next()
+        return self._done(move_done) and self._next()
+
+    def _done(self, move_done: int) -> bool:
+        """One tick of the present step, which begins and ends by what the sequencer knows itself. Returns whether it is done."""
+        move = self.move
+        if isinstance(move, WaitForContact | HandGuide | ZeroSensor):
+            return False
+        if isinstance(move, WaitForInput):
+            return move.level.holds(self.high)
+        if isinstance(move, SwitchTool):
+            self.tool_on = move.on
+        elif isinstance(move, SetOutput):
+            self.outputs = self.outputs | {move.output} if move.on else self.outputs - {move.output}
+        elif isinstance(move, Wait):
+            self._left = max(self._left - 1, 0)
+            return self._left == 0
+        else:
+            return move is not None and move_done == move.id
+        return True
 
     def _next(self) -> bool:
+        if self.scripted:
+            self.ask(RunScript())
+            return False
         self.index += 1
-        if self.program is None or self.index == len(self.program.steps):
-            self.stop()
-            return True
+        self._line = None
+        assert self.program is not None
+        if self.index == len(self.program.steps):
+            self._runs += 1
+            if self._runs == self.program.repeat:
+                self.stop()
+                return True
+            self.index = 0
         self._begin()
         return False
 
@@ -200,10 +255,16 @@ class Sequencer:
         self._begun += 1
         self._from = None
         step = self.program.steps[self.index]
-        self.move = replace(step, id=self._begun)
+        if self._line is None and step.when is not None and not step.when.holds(self.high):
+            self.move, self._left = Wait(id=self._begun, duration=0.0), 0
+            return
+        self.move = replace(self._line or step, id=self._begun)
         if isinstance(self.move, ApplyForce):
             self.move = replace(self.move, untouched=self._untouched)
         if isinstance(step, ZeroSensor):
             self._left = PATIENCE
         elif isinstance(step, Wait) and self._left == 0:
             self._left = ticks(step.duration)
+
+
+_RUNNING = ProgramState.RUNNING  # looked up in every tick

@@ -40,8 +40,7 @@ def test_the_link_lets_in_and_a_text_stays_a_text(browser: Browser, network: Ser
     expect(name).not_to_have_value("")  # the name that the new waypoint was given, after which it may be another
     name.fill(EVIL)
     expect(page.get_by_role("combobox", name="Waypoint")).to_have_value(EVIL)
-    page.get_by_role("button", name="Add", exact=True).click()
-    page.get_by_text(f"Move to {EVIL}").wait_for()
+    page.get_by_role("radio", name=f"1. Move to {EVIL}").wait_for()
     assert page.evaluate("window.evil") is None
     assert set(network.guard.refused) == {"no token"}
     page.context.close()

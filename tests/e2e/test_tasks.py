@@ -4,11 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 from playwright.sync_api import Page
 
 from pendant.events.event import Kind
 from sim.arm.frames import matrix_from_quaternion
-from tests.e2e.cell import Cell
+from sim.arm.scenario import BoxObject
+from sim.simulation import Simulation
+from tests.e2e.cell import SETTINGS, Cell
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
@@ -24,11 +27,135 @@ def endings(cell: Cell) -> list[str]:
 
 def choose(page: Page, label: str, option: str) -> None:
     """Choose from a list with the pointer."""
-    page.get_by_role("textbox", name=label).or_(page.get_by_label(label)).first.click()
+    box = page.get_by_role("textbox", name=label, exact=True).or_(page.get_by_label(label, exact=True)).first
+    box.scroll_into_view_if_needed()
+    box.click()
     page.get_by_role("option", name=option, exact=True).click()
 
 
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), pytest.param(820, 1180, marks=pytest.mark.every_size)])
+SIZES = [(1440, 900), pytest.param(820, 1180, marks=pytest.mark.every_size)]
+"""A desk's screen, and a tablet held upright."""
+
+LATER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1440, 900), (820, 1180))]
+"""Of what `make test` leaves to `make e2e-full`."""
+
+
+def click(page: Page, name: str) -> None:
+    """Press a button with the pointer."""
+    button = page.get_by_role("button", name=name, exact=True).first
+    button.scroll_into_view_if_needed()
+    button.click()
+
+
+def fill(page: Page, label: str, value: str) -> None:
+    """Type a value into a field."""
+    field = page.get_by_label(label, exact=True).first
+    field.fill(value)
+    field.press("Enter")
+
+
+def teach_three(page: Page, cell: Cell) -> None:
+    """Three waypoints; between them the wrist is jogged."""
+    teach, jog = cell.served.docks.teach, cell.served.docks.jog
+    for number in (1, 2, 3):
+        page.get_by_role("tab", name="Teach").click()
+        page.get_by_role("button", name="Register waypoint").click()
+        cell.wait(lambda number=number: len(teach.lesson.waypoints) == number, f"waypoint {number}")
+        if number < 3:
+            page.get_by_role("tab", name="Jog").click()
+            if jog.steps.value != "10 mm, 10°":
+                choose(page, "One press", "10 mm, 10°")
+                cell.wait(lambda: jog.steps.value == "10 mm, 10°", "the step is chosen")
+            hold_jog(page, cell, "Wrist 3 +")
+
+
+def hold_jog(page: Page, cell: Cell, name: str) -> None:
+    """Hold a jog button until it has done its step."""
+    button = page.get_by_role("button", name=name, exact=True)
+    button.scroll_into_view_if_needed()
+    box = button.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    for _ in range(PRESSES):
+        before = len(endings(cell))
+        page.mouse.down()
+        cell.wait(lambda before=before: len(endings(cell)) > before, "the jog has ended")
+        page.mouse.up()
+        cell.pass_time(0.6)
+        if endings(cell)[-1] == "done":
+            return
+    pytest.fail(f"held in vain: {cell.told()}")
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_teach_three_waypoints_and_loop_them(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    page = visit(width, height)
+    teach = cell.served.docks.teach
+    teach_three(page, cell)
+    fill(page, "Times", "0")
+    cell.wait(lambda: teach.lesson.repeat == 0, "it loops")
+    click(page, "Run")
+    seen: list[int] = []
+
+    def round_again() -> bool:
+        step = cell.loop.latest().decision.step
+        if step and (not seen or seen[-1] != step):
+            seen.append(step)
+        return seen[-4:] == [2, 3, 1, 2]
+
+    cell.wait(round_again, "the second round", 40.0)
+    click(page, "Stop")
+    cell.wait(lambda: cell.happened(Kind.PROGRAM_STOPPED), "stopped")
+    assert not cell.happened(Kind.PROGRAM_FINISHED)
+
+
+@pytest.mark.parametrize(("width", "height"), LATER)
+def test_insert_a_wait(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    page = visit(width, height)
+    teach = cell.served.docks.teach
+    teach_three(page, cell)
+    page.get_by_role("radio", name="1. Move to P1").click()
+    cell.wait(lambda: teach.steps.chosen == 0, "the first step is chosen")
+    choose(page, "Step", "Wait")
+    cell.wait(lambda: teach.steps.fields["seconds"].visible, "how long")
+    fill(page, "Seconds", "0.5")
+    cell.wait(lambda: teach.steps.fields["seconds"].value == 0.5, "half a second")
+    click(page, "After")
+    cell.wait(lambda: len(teach.lesson.plan) == 4, "inserted")
+    assert [step.text for step in teach.lesson.plan] == ["Move to P1", "Wait 0.5 s", "Move to P2", "Move to P3"]
+    click(page, "Run")
+    cell.wait(lambda: cell.happened(Kind.PROGRAM_FINISHED), "the program ends", 30.0)
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_move_down_until_contact(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    """Onto a block whose top is 0.25 m below the flange; 200 mm are too few, and the page says so."""
+    page = visit(width, height)
+    teach, running = cell.served.docks.teach, cell.loop.simulation
+    block = BoxObject(name="block", position=[-0.6283, -0.1334, 0.043], size=[0.2, 0.2, 0.1], stiffness=2.0e4)
+    cell.loop.begin(lambda: Simulation(running.arm, replace(running.scenario, world=[block]), SETTINGS))
+    choose(page, "Step", "Move until contact")
+    cell.wait(lambda: teach.steps.fields["distance"].visible, "how far")
+    fill(page, "Speed [mm/s]", "150")
+    cell.wait(lambda: teach.steps.fields["speed"].value == 150.0, "how fast")
+    click(page, "After")
+    cell.wait(lambda: len(teach.lesson.plan) == 1, "inserted")
+    click(page, "Run")
+    cell.wait(lambda: cell.happened(Kind.PROGRAM_FAILED), "nothing met", 30.0)
+    page.get_by_text("no contact within 200 mm").first.wait_for()
+    fill(page, "Distance [mm]", "400")
+    cell.wait(lambda: teach.steps.fields["distance"].value == 400.0, "further")
+    click(page, "Replace")
+    cell.wait(lambda: teach.lesson.plan[0].distance == 0.4, "changed")
+    cell.pass_time(0.5)
+    click(page, "Run")
+    cell.wait(lambda: cell.happened(Kind.PROGRAM_FINISHED), "it has met the floor", 30.0)
+    assert cell.happened(Kind.CONTACT_GAINED)
+    assert not cell.loop.settings.contact.on
+    assert abs(float(cell.position("flange")[2]) - 0.093) < 0.003
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
 def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: int, height: int) -> None:
     page = visit(width, height)
     tab = cell.served.docks.jog

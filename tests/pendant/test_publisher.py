@@ -11,13 +11,16 @@ from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.freedrive.periods import Remaining
 from pendant.haptics import Pattern, Shake
-from pendant.limits.axis_locks import axis_locks
+from pendant.limits.axis_locks import axis_locks, locks_of
+from pendant.motion.script_requests import Guided
+from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState, Wait
 from pendant.publisher import Publisher
 from pendant.robot.reduced import SpeedLimits
 from pendant.robot.robot_mode import Robot
 from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.tick.pose import from_rpy
 from pendant.tooling.tool_in_use import Tooling
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
@@ -27,6 +30,8 @@ PERIODS = (Remaining("free-drive", 3, 7),)
 MOVE = Wait(duration=1.0, id=4)
 EVENT = Event(Kind.RESET, 5)
 CONTACT = cast("Contact", "contact")
+AXES = (True, False, True, False, False, True)
+TURNED = from_rpy(0.1, 0.2, 0.3)
 PASSING = {"events": (), "periods": (), "walls": (), "monitored": (), "contacts": ()}
 
 
@@ -40,7 +45,7 @@ class Parts:
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
         )  # fmt: skip
-        self.sequencer = SimpleNamespace(state=ProgramState.PAUSED, index=2, tool_on=True)
+        self.sequencer = SimpleNamespace(state=ProgramState.PAUSED, index=2, tool_on=True, outputs=frozenset({3}))
         self.robot = SimpleNamespace(
             free=self.free,
             sequencer=self.sequencer,
@@ -52,15 +57,21 @@ class Parts:
         )
         self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
         self.taring = SimpleNamespace(zero=(0.1,) * 6, due=False)
+        self.scripting = SimpleNamespace(guided=None, done=7)
         self.publisher = Publisher(
-            cast("Robot", self.robot), cast("Tooling", self.tooling), cast("Taring", self.taring), settings
+            cast("Robot", self.robot),
+            cast("Tooling", self.tooling),
+            cast("Taring", self.taring),
+            scripting=cast("Scripting", self.scripting),
+            settings=settings,
         )
         self.settings = settings
         self.set(**changes)
 
     def set(self, **changes: object) -> None:
+        owners = (self.free, self.sequencer, self.robot, self.tooling, self.taring, self.scripting)
         for name, value in changes.items():
-            owner = next(one for one in (self.free, self.sequencer, self.robot, self.tooling, self.taring) if hasattr(one, name))
+            owner = next(one for one in owners if hasattr(one, name))
             setattr(owner, name, value)
 
     def step(self, *events: Event, contacts: tuple[Contact, ...] = ()) -> Decision:
@@ -71,11 +82,13 @@ class Parts:
         return {
             "mode": Mode.FREE_DRIVE, "safety": Safety.REDUCED, "phase": Phase.HELD, "law": Law.FREE, "move": MOVE, "gain": 2.5,
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
-            "step": 3, "monitored": (), "contacts": (), "tool_on": True, "walls": ("wall",), "grip": "in the middle",
+            "step": 3, "monitored": (), "contacts": (), "tool_on": True, "outputs": frozenset({3}),
+            "walls": ("wall",), "grip": "in the middle",
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
+            "script_done": 7,
         } | changes  # fmt: skip
 
 
@@ -97,6 +110,8 @@ TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singular
         ({"arm": None}, {"damping": None, "singularity": None, "doubtful": False}),
         ({"idle": True}, {"periods": ()}),
         ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
+        ({"guided": Guided()}, {}),
+        ({"guided": Guided(axes=AXES, R_BU=TURNED)}, {"locks": locks_of(AXES, TURNED, SETTINGS.axes)}),
         ({"phase": Phase.OFF}, {"phase": Phase.OFF, "walls": ()}),
         (TRYING, {**TRIED, "balance": "balance", "monitored": ("monitored",), "gain": 0.0}),
     ],
@@ -134,7 +149,8 @@ LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
     "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other"), "zones": (), "move": None,
     "state": ProgramState.RUNNING,
-    "index": 3, "tool_on": False, "static": True, "fitting": "other", "wizard": SimpleNamespace(progress="other"),
+    "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
+    "wizard": SimpleNamespace(progress="other"),
     "zero": (0.2,) * 6, "due": True,
 }  # fmt: skip
 

@@ -1,1 +1,1 @@
-"""The laboratory: scenarios, the true arm and world, wiring. Uses files/, runs/, session/, web/scene/, web/widgets/."""
+"""The laboratory: scenarios, true arm, world, wires. Uses files/, robot_interface/, runs/, session/, web/scene/, web/widgets/."""

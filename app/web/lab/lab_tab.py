@@ -5,6 +5,7 @@ from typing import Any
 
 import viser
 
+from app.robot_interface.interfaces import RobotInterfaces
 from app.web.lab.scenarios import Scenarios
 from app.web.lab.setup import LabSetup
 from app.web.lab.wires import Wires
@@ -25,7 +26,9 @@ ROOM = 25.0
 class Lab:
     """The laboratory's tab."""
 
-    def __init__(self, gui: viser.GuiApi, loop: Running, hand: VirtualHand, arm: Arm) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, loop: Running, hand: VirtualHand, arm: Arm, *, interfaces: RobotInterfaces | None = None
+    ) -> None:
         self._gui, self._loop, self._hand, self._arm = gui, loop, hand, arm
         self._shown: object = None
         self._number = 0  # of the last change of tool or payload
@@ -37,7 +40,7 @@ class Lab:
         self.force = gui.add_slider("Hand [N]", min=FORCE[0], max=FORCE[2], step=5.0, initial_value=FORCE[1])
         self._payload()
         self._faults()
-        self.wires = Wires(gui, loop)
+        self.wires = Wires(gui, loop, interfaces)
         self.setup = LabSetup(gui, loop, arm)
         self._connect()
 

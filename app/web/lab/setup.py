@@ -7,6 +7,7 @@ import viser
 
 from app.files.checked import BadInput, load
 from app.files.library import load_tool, tools
+from app.kept_setup import handed_in, setup_of, text_of
 from app.runs.runner import simulate
 from app.session.prepare import MOUNTINGS, Prepared
 from app.session.session_file import WorldSection, bundled, folder
@@ -33,19 +34,45 @@ class LabSetup:
             self.world = gui.add_dropdown("World", (AS_IS, NOTHING, *bundled("worlds")))
             self.seed = gui.add_number("Seed", 0, min=0, max=2**31 - 1, step=1)
             self.mismatch = gui.add_checkbox("Controller mismatch", True)
-            self.begin = gui.add_button("Begin with this", color="gray")
+            self.begin = gui.add_button("Restart with this set-up", color="gray")
             self.message = Html(gui)
+            self.save = gui.add_button("Save set-up as file", color="gray", hint="A configuration: pendant serve --config")
+            self.load = gui.add_upload_button("Load a set-up", mime_type=".yaml", color="gray")
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
-            prepared = Prepared(self._arm, self.chosen(), self._loop.settings, None, "set-up")
-            try:
-                simulate(prepared)
-            except BadInput as refusal:
-                self.message.show(svg.note("Refused", str(refusal), Colour.AMBER))
-                return
-            self.message.show("")
-            self._loop.begin(lambda: simulate(prepared))
+            self._begin(Prepared(self._arm, self.chosen(), self._loop.settings, None, "the page"))
+
+        @self.save.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("setup.yaml", self.file(), save_immediately=True)
+
+        @self.load.on_upload
+        async def _(_: viser.GuiEvent) -> None:
+            self.read(self.load.value.name, self.load.value.content)
+
+    def file(self) -> bytes:
+        """The running set-up with its settings, as a configuration."""
+        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings)).encode()
+
+    def read(self, name: str, content: bytes) -> None:
+        """Begin with the set-up of a file, or say in a line why not."""
+        try:
+            prepared = handed_in(name, content, self._arm)
+        except BadInput as refusal:
+            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
+            return
+        self._begin(prepared)
+
+    def _begin(self, prepared: Prepared) -> None:
+        try:
+            simulate(prepared)
+        except BadInput as refusal:
+            self.message.show(svg.note("Refused", str(refusal), Colour.AMBER))
+            return
+        self.message.show(svg.note("Restarted", f"With the set-up of {prepared.where}.", Colour.GREEN))
+        self._loop.begin(lambda: simulate(prepared))
 
     def chosen(self) -> Scenario:
         """What the controls ask for; what they leave is as in the running scenario."""

@@ -1,13 +1,17 @@
-"""What is wired to the robot: the safety inputs and the digital inputs, as switches of the laboratory."""
+"""What is wired to the robot: safety and digital inputs as switches of the laboratory, and its digital outputs."""
 
 from collections.abc import Callable
 from typing import Any
 
 import viser
 
+from app.robot_interface.interfaces import RobotInterfaces
 from app.web.running import Running
+from app.web.widgets import svg
+from app.web.widgets.html import Html
 from pendant.all_settings import Settings
 from pendant.inputs import Command
+from pendant.program.steps import LINES
 from sim.exchange.snapshot import Snapshot
 
 COUNT = 8
@@ -23,12 +27,20 @@ HINT = "Settings, signals: which input enters free-drive, which leaves it"
 
 
 class Wires:
-    """A folder of switches that keep their level. Its controls run on viser's event loop; `show` runs in the painter."""
+    """A folder of switches that keep their level, and of outputs. Its controls run on viser's event loop; `show` runs in the
+    painter.
 
-    def __init__(self, gui: viser.GuiApi, loop: Running) -> None:
-        self._loop = loop
+    Args:
+        gui: of the page.
+        loop: the running simulation.
+        interfaces: whose image of inputs and outputs its clients write, too; None: a program alone switches outputs.
+    """
+
+    def __init__(self, gui: viser.GuiApi, loop: Running, interfaces: RobotInterfaces | None) -> None:
+        self._loop, self._interfaces = loop, interfaces
         self._tick = 0
-        with gui.add_folder("Inputs", expand_by_default=False):
+        with gui.add_folder("Inputs and outputs", expand_by_default=False):
+            self.outputs = Html(gui)
             self.safety = {label: gui.add_checkbox(label, False) for label in LEVELS}
             self.digital = [gui.add_checkbox(_label(number, loop.settings), False, hint=HINT) for number in range(COUNT)]
         for label, control in self.safety.items():
@@ -44,7 +56,17 @@ class Wires:
         if snapshot.tick < self._tick:  # the simulation began again, with everything closed and off
             changed += [_bring(control, "value", False) for control in self.safety.values()]
         self._tick = snapshot.tick
+        on = ", ".join(map(str, sorted(self._on(snapshot)))) or "none"
+        changed.append(self.outputs.show(svg.facts([("Outputs that are on", on)])))
         return any(changed)
+
+    def _on(self, snapshot: Snapshot) -> frozenset[int]:
+        """The outputs that are on."""
+        if self._interfaces is None:
+            return snapshot.decision.outputs
+        bits = self._interfaces.cabinet.record.get("actual_digital_output_bits")
+        assert isinstance(bits, int)
+        return frozenset(number for number in range(LINES) if bits >> number & 1)
 
     def _commands(self, label: str) -> Callable[[], None]:
         on, off = LEVELS[label]

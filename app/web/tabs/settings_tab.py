@@ -7,11 +7,13 @@ from typing import Any
 
 import viser
 
+from app.files.checked import BadInput
 from app.web.running import Running
-from app.web.tuning.presets import changes, presets
+from app.web.tuning.presets import as_file, changes, from_file, presets
 from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
+from app.web.widgets.svg import Colour
 from pendant.all_settings import Settings, describe, find, limits_checksum, value_of
 from pendant.events.event import Event, Kind
 from pendant.settings.schema import SettingRow, Value
@@ -44,14 +46,18 @@ class SettingsTab:
         self._before: list[dict[str, Value]] = []  # what each change replaced
         self.controls: dict[str, Any] = {}
         self._rows: list[SettingRow] = []
+        self._presets = dict(presets())  # by title, with those of files
         self._texts: dict[str, Html] = {}
         self.view = gui.add_button_group("View", VIEWS)
         self._chosen = VIEWS[0]
         self._line = Html(gui)
         self.undo = gui.add_button("Undo", color="gray", disabled=True)
+        self.message = Html(gui)
         self.preset = gui.add_dropdown("Preset", tuple(presets()), visible=False)
         self.listed = Html(gui)
         self.take = gui.add_button("Take this preset", visible=False)
+        self.save = gui.add_button("Save settings as file", color="gray", visible=False)
+        self.load = gui.add_upload_button("Load settings", mime_type=".yaml", color="gray", visible=False)
         self.search = gui.add_text("Search", "", hint="Words of a name, a text or a requirement")
         self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
         self.section = gui.add_dropdown("Section", tuple(map(title_of, BASIC)))
@@ -81,12 +87,38 @@ class SettingsTab:
 
         @self.take.on_click
         async def _(_: viser.GuiEvent) -> None:
-            self._change({change.row.name: change.new for change in changes(self._loop.settings, presets()[self.preset.value])})
+            self._change(
+                {change.row.name: change.new for change in changes(self._loop.settings, self._presets[self.preset.value])}
+            )
+
+        @self.save.on_click
+        async def _(event: viser.GuiEvent) -> None:
+            if event.client is not None:
+                event.client.send_file_download("settings.yaml", as_file(self._loop.settings), save_immediately=True)
+
+        @self.load.on_upload
+        async def _(_: viser.GuiEvent) -> None:
+            with self._lock, self._tab:
+                self.read(self.load.value.name, self.load.value.content)
 
         @self.undo.on_click
         async def _(_: viser.GuiEvent) -> None:
             if self._before:
                 self._loop.desk.set(self._before.pop())
+
+    def read(self, name: str, content: bytes) -> None:
+        """Offer the settings of a file as a preset, which lists what it would change; or say in a line why not."""
+        try:
+            preset = from_file(name, content)
+        except BadInput as refusal:
+            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
+            return
+        title = preset.title if preset.title not in presets() else f"{preset.title} (file)"
+        self._presets = dict(presets()) | {title: preset}
+        self.preset.options = tuple(self._presets)
+        self.preset.value = title
+        self.message.show(svg.note("File loaded", "Below is what it would change.", Colour.GREEN))
+        self._refresh(self._loop.settings)
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Bring the controls up to date with the settings that hold; True if anything changed."""
@@ -107,8 +139,9 @@ class SettingsTab:
 
     def _show_view(self) -> None:
         """Show the controls of the chosen view alone."""
+        self.message.show("")
         self._chosen = self.view.value if self.view.value in VIEWS else VIEWS[0]
-        for control in (self.preset, self.take):
+        for control in (self.preset, self.take, self.save, self.load):
             control.visible = self._chosen == VIEWS[1]
         for control in (self.search, self.expert, self.section, self.defaults):
             control.visible = self._chosen == VIEWS[2]
@@ -223,7 +256,7 @@ class SettingsTab:
 
     def _changes(self, settings: Settings) -> str:
         """What taking the chosen preset would change."""
-        preset = presets()[self.preset.value]
+        preset = self._presets[self.preset.value]
         rows = [
             (f"{title_of(section_of(row))}: {name_of(row)}", told(old, row.unit), told(new, row.unit))
             for row, old, new in changes(settings, preset)

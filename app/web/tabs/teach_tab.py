@@ -8,29 +8,26 @@ import viser
 import yaml
 
 from app.files.checked import BadInput, parse
-from app.files.taught_program import MOST, MOVES, WAITS, Lesson, TaughtStep, Waypoint, program
+from app.files.taught_program import MOST, Lesson, TaughtStep, Waypoint, program
 from app.web.running import Running
 from app.web.scene.ghost import Ghost
+from app.web.tabs.step_editor import NO_WAYPOINT, Edits, StepEditor, waypoints_of
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
 from pendant.inputs import Command
-from pendant.program.steps import ProgramState
+from pendant.program.steps import ProgramState, misfit
 from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.exchange.snapshot import Snapshot
 
-NONE = "none"
 BLUE = (25, 113, 194)
 HERE = 0.02
 """The arm is at a waypoint when no joint is further from it [rad]."""
 
 APART = 0.08
 """A recorded path gets a waypoint whenever a joint has turned by this much since the last one [rad]."""
-
-MOVABLE = {text: do for do, text in MOVES.items()}
-WAITING = {text: do for do, text in WAITS.items()}
 
 
 class Teach:
@@ -39,27 +36,31 @@ class Teach:
     def __init__(self, server: viser.ViserServer, loop: Running, arm: Arm) -> None:
         gui = server.gui
         self._loop, self._arm = loop, arm
-        self.lesson = Lesson()
+        self.edits = Edits()
         self.ghost = Ghost(server, arm, "/ghost/waypoint", BLUE)
         self._running: list[TaughtStep] = []  # the steps of the program handed over last
         self._first: int | None = None  # place of the first of them in the plan; None: they are none of it
         self._next = 0  # the step that `TaughtStep` does
         self.register = gui.add_button("Register waypoint", icon=viser.Icon.MAP_PIN_PLUS, disabled=False, hint="Key: M")
-        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", names_of(Lesson()))
-        self.edit = gui.add_button_group("Change", ("Go to", "↑", "↓", "✕"))
-        self.name = gui.add_text("Name", "")
-        self.record = gui.add_checkbox("Record a path", False)
         with gui.add_folder("Program"):
-            self.list = Html(gui)
-            self.step = gui.add_dropdown("Step", (*MOVABLE, *WAITING))
-            self.change = gui.add_button_group("Steps", ("Add", "Undo", "Clear"))
-            self.speed = gui.add_slider("Speed [%]", min=10, max=100, step=5, initial_value=50)
             self.run = gui.add_button_group("Run", ("Run", "Pause", "Step", "Stop"))
+            self.message = Html(gui)
+            self.steps = StepEditor(gui, self.edits, self._edited)
+        with gui.add_folder("Waypoints"):
+            self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Waypoint", waypoints_of(self.lesson))
+            self.edit = gui.add_button_group("Arm", ("Go to", "Re-teach"))
+            self.order = gui.add_button_group("Order", ("↑", "↓", "✕"))
+            self.name = gui.add_text("Name", "")
+            self.record = gui.add_checkbox("Record a path", False)
         self.save = gui.add_button("Save as file", color="gray")
         self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
-        self.message = Html(gui)
         self._connect()
         self._refresh()
+
+    @property
+    def lesson(self) -> Lesson:
+        """What was taught."""
+        return self.edits.now
 
     def show(self, snapshot: Snapshot) -> bool:
         """Show where the program is; record a path while the arm is guided; True if anything changed."""
@@ -73,16 +74,14 @@ class Teach:
         name: str | None = None
         if active and 0 < at <= len(self._running):
             name = self._running[at - 1].to
-        elif self.choice.value != NONE and decision.mode is not Mode.RUN:
+        elif self.choice.value != NO_WAYPOINT and decision.mode is not Mode.RUN:
             name = self.choice.value
         target = next((w.q for w in self.lesson.waypoints if w.name == name), None)
         if target is not None and float(np.max(np.abs(snapshot.estimate.q - np.array(target)))) < HERE:
             target = None  # the arm is there
-        now = self._now(at)
-        rows = [(step.text, number == now) for number, step in enumerate(self.lesson.plan)]
         return any(
             [
-                self.list.show(svg.steps(rows, decision.program.value.lower() if active else "")),
+                self.steps.show(self._now(at), decision.program.value.lower() if active else ""),
                 self.ghost.show(target, snapshot, name or ""),
                 enable(self.register, decision.mode is not Mode.RUN),
             ]
@@ -101,37 +100,50 @@ class Teach:
         return now if now < len(plan) and plan[now] == self._running[at - 1] else None
 
     def _register(self, snapshot: Snapshot) -> None:
-        if len(self.lesson.waypoints) >= MOST:
-            return
+        if len(self.lesson.waypoints) < MOST:
+            waypoint = self._here(snapshot, self.lesson.free_name())
+            self.edits.to(self.lesson.with_waypoint(waypoint))
+            self._refresh(waypoint.name)
+            self.steps.refresh(len(self.lesson.plan) - 1)
+
+    def _here(self, snapshot: Snapshot, name: str) -> Waypoint:
+        """Where the arm is, as a waypoint."""
         seen = snapshot.estimate
         fitting = snapshot.decision.fitting
         R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
-        name = self.lesson.free_name()
-        waypoint = Waypoint(
+        return Waypoint(
             name=name,
             q=np.round(seen.q, 6).tolist(),
             position=np.round(seen.tcp[:3], 6).tolist(),
             quaternion=np.round(quaternion_from_matrix(R_BT), 8).tolist(),
         )
-        self.lesson = self.lesson.with_waypoint(waypoint)
-        self._refresh(name)
+
+    def _edited(self, place: str | None) -> None:
+        """The program was edited, or another step chosen, which single steps begin with; `place` is the waypoint it leads to."""
+        self._next = self.steps.chosen or 0
+        self._refresh(place)
 
     def _refresh(self, chosen: str | None = None) -> None:
-        names = names_of(self.lesson)
+        names = waypoints_of(self.lesson)
         wanted = next((name for name in (chosen, self.choice.value) if name is not None and name in names), names[-1])
         if self.choice.options != names:
             self.choice.options = names
         if self.choice.value != wanted:
             self.choice.value = wanted
-        self.name.value = "" if wanted == NONE else wanted
+        self.name.value = "" if wanted == NO_WAYPOINT else wanted
+        self.steps.refresh()
 
-    def _hand_over(self, steps: list[TaughtStep], first: int | None) -> None:
+    def _hand_over(self, steps: list[TaughtStep], first: int | None, repeat: int = 1) -> None:
         """Load and start a program of these steps; `first` is the place of the first one in the plan."""
         if not steps:
-            self.message.show(svg.note("Nothing to run", "Register a waypoint first.", Colour.AMBER))
+            self.message.show(svg.note("Nothing to run", "Register a waypoint, or insert a step.", Colour.AMBER))
+            return
+        made = program(self.lesson, steps, repeat)
+        if (reason := misfit(made, self._arm.n)) is not None:
+            self.message.show(svg.note("Not run", f"{reason[0].upper()}{reason[1:]}.", Colour.AMBER))
             return
         self._running, self._first = steps, first
-        self._loop.desk.load(program(self.lesson, steps, float(self.speed.value) / 100.0))
+        self._loop.desk.load(made)
         self._loop.desk.command(Command.START_PROGRAM)
         self.message.show("")
 
@@ -143,7 +155,7 @@ class Teach:
 
         on(self.register, self.mark)
         on(self.edit, self._edit)
-        on(self.change, self._change)
+        on(self.order, self._reorder)
         on(self.run, self._run)
 
         @self.choice.on_update
@@ -165,6 +177,11 @@ class Teach:
         async def _(_: viser.GuiEvent) -> None:
             self.read(self.load.value.name, self.load.value.content)
 
+    def begin_with(self, lesson: Lesson) -> None:
+        """Show what was taught before, with nothing to undo."""
+        self.edits.now = lesson
+        self._refresh()
+
     def file(self) -> bytes:
         """What was taught, as a file."""
         return yaml.safe_dump(msgspec.to_builtins(self.lesson), sort_keys=False, allow_unicode=True).encode()
@@ -179,43 +196,40 @@ class Teach:
         except BadInput as refusal:
             self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
             return
-        self.lesson = lesson
+        self.edits.to(lesson)
         self._refresh()
         self.message.show(svg.note("File loaded", f"{len(lesson.waypoints)} waypoints, {len(lesson.plan)} steps.", Colour.GREEN))
 
     def _edit(self) -> None:
         name = self.choice.value
-        if name == NONE:
+        if name == NO_WAYPOINT:
             return
         if self.edit.value == "Go to":
             self._hand_over([TaughtStep(do="joint", to=name)], None)
-        elif self.edit.value == "✕":
-            self.lesson = self.lesson.without(name)
         else:
-            self.lesson = self.lesson.moved(name, -1 if self.edit.value == "↑" else 1)
+            snapshot = self._loop.latest()
+            if snapshot.decision.mode is not Mode.RUN:
+                self.edits.to(self.lesson.taught_again(name, self._here(snapshot, name)))
+        self._refresh(name)
+
+    def _reorder(self) -> None:
+        name = self.choice.value
+        if name == NO_WAYPOINT:
+            return
+        if self.order.value == "✕":
+            self.edits.to(self.lesson.without(name))
+        else:
+            self.edits.to(self.lesson.moved(name, -1 if self.order.value == "↑" else 1))
         self._refresh(name)
 
     def _rename(self, new: str) -> None:
         old = self.choice.value
         taken = any(waypoint.name == new for waypoint in self.lesson.waypoints)
-        if old != NONE and 0 < len(new) <= 40 and not taken:
-            self.lesson = self.lesson.renamed(old, new)
+        if old != NO_WAYPOINT and 0 < len(new) <= 40 and not taken:
+            self.edits.to(self.lesson.renamed(old, new))
             self._refresh(new)
         else:
             self._refresh(old)
-
-    def _change(self) -> None:
-        steps = self.lesson.steps
-        if self.change.value == "Clear":
-            steps = []
-        elif self.change.value == "Undo":
-            steps = steps[:-1]
-        elif self.step.value in WAITING:
-            steps = [*steps, TaughtStep(do=WAITING[self.step.value])]  # type: ignore[arg-type]
-        elif self.choice.value != NONE:
-            steps = [*steps, TaughtStep(do=MOVABLE[self.step.value], to=self.choice.value)]  # type: ignore[arg-type]
-        self.lesson = self.lesson.with_steps(steps[:MOST])
-        self._next = 0
 
     def _run(self) -> None:
         desk, state = self._loop.desk, self._loop.latest().decision.program
@@ -227,13 +241,8 @@ class Teach:
         elif state is ProgramState.PAUSED and self.run.value == "Run":
             desk.command(Command.RESUME_PROGRAM)
         elif self.run.value == "Run":
-            self._hand_over(self.lesson.plan, 0)
+            self._hand_over(self.lesson.plan, 0, self.lesson.repeat)
         else:
             plan = self.lesson.plan
             self._hand_over(plan[self._next : self._next + 1], self._next)
             self._next = (self._next + 1) % max(len(plan), 1)
-
-
-def names_of(lesson: Lesson) -> tuple[str, ...]:
-    """What the dropdown offers: the waypoints, or that there is none."""
-    return tuple(waypoint.name for waypoint in lesson.waypoints) or (NONE,)

@@ -4,10 +4,12 @@ import functools
 from typing import Annotated, NamedTuple
 
 import msgspec
+import yaml
 from msgspec import Meta
 
-from app.files.checked import load
+from app.files.checked import load, parse
 from app.session.session_file import bundled, folder
+from app.session.timeline_checks import applied
 from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.settings.schema import SettingRow, Value
 
@@ -42,6 +44,24 @@ def presets() -> dict[str, Preset]:
     names = sorted(bundled("presets"), key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name))
     found = [load(folder("presets") / f"{name}.yaml", Preset) for name in names]
     return {preset.title: preset for preset in found}
+
+
+def as_file(settings: Settings) -> bytes:
+    """Settings as the file of a preset."""
+    changed = {row.name: value_of(settings, row.name) for row in describe() if value_of(settings, row.name) != row.default}
+    preset = Preset(title="Saved", text="Settings that were saved on the page.", settings=changed)
+    return yaml.safe_dump(msgspec.to_builtins(preset), sort_keys=False, allow_unicode=True).encode()
+
+
+def from_file(name: str, content: bytes) -> Preset:
+    """The preset in a file that a page hands in.
+
+    Raises:
+        BadInput: it is none, or a name or a value in it is not allowed.
+    """
+    preset = parse(content.decode("utf-8", "replace"), Preset, name)
+    applied(Settings(), preset.settings, name, "settings")
+    return preset
 
 
 def changes(now: Settings, preset: Preset) -> list[PresetChange]:

@@ -220,10 +220,16 @@ def contacts(rows: Iterable[tuple[str, ...]]) -> str:
     return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
 
 
-def steps(rows: Iterable[tuple[str, bool]], state: str) -> str:
-    """The steps of a program; the one being done is marked with `state`."""
+NOW = ' class="pd-now"'
+
+
+def steps(rows: Iterable[tuple[str, bool, bool]], state: str) -> str:
+    """The steps of a program, to choose one: its text, whether it is chosen, and whether it is being done, in `state`."""
     lines = "".join(
-        f'<li class="pd-now">{escape(text)} <em>{escape(state)}</em></li>' if now else f"<li>{escape(text)}</li>"
-        for text, now in rows
+        f'<div role="radio" tabindex="0" data-pd-pick="{escape(text)}" aria-checked="{str(chosen).lower()}"'
+        f"{NOW if now else ''}>{escape(text)}{f' <em>{escape(state)}</em>' if now else ''}</div>"
+        for text, chosen, now in rows
     )
-    return f'<ol class="pd-steps">{lines}</ol>' if lines else '<p class="pd-empty">No waypoints yet</p>'
+    if not lines:
+        return '<p class="pd-empty">No steps yet</p>'
+    return f'<div class="pd-steps" role="radiogroup" aria-label="Steps of the program">{lines}</div>'

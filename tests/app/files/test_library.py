@@ -31,6 +31,16 @@ def test_a_path_reads_that_file(tmp_path: Path) -> None:
     assert load_arm(str(mine)).payload == 4.5
 
 
+def test_an_arm_is_read_once_and_anew_when_its_file_changed(tmp_path: Path) -> None:
+    text = (ASSETS / "robots" / "ur5e.yaml").read_text("utf-8")
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(text, "utf-8")
+    first = load_arm(mine)
+    assert load_arm(mine) is first
+    mine.write_text(text.replace("payload: 5.0", "payload: 4.5"), "utf-8")
+    assert load_arm(mine).payload == 4.5
+
+
 def test_a_shipped_name_wins_over_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("ur5e").write_text("nonsense", "utf-8")

@@ -100,6 +100,7 @@ class FakeLoop:
         self.q = HOME.copy()
         self.program = ProgramState.NONE
         self.step = 0  # of the program
+        self.outputs: frozenset[int] = frozenset()
         self.walls: tuple[WallState, ...] = ()
         self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
@@ -154,6 +155,7 @@ class FakeLoop:
             walls=self.walls,
             program=self.program,
             step=self.step,
+            outputs=self.outputs,
         )
         seen = estimate(self.q)
         poses, nothing = links(self.q), np.zeros((0, 7))

@@ -105,7 +105,9 @@ def test_the_operator_sets_every_control_to_its_other_end(served: Served, join: 
     view = settings.view._impl.uuid
     before = (settings.section.visible, settings.preset.visible)
     assert len(able) > 40
-    for uuid in sorted(able, key=lambda uuid: uuid == view):  # the view last, because it makes other controls
+    teach = served.docks.teach
+    late = ["", teach.register._impl.uuid, teach.steps.insert._impl.uuid, view]  # they make other options and controls
+    for uuid in sorted(able, key=lambda uuid: late.index(uuid) if uuid in late else 0):
         client.set(uuid, value=other_value(controls(served)[uuid]))
     until(lambda: (settings.section.visible, settings.preset.visible) != before, "the last of them")
     assert served.guard.refused.total() == 0
@@ -173,7 +175,7 @@ def test_a_watcher_can_use_nothing_but_the_stop(served: Served, join: Join, unto
         watcher.drag(phase)
     reasons = refused(served, 2 * len(others) + 2)
     assert set(reasons) == {"not the operator", "disabled control", "not a hold button", "value not allowed"}
-    assert reasons["value not allowed"] == 2  # the upload buttons have none
+    assert reasons["value not allowed"] == 3  # the upload buttons have none
 
 
 def test_a_text_of_a_user_stays_a_text(served: Served, join: Join) -> None:
@@ -182,14 +184,14 @@ def test_a_text_of_a_user_stays_a_text(served: Served, join: Join) -> None:
     register(served, client, 1)
     client.set(teach.name._impl.uuid, value=EVIL)
     until(lambda: teach.lesson.waypoints[0].name == EVIL, "renamed")
-    client.set(teach.change._impl.uuid, value="Add")
-    until(lambda: len(teach.lesson.steps) == 1, "a step to it")
+    client.set(teach.steps.insert._impl.uuid, value="After")
+    until(lambda: len(teach.lesson.plan) == 2, "a step to it")
     for content in (f"{EVIL}: 1", f"waypoints: [{{name: '{EVIL}'}}]", f"waypoints: {EVIL}", f"- {EVIL}", f"'{EVIL}"):
         before = teach.message.shown
         upload(client, teach.load._impl.uuid, content.encode(), filename=EVIL)
         until(lambda before=before: teach.message.shown != before, "an answer to the file")
         assert "File refused" in teach.message.shown
-    until(lambda: "onerror" in teach.list.shown, "the step is listed")
+    until(lambda: "onerror" in teach.steps.list.shown, "the step is listed")
     pieces = told(served, join())
     assert sum("onerror" in piece for piece in pieces) >= 2
     for piece in pieces:

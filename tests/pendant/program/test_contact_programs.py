@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+import msgspec
 import pytest
 
 from pendant.contact.contact_change import ArmPose, Change, Contact
@@ -11,7 +12,17 @@ from pendant.event_table import render
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
 from pendant.program.reaction import REACTION_SPEED, Until, goal
-from pendant.program.steps import AnyStep, JointMove, LinearMove, Program, ProgramState, SwitchTool, Wait, WaitForContact
+from pendant.program.steps import (
+    AnyStep,
+    ContactMove,
+    JointMove,
+    LinearMove,
+    Program,
+    ProgramState,
+    SwitchTool,
+    Wait,
+    WaitForContact,
+)
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode
 from pendant.tick.pose import UNTURNED
@@ -247,3 +258,90 @@ def test_the_tools_orientation_in_the_flange_is_kept_by_a_reaction() -> None:
     bench.run(50)
     assert isinstance(bench.last.move, LinearMove)
     assert bench.last.move.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))
+
+
+DOWN_HERE = ContactMove(distance=0.2, speed=0.05, until=Until(change="gained", then="retract", distance=0.02))
+
+
+@pytest.mark.parametrize(
+    ("frame", "along", "way"),
+    [
+        ("base", "-z", (0.0, 0.0, -0.2)),
+        ("base", "x", (0.2, 0.0, 0.0)),
+        ("tool", "x", (0.0, 0.2, 0.0)),
+        ("tool", "-y", (0.2, 0.0, 0.0)),
+        ("tool", "z", (0.0, 0.0, 0.2)),
+    ],
+)
+def test_a_move_until_contact_is_a_line_from_where_the_arm_stands(frame: str, along: str, way: tuple[float, ...]) -> None:
+    """CD-15: the tool stands turned by a quarter about z, so its x is the base's y."""
+    step = ContactMove(frame=frame, along=along, distance=0.2, speed=0.05)  # type: ignore[arg-type]
+    bench, told = running(step)
+    bench.supervisor._robot.sequencer.R_FT = ABOUT_Z
+    bench.step(Inputs(commands=(Command.STOP_PROGRAM,)))
+    bench.run(60)
+    bench.step(Inputs(commands=(Command.START_PROGRAM,)))
+    bench.step()
+    assert told.was_on  # detection is on for the step
+    move = bench.last.move
+    assert isinstance(move, LinearMove)
+    assert move.position == pytest.approx(tuple(a + b for a, b in zip(BEGUN.p_BT, way, strict=True)))
+    assert move.quaternion == pytest.approx((0.5**0.5, 0.0, 0.0, 0.5**0.5))
+    assert (move.speed, move.until) == (0.05, step.until)
+
+
+def test_a_move_until_contact_ends_at_it_and_goes_back() -> None:
+    bench, told = running(DOWN_HERE, NEXT)
+    bench.step(value=estimate(qd=0.3))
+    told.coming = iter((GAINED,))
+    assert bench.step(value=estimate(qd=0.3)).law is Law.BRAKE
+    told.at = POSE
+    bench.run(50)
+    assert isinstance(bench.last.move, LinearMove)
+    assert bench.last.move.position == pytest.approx((0.0, 0.0, 0.32))
+    done(bench)
+    assert (bench.last.step, bench.last.program) == (2, ProgramState.RUNNING)
+
+
+def test_a_move_until_contact_that_meets_nothing_says_how_far_it_went() -> None:
+    bench, _ = running(DOWN_HERE, NEXT)
+    done(bench)
+    assert bench.events[-1].kind is Kind.PROGRAM_FAILED
+    assert bench.events[-1].values == {"name": "program", "step": 1, "reason": "no contact within 200 mm"}
+
+
+def test_a_pause_makes_a_move_until_contact_no_longer() -> None:
+    """The way that is left is done after it; each run of the step measures its own way."""
+    bench, told = running(DOWN_HERE, DOWN_HERE)
+    first = bench.last.move
+    assert isinstance(first, LinearMove)
+    told.at = POSE
+    bench.step(Inputs(commands=(Command.PAUSE_PROGRAM,)))
+    bench.run(60)
+    bench.step(Inputs(commands=(Command.RESUME_PROGRAM,)))
+    bench.step()
+    again = bench.last.move
+    assert isinstance(again, LinearMove)
+    assert again.position == first.position
+    assert again.id > first.id
+    told.coming = iter((GAINED,))
+    bench.step()
+    bench.run(60)
+    done(bench)
+    bench.step()
+    assert bench.last.step == 2
+    assert isinstance(bench.last.move, LinearMove)
+    assert bench.last.move.position == pytest.approx((0.0, 0.0, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("field", "fits", "beyond"), [("distance", (0.001, 1.0), (0.0009, 1.001)), ("speed", (0.001, 0.25), (0.0009, 0.2501))]
+)
+def test_a_move_until_contact_has_its_distance_and_speed_to_the_ends_of_their_ranges(
+    field: str, fits: tuple[float, ...], beyond: tuple[float, ...]
+) -> None:
+    for value in fits:
+        assert getattr(msgspec.convert({"kind": "until_contact", field: value}, ContactMove), field) == value
+    for value in beyond:
+        with pytest.raises(msgspec.ValidationError, match=field):
+            msgspec.convert({"kind": "until_contact", field: value}, ContactMove)

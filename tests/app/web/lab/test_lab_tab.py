@@ -2,19 +2,21 @@
 
 from collections.abc import Callable
 from html import escape
+from pathlib import Path
 
 import pytest
 
 from app.files.checked import load
 from app.files.library import load_tool
+from app.kept_setup import Keeper
 from app.session.session_file import Session, bundled, folder
 from app.web.lab.scenarios import TOPICS, scenarios
-from app.web.server import Served
+from app.web.server import Served, serve
 from pendant.tick.modes import Mode
 from pendant.tooling.tool_in_use import Fitting
 from sim.arm.scenario import Load, Scenario
 from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, SensorFault, Temperature
-from tests.app.web.fake_loop import FakeLoop
+from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
@@ -145,3 +147,31 @@ def test_scenarios_are_found_by_words_and_by_topic(served: Served, join: Join) -
     client.set(picker.search._impl.uuid, value="")
     client.set(picker.topic._impl.uuid, value="Free-drive ends")
     until(lambda: picker.cards.shown.count("data-pd-pick") == len(TOPICS["Free-drive ends"]), "those of the topic")
+
+
+def test_a_set_up_is_saved_as_a_file_and_loaded_again(loop: FakeLoop, still: Served) -> None:
+    setup = still.lab.setup
+    content = setup.file()
+    setup.read("cell.yaml", content.replace(b"seed: 0", b"seed: 5"))
+    assert "With the set-up of cell.yaml" in setup.message.shown
+    make, _ = loop.begun[-1]
+    assert make().scenario.seed == 5
+    setup.read("cell.yaml", b"robot: <b>ur3e</b>")
+    assert "File refused" in setup.message.shown
+    assert "<b>ur3e" not in setup.message.shown
+    assert len(loop.begun) == 1
+
+
+def test_what_is_taught_is_kept_for_the_next_start(loop: FakeLoop, tmp_path: Path) -> None:
+    keeper = Keeper(tmp_path, "ur5e")
+    served = serve(loop, ARM, Scenario(), keeper=keeper)
+    until(lambda: keeper._seen is not None, "seen")
+    served.docks.teach.mark()
+    served.close()
+    kept = keeper.read()
+    assert kept is not None
+    assert [waypoint.name for waypoint in kept.taught.waypoints] == ["P1"]
+    again = serve(loop, ARM, Scenario(), lesson=kept.taught)
+    assert [step.text for step in again.docks.teach.lesson.plan] == ["Move to P1"]
+    assert again.docks.teach.choice.options == ("P1",)
+    again.close()

@@ -1,6 +1,7 @@
-"""Inputs of the robot, switched on the page."""
+"""Inputs of the robot, switched on the page, and its outputs, shown there."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
 
@@ -80,3 +81,21 @@ def test_a_watcher_switches_nothing(served: Served, join: Join, loop: FakeLoop) 
     loop.advance()
     assert loop.wishes[-1].inputs.high == {1}
     assert loop.wishes[-1].inputs.commands == ()
+
+
+def test_outputs_are_shown(loop: FakeLoop, still: Served) -> None:
+    wires = still.lab.wires
+    still.docks.show(loop.latest())
+    assert "<dd>none</dd>" in wires.outputs.shown
+    loop.outputs = frozenset({7, 0, 2})
+    still.docks.show(loop.latest())
+    assert "<dd>0, 2, 7</dd>" in wires.outputs.shown
+
+
+def test_outputs_that_clients_set_are_shown_from_the_image_that_they_share(loop: FakeLoop, still: Served) -> None:
+    """Beyond the eighth bit are those of other plugs."""
+    wires = still.lab.wires
+    record = SimpleNamespace(get={"actual_digital_output_bits": 0x1_8182}.get)
+    wires._interfaces = SimpleNamespace(cabinet=SimpleNamespace(record=record))  # type: ignore[assignment]
+    still.docks.show(loop.latest())
+    assert "<dd>1, 7</dd>" in wires.outputs.shown

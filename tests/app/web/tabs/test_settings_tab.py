@@ -6,7 +6,7 @@ import pytest
 
 from app.web.server import Served
 from app.web.tabs.settings_tab import BASIC, VIEWS
-from app.web.tuning.presets import presets
+from app.web.tuning.presets import as_file, from_file, presets
 from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, section_of, title_of
 from pendant.all_settings import Settings, apply, describe, limits_checksum
 from pendant.tick.modes import Mode
@@ -176,3 +176,45 @@ def test_search_finds_by_words_sections_and_requirements(served: Served, join: J
     assert all(name.startswith("walls.") for name in tab.controls)
     client.set(tab.search._impl.uuid, value="no such words")
     until(lambda: tab.controls == {}, "nothing found")
+
+
+def test_settings_are_saved_as_a_file_that_lists_its_changes_before_they_are_taken(loop: FakeLoop, still: Served) -> None:
+    tab = still.docks.settings
+    loop.settings = apply(Settings(), {"free_drive.period": 7.0, "contact.on": True})
+    content = as_file(loop.settings)
+    loop.settings = Settings()
+    tab.view.value, tab._chosen = VIEWS[1], VIEWS[1]
+    with tab._lock:  # as the page does: the view that was just chosen is filled on viser's event loop
+        tab.read("mine.yaml", content)
+    assert tab.preset.value == "Saved"
+    assert "<td>7 s</td>" in tab.listed.shown
+    loop.advance()
+    assert loop.wishes[-1].inputs.settings == {}  # nothing is taken yet
+    assert from_file("mine.yaml", content).settings == {"free_drive.period": 7.0, "contact.on": True}
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"title: x\ntext: y\nsettings: {free_drive.period: 1e9}", "settings.free_drive.period"),
+        (b"title: x\ntext: y\nsettings: {free_drive.periods: 1}", "settings.free_drive.periods"),
+        (b"settings: {}", "title"),
+        (b"<b>no</b>", "&lt;b&gt;"),
+        (b"", "mine.yaml"),
+    ],
+)
+def test_a_file_of_settings_that_makes_no_sense_is_refused_in_a_line(still: Served, content: bytes, said: str) -> None:
+    tab = still.docks.settings
+    before = tab.preset.options
+    tab.read("mine.yaml", content)
+    assert "File refused" in tab.message.shown
+    assert said in tab.message.shown
+    assert "<b>no" not in tab.message.shown
+    assert tab.preset.options == before
+
+
+def test_a_file_named_as_a_shipped_preset_stands_beside_it(still: Served) -> None:
+    tab = still.docks.settings
+    tab.read("mine.yaml", b"title: Classroom\ntext: mine\nsettings: {}")
+    assert tab.preset.value == "Classroom (file)"
+    assert tab.preset.options[-1] == "Classroom (file)"

@@ -1,14 +1,16 @@
 """The teach tab."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
+import msgspec
 import pytest
 
-from app.files.taught_program import Lesson, TaughtStep
+from app.files.taught_program import Do, Lesson, TaughtStep
 from app.web.access.takes import MAX_FILE
 from app.web.scene.ghost import limbs
 from app.web.server import Served
+from app.web.tabs.step_editor import KINDS
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, ProgramState
 from pendant.tick.modes import Mode
@@ -35,7 +37,7 @@ def test_waypoints_are_registered_and_run_as_a_program(served: Served, join: Joi
     teach = served.docks.teach
     register(served, client, 2)
     assert teach.choice.options == ("P1", "P2")
-    until(lambda: "Move to P2" in teach.list.shown, "listed")
+    until(lambda: "Move to P2" in teach.steps.list.shown, "listed")
     client.set(teach.run._impl.uuid, value="Run")
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.program is not None, "handed over")
     inputs = loop.wishes[-1].inputs
@@ -49,9 +51,12 @@ def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) 
     for _ in range(3):
         teach.mark()
     if own:
-        teach.lesson = teach.lesson.with_steps(
-            [TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P1")]
+        teach.edits.to(
+            teach.lesson.with_steps(
+                [TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P2"), TaughtStep(do="joint", to="P1")]
+            )
         )
+        teach._refresh()
     texts = [step.text for step in teach.lesson.plan]
     teach.run.value = "Run"
     teach._run()
@@ -59,17 +64,18 @@ def test_the_step_that_runs_is_marked(loop: FakeLoop, still: Served, own: bool) 
     for number in (1, 2, 3):
         loop.step = number
         teach.show(loop.latest())
-        items = teach.list.shown.split("<li")[1:]
+        items = teach.steps.list.shown.split('<div role="radio"')[1:]
         assert [number for number, item in enumerate(items, 1) if "pd-now" in item] == [number]
         assert f"{texts[number - 1]} <em>running</em>" in items[number - 1]
-    teach.lesson = teach.lesson.with_steps([TaughtStep(do="joint", to="P3")])
+    teach.edits.to(teach.lesson.with_steps([TaughtStep(do="joint", to="P3")]))
+    teach._refresh()
     teach.show(loop.latest())
-    assert "pd-now" not in teach.list.shown  # the plan is another one by now
+    assert "pd-now" not in teach.steps.list.shown  # the plan is another one by now
     teach.edit.value = "Go to"
     teach._edit()
     loop.step = 1
     teach.show(loop.latest())
-    assert "pd-now" not in teach.list.shown  # it goes to a waypoint, and does no step of the plan
+    assert "pd-now" not in teach.steps.list.shown  # it goes to a waypoint, and does no step of the plan
 
 
 def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop: FakeLoop) -> None:
@@ -77,11 +83,11 @@ def test_a_single_step_is_marked_as_what_it_is(served: Served, join: Join, loop:
     register(served, client, 2)
     for text in ("P1", "P2", "P1"):
         loop.program, loop.step = ProgramState.STOPPED, 0
-        until(lambda: "pd-now" not in teach.list.shown, "nothing runs")
+        until(lambda: "pd-now" not in teach.steps.list.shown, "nothing runs")
         client.set(teach.run._impl.uuid, value="Step")
         until(lambda text=text: [step.to for step in teach._running] == [text], "handed over")
         loop.program, loop.step = ProgramState.RUNNING, 1
-        until(lambda text=text: f'class="pd-now">Move to {text} ' in teach.list.shown, text)
+        until(lambda text=text: f". Move to {text} <em>" in teach.steps.list.shown, text)
 
 
 def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loop: FakeLoop) -> None:
@@ -92,7 +98,7 @@ def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loo
     until(lambda: served.docks.teach.ghost.posture is not None, "shown")
     assert served.docks.teach.ghost.posture == pytest.approx(tuple(HOME))
     assert served.docks.teach.ghost.text == "P1"
-    client.set(served.docks.teach.edit._impl.uuid, value="✕")
+    client.set(served.docks.teach.order._impl.uuid, value="✕")
     until(lambda: served.docks.teach.ghost.posture is None, "gone")
 
 
@@ -120,7 +126,7 @@ def test_what_was_taught_is_saved_and_loaded(served: Served, join: Join) -> None
     teach = served.docks.teach
     register(served, client, 2)
     content = teach.file()
-    client.set(teach.edit._impl.uuid, value="✕")
+    client.set(teach.order._impl.uuid, value="✕")
     until(lambda: len(teach.lesson.waypoints) == 1, "deleted")
     upload(client, teach.load._impl.uuid, content)
     until(lambda: len(teach.lesson.waypoints) == 2, "loaded")
@@ -147,3 +153,84 @@ def test_a_watcher_uploads_nothing(served: Served, join: Join) -> None:
     upload(watcher, served.docks.teach.load._impl.uuid, b"waypoints: []")
     until(lambda: served.guard.refused["not the operator"] == 2, "refused")
     assert len(served.docks.teach.lesson.waypoints) == 1
+
+
+def press(client: RawClient, group: Any, value: str) -> None:
+    client.set(group._impl.uuid, value=value)
+
+
+def texts(teach: Any) -> list[str]:
+    return [step.text for step in teach.lesson.plan]
+
+
+def test_steps_are_inserted_changed_moved_deleted_and_all_of_it_undone(served: Served, join: Join) -> None:
+    client, teach = join(), served.docks.teach
+    steps = teach.steps
+    register(served, client, 2)
+    assert texts(teach) == ["Move to P1", "Move to P2"]
+    client.set(steps.kind._impl.uuid, value="Wait")
+    until(lambda: steps.fields["seconds"].visible, "its field is there")
+    assert not steps.fields["way"].visible
+    client.set(steps.fields["seconds"]._impl.uuid, value=2.0)
+    client.set(steps.choice._impl.uuid, value="1. Move to P1")
+    until(lambda: steps.kind.value == "Move to", "the fields are the chosen step's")
+    client.set(steps.kind._impl.uuid, value="Wait")
+    until(lambda: steps.fields["seconds"].visible, "its field is there again")
+    client.set(steps.fields["seconds"]._impl.uuid, value=2.0)
+    client.set(steps.when._impl.uuid, value="input 3 is high")
+    press(client, steps.insert, "After")
+    until(lambda: texts(teach) == ["Move to P1", "Wait 2 s if input 3 is high", "Move to P2"], "inserted after")
+    assert steps.chosen == 1
+    press(client, steps.order, "\u2191")
+    until(lambda: texts(teach)[0].startswith("Wait"), "moved up")
+    client.set(steps.kind._impl.uuid, value="Output on")
+    until(lambda: steps.fields["number"].visible, "which")
+    client.set(steps.fields["number"]._impl.uuid, value="5")
+    client.set(steps.when._impl.uuid, value="always")
+    press(client, steps.insert, "Before")
+    until(lambda: texts(teach)[0] == "Output 5 on", "inserted before")
+    client.set(steps.kind._impl.uuid, value="Move until contact")
+    until(lambda: steps.fields["way"].visible, "where to")
+    client.set(steps.fields["way"]._impl.uuid, value="Tool +Z")
+    client.set(steps.fields["then"]._impl.uuid, value="Retreat")
+    until(lambda: steps.fields["back"].visible, "how far")
+    press(client, steps.insert, "Replace")
+    until(lambda: texts(teach)[0] == "Until contact, tool +Z, 200 mm, retreat 50 mm", "changed")
+    press(client, steps.order, "\u2715")
+    until(lambda: texts(teach)[0].startswith("Wait"), "deleted")
+    press(client, steps.history, "Clear")
+    until(lambda: texts(teach) == [], "empty, and stays so")
+    for count in (3, 4, 4, 3):
+        press(client, steps.history, "Undo")
+        until(lambda count=count: len(texts(teach)) == count, f"{count} steps")
+    press(client, steps.history, "Redo")
+    until(lambda: len(texts(teach)) == 4, "again")
+
+
+def test_a_program_that_repeats_is_handed_over_and_one_that_takes_no_time_is_not(loop: FakeLoop, still: Served) -> None:
+    teach = still.docks.teach
+    teach.mark()
+    teach.edits.to(msgspec.structs.replace(teach.lesson, repeat=0))
+    teach.run.value = "Run"
+    teach._run()
+    loop.advance()
+    assert loop.wishes[-1].inputs.program.repeat == 0
+    teach.edits.to(teach.lesson.with_steps([TaughtStep(do="output on")]))
+    teach._run()
+    assert "needs a step that takes time" in teach.message.shown
+
+
+def test_a_waypoint_is_taught_again_where_the_arm_is(loop: FakeLoop, still: Served) -> None:
+    teach = still.docks.teach
+    teach.mark()
+    loop.q = HOME + 0.2
+    teach.edit.value = "Re-teach"
+    teach._edit()
+    assert teach.lesson.find("P1").q == pytest.approx((HOME + 0.2).tolist(), abs=1e-6)
+    loop.mode, loop.q = Mode.RUN, HOME + 0.4
+    teach._edit()
+    assert teach.lesson.find("P1").q == pytest.approx((HOME + 0.2).tolist(), abs=1e-6)
+
+
+def test_every_kind_of_step_can_be_chosen() -> None:
+    assert set(KINDS.values()) | {"touch"} == set(get_args(Do))

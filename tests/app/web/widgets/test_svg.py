@@ -24,8 +24,8 @@ EVIL = '<img src=x onerror="alert(1)">&\'</style>'
         svg.bars([Bar(EVIL, EVIL, 1.0, 2.0, EVIL)], 1),
         svg.fine_print(EVIL),
         svg.contacts([(EVIL, EVIL)]),
-        svg.steps([(EVIL, False)], ""),
-        svg.steps([(EVIL, True)], EVIL),
+        svg.steps([(EVIL, False, False)], ""),
+        svg.steps([(EVIL, True, True)], EVIL),
     ],
 )
 def test_texts_are_escaped(html: str) -> None:

@@ -1,0 +1,120 @@
+"""Set-ups as files, and what is kept over a restart."""
+
+from pathlib import Path
+
+import pytest
+from msgspec.structs import replace
+
+from app.command_options import as_kept
+from app.files.checked import BadInput, parse
+from app.files.library import load_arm, load_tool
+from app.files.taught_program import Lesson, TaughtStep
+from app.kept_setup import OFTEN, Keeper, handed_in, keeper_for, setup_of, text_of, usual_folder
+from app.session.prepare import prepare
+from app.session.session_file import Session, Setup, bundled, find, opened
+from pendant.all_settings import Settings, apply
+
+ARM = load_arm("ur5e")
+PREPARED = prepare(Setup(world="table", tool="gripper", mounting="wall", seed=4), "test")
+SETTINGS = apply(Settings(), {"free_drive.period": 7.0, "contact.on": True})
+LESSON = Lesson(steps=[TaughtStep(do="wait", seconds=2.0)], repeat=0)
+
+
+def test_a_set_up_comes_back_from_its_file_as_it_was() -> None:
+    setup = setup_of(ARM, PREPARED.scenario, SETTINGS)
+    assert setup.settings == {"free_drive.period": 7.0, "contact.on": True}
+    again = handed_in("setup.yaml", text_of(setup).encode(), ARM)
+    assert (again.scenario, again.settings) == (PREPARED.scenario, SETTINGS)
+
+
+@pytest.mark.parametrize("name", bundled("sessions"))
+def test_every_bundled_session_has_a_set_up_that_comes_back(name: str) -> None:
+    prepared = prepare(opened(find(name), Session), name)
+    if not prepared.arm.name.startswith("ur5e"):
+        return
+    setup = setup_of(prepared.arm, prepared.scenario, prepared.settings)
+    again = prepare(parse(text_of(setup), Setup, name), name)
+    assert (again.scenario, again.settings) == (prepared.scenario, prepared.settings)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"robot: ur10e", "setup.yaml: robot = ur10e: the arm that is served, ur5e"),
+        (b"robot: /etc/passwd", "setup.yaml: robot = /etc/passwd"),
+        (b"tool: /etc/passwd", "setup.yaml: tool = /etc/passwd: the name of a shipped tool"),
+        (b"tool: ../tools/sphere.yaml", "'../tools/sphere.yaml': the name of a shipped tool"),
+        (b"settings: {free_drive.period: 1e9}", "setup.yaml: settings"),
+        (b"wolrd: []", "did you mean world"),
+        (b"{", "setup.yaml"),
+        (b"\xff\xfe", "setup.yaml"),
+    ],
+)
+def test_a_file_that_makes_no_sense_is_refused_in_a_line(content: bytes, said: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        handed_in("setup.yaml", content, ARM)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_path: Path) -> None:
+    keeper, scenario, settings, lesson = Keeper(tmp_path / "new", "ur5e"), PREPARED.scenario, Settings(), Lesson()
+    keeper.see(lesson, ARM, scenario, settings, now=0.0)
+    keeper.see(lesson, ARM, scenario, settings, now=10.0)
+    assert keeper.read() is None
+    keeper.see(LESSON, ARM, scenario, settings, now=20.0)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, now=20.0 + 0.9 * OFTEN)
+    kept = keeper.read()
+    assert kept is not None
+    assert (kept.taught, kept.setup.settings) == (LESSON, {})
+    keeper.see(LESSON, ARM, scenario, SETTINGS, now=20.0 + OFTEN)
+    kept = keeper.read()
+    assert kept is not None
+    assert prepare(kept.setup, "kept").settings == SETTINGS
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["ur5e.yaml"]
+
+
+def test_what_cannot_be_written_is_said_and_not_tried_again(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    keeper = Keeper(tmp_path / "file", "ur5e")
+    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, now=0.0)
+    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, now=5.0)
+    assert "cannot be written" in keeper.problem
+
+
+def test_the_next_start_begins_with_what_was_kept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shipped = prepare(Setup(), "serve")
+    before, keeper, lesson = as_kept(shipped, tmp_path)
+    assert (before, lesson) == (shipped, None)
+    assert keeper is not None
+    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, now=0.0)
+    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, now=5.0)
+    after, _, lesson = as_kept(shipped, tmp_path)
+    assert (lesson, after.settings) == (LESSON, SETTINGS)
+    assert after.scenario.tool == load_tool("sphere")
+    assert f"As kept in {tmp_path}" in capsys.readouterr().out.replace("\n", "")
+
+
+@pytest.mark.parametrize(
+    "text", ["setup: {robot: ur5e}", "[", "setup: {seed: -1}\ntaught: {}", "setup: {robot: gone}\ntaught: {}"]
+)
+def test_a_kept_file_that_is_damaged_is_told_of_and_left_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
+) -> None:
+    (tmp_path / "ur5e.yaml").write_text(text)
+    shipped = prepare(Setup(), "serve")
+    assert as_kept(shipped, tmp_path) == (shipped, None, None)
+    assert capsys.readouterr().out.startswith("Not taken, and nothing is kept: ur5e.yaml")
+    assert (tmp_path / "ur5e.yaml").read_text() == text
+
+
+def test_of_an_arm_from_a_file_nothing_is_kept(tmp_path: Path) -> None:
+    assert keeper_for(replace(ARM, name="mine"), tmp_path) is None
+    assert keeper_for(ARM, tmp_path) is not None
+
+
+def test_the_usual_folder_is_where_programs_keep_their_state(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    assert usual_folder() == tmp_path / "pendant"
+    monkeypatch.setenv("XDG_STATE_HOME", "relative")
+    assert usual_folder() == Path.home() / ".local" / "state" / "pendant"
