@@ -92,7 +92,7 @@ def _table(path: Path) -> None:
 def _lesson(path: Path) -> None:
     lesson = parse(path.read_bytes().decode("utf-8", "replace"), Lesson, path.name)
     if lesson.plan:
-        misfit(program(lesson, lesson.plan, 0.5), ARM.n)
+        misfit(program(lesson, lesson.plan, lesson.repeat), ARM.n)
 
 
 def _settings(path: Path) -> None:
