@@ -11,6 +11,7 @@ from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import Damping
+from pendant.motion.script_requests import ForceMode
 from pendant.program.steps import Move, ProgramState
 from pendant.robot.reduced import SpeedLimits
 from pendant.signals.enabling_device import Grip
@@ -58,6 +59,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     limits: str = ""  # checksum of all limits
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
+    force: ForceMode | None = None  # with which the arm pushes besides its motion, under Law.FOLLOW
     script_done: int = 0  # number of the last motion of a script that is done
 
     @property

@@ -94,6 +94,7 @@ class Publisher:
             limits=self._checksum,
             static=robot.static,
             speed=use.program.speed,
+            force=self._scripting.force,
             script_done=self._scripting.done,
         )
 

@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from pendant.program.steps import HandGuide, LinearMove, Move
+from pendant.program.steps import MOST_FORCE, HandGuide, LinearMove, Move
 from pendant.tick.pose import UNTURNED, Rotation, Vector
 
 LOOKAHEAD = (0.03, 0.2)
@@ -17,6 +17,12 @@ LOOKAHEAD = (0.03, 0.2)
 
 GAIN = (100.0, 2000.0)
 """Of servoj [1/s²] (URScript manual)."""
+
+MOST_MOMENT = 10.0
+"""That a script may twist with [N·m]: within the sensor's range."""
+
+SIX_WAYS = ("x", "y", "z", "rx", "ry", "rz")
+"""Along the axes of a frame, then about them."""
 
 
 class ScriptedJoints(Move, tag="movej", frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -111,6 +117,34 @@ ScriptedMove = (
 )
 
 
+class ForceMode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
+    """The arm pushes along and about some axes of a frame, and gives way there; along and about the others it moves as it should.
+
+    Source: URScript manual, force_mode.
+    """
+
+    free: tuple[bool, ...]  # x y z rx ry rz along and about which it pushes
+    wrench: tuple[float, ...]  # (6,) of the arm on what it touches, at the tool centre point [N, N·m]
+    limits: tuple[float, ...]  # (6,) free: largest speed [m/s, rad/s]; others: largest distance from the motion [m, rad]
+    origin: Vector  # of the frame, in B [m]
+    R_BU: Rotation  # its orientation
+    turns: Literal["not", "to_origin", "with_motion"] = "not"  # its y points from the tool to its origin; its x goes as the tool
+    gain: float = 1.0  # of what the missing force changes
+
+    def __post_init__(self) -> None:
+        _finite(*self.wrench, *self.limits, *self.origin, self.gain)
+        for k, limit in enumerate(self.limits):
+            if limit < 0.0:
+                raise ValueError(f"limits: {limit:g} for {SIX_WAYS[k]}, allowed: 0 or more")
+        wanted = [value if free else 0.0 for value, free in zip(self.wrench, self.free, strict=True)]
+        for what, size, most in (
+            ("force", math.hypot(*wanted[:3]), MOST_FORCE),
+            ("torque", math.hypot(*wanted[3:]), MOST_MOMENT),
+        ):
+            if size > most:
+                raise ValueError(f"wrench: a {what} of {size:.4g}, allowed: {most:g} at most")
+
+
 class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """What the running script wants of the arm. It is said in every tick: without it the arm comes to rest (FD-23).
 
@@ -119,6 +153,7 @@ class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """
 
     move: ScriptedMove | None = None  # None: none yet, the arm stands
+    force: ForceMode | None = None  # besides; None: the arm only moves
     feeling: bool = False  # changes in contact are to be looked for
     over: bool = False  # the script has ended; the arm comes to rest
     equips: bool = False  # tool and payload in the inputs of this tick are the script's

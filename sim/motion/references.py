@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pendant.decision import Decision
 from pendant.haptics import Shake
 from pendant.motion.script_requests import (
+    ForceMode,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
@@ -23,8 +24,10 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
 from sim.motion.blend import Blended, Planned
+from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory
+from sim.motion.line import Line
 from sim.motion.moves import Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
 from sim.motion.planned import JointTrajectory, LinearTrajectory
@@ -68,6 +71,7 @@ class References:
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
+        self._compliance: Compliance | None = None  # the arm pushes besides its motion
         self._leaving = False  # the motion has come to where the next one may begin
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self._standing = np.zeros(arm.n)
@@ -92,9 +96,7 @@ class References:
 
     def wanted(self) -> Array:
         """Angles (n,) of the last reference [rad]; empty under free-drive and before the first."""
-        if self.now is None or self._law is Law.FREE:
-            return np.zeros(0)
-        return self.now.q.copy()
+        return np.zeros(0) if self.now is None or self._law is Law.FREE else self.now.q.copy()
 
     def step(self, estimate: Estimate, decision: Decision) -> Reference:
         """The reference of this tick."""
@@ -109,24 +111,24 @@ class References:
             self._motion = self._settle(estimate, self.now)
         self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
         begins = law is Law.FOLLOW and decision.move is not self._move
+        if self._compliance is not None and (law is not Law.FOLLOW or decision.force is None):
+            self._compliance, begins = None, law is Law.FOLLOW  # the motion goes on from where the force has brought the tool
         if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
+        before = self.now
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
             self.refusal = self._motion.problem
-        self.now = self._advance(self._motion, decision, begins)
-        if isinstance(self._motion, ForceTrajectory):
-            self.push = self._motion.push
-        elif self.fresh:
-            self.push = None
-        elif self.push is not None and self.now.qd.any():  # on the next way the integral of the position takes it over
-            self.push = None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
+        motion = self.now = self._advance(self._motion, decision, begins)
+        if law is Law.FOLLOW and decision.force is not None:
+            self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
+        self.push = self._pushing(self._motion, self.now)
         answer = self.now if decision.shake is None else _shaken(self.now, decision.shake)
         self._past.append(answer)
         if law is Law.FOLLOW and self._move is not None and not self.refusal:
-            self._leaving = not self._motion.done and self._near_its_end(self._motion, self._move, self.now)
+            self._leaving = not self._motion.done and self._near_its_end(self._motion, self._move, motion)
             if self._motion.done or self._leaving:
                 self.move_done = self._move.id
         self._law = law
@@ -144,6 +146,33 @@ class References:
             return reference
         assert isinstance(motion, Stop | ForceTrajectory)
         return motion.step()
+
+    def _pushing(self, motion: Motion, now: Reference) -> Array | None:
+        """Torque (n,) with which the joints push in this tick [N·m]."""
+        if isinstance(motion, ForceTrajectory):
+            return motion.push
+        if self.fresh or self.push is None:
+            return None
+        if now.qd.any():  # on the next way the integral of the position takes it over
+            return None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
+        return self.push
+
+    def _comply(
+        self, force: ForceMode, motion: Reference, before: Reference | None, *, estimate: Estimate, decision: Decision
+    ) -> Reference:
+        """The next reference of an arm that pushes besides its motion; `before`: the last one."""
+        if self._compliance is None:
+            now = before or motion
+            try:
+                self._compliance = Compliance(now, Line(self._dynamics, self._tcp, now.q), self._limits, self._pace)
+            except MoveRefused as refusal:
+                self.refusal = self.refusal or f"force mode: {refusal}"
+                return motion
+        self._compliance.follow(motion)
+        self._compliance.feel(estimate, force)
+        reference = self._compliance.step(1.0, decision.speed_limits)
+        self.refusal = self.refusal or self._compliance.problem
+        return reference
 
     def _near_its_end(self, motion: Motion, move: Move, now: Reference) -> bool:
         """The tool is within the blend radius of the end of a script's motion, which slows down there."""
@@ -225,21 +254,14 @@ class References:
 
     def _stream(self, move: ServoJoints | SpeedJoints | SpeedTool | ServoTool, now: Reference) -> JointStream:
         """The same stream goes on with another target; any other begins at the reference."""
-        before = self._motion
+        before, limits, pace = self._motion, self._limits, self._pace
         if isinstance(move, ServoJoints):
-            if isinstance(before, ServoStream):
-                before.renew(move)
-                return before
-            return ServoStream(now, move, self._limits, self._pace)
+            return before.renew(move) if isinstance(before, ServoStream) else ServoStream(now, move, limits, pace)
         if isinstance(move, SpeedJoints):
-            if isinstance(before, SpeedStream):
-                before.renew(move)
-                return before
-            return SpeedStream(now, move, self._limits, self._pace)
+            return before.renew(move) if isinstance(before, SpeedStream) else SpeedStream(now, move, limits, pace)
         if isinstance(before, ToolStream):
-            before.renew(move)
-            return before
-        return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits, pace=self._pace)
+            return before.renew(move)
+        return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=limits, pace=pace)
 
 
 BLENDED = ScriptedJoints | ScriptedLine | ScriptedArc

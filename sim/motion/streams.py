@@ -1,6 +1,7 @@
 """References of commands that come again and again: servoj, servoc, speedj, speedl. Without a new one they come to rest."""
 
 import math
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,8 +107,8 @@ class ServoStream(JointStream):
         super().__init__(now, limits, pace)
         self.renew(move)
 
-    def renew(self, move: ServoJoints) -> None:
-        """Another target.
+    def renew(self, move: ServoJoints) -> Self:
+        """Itself, with another target.
 
         Raises:
             MoveRefused: it is out of range.
@@ -115,6 +116,7 @@ class ServoStream(JointStream):
         self._target = np.array(move.q)
         check_range(self._target, self._position, "servoj")
         self._gain, self._ahead, self._left = move.gain, move.lookahead, move.time
+        return self
 
     def _wanted(self) -> Array:
         # Implicit in the speed, so that the largest gain and look-ahead are stable at this tick.
@@ -129,11 +131,12 @@ class SpeedStream(JointStream):
         super().__init__(now, limits, pace)
         self.renew(move)
 
-    def renew(self, move: SpeedJoints) -> None:
-        """Another speed."""
+    def renew(self, move: SpeedJoints) -> Self:
+        """Itself, with another speed."""
         self._target, self._change = np.array(move.qd), move.acceleration * TICK
         self._left = move.time if move.time > 0.0 else math.inf
         self.done = False
+        return self
 
     def _wanted(self) -> Array:
         target = self._share * self._target
@@ -143,7 +146,33 @@ class SpeedStream(JointStream):
         return target if most <= self._change else self._qd + missing * (self._change / most)
 
 
-class ToolStream(JointStream):
+class LineStream(JointStream):
+    """A stream whose tool must be able to go everywhere.
+
+    Args:
+        now: where the reference is.
+        line: of the tool, from there.
+        limits: the joints' speed, acceleration and position (±), each (n,).
+        pace: knows the speeds of tool and elbow.
+
+    Raises:
+        MoveRefused: the tool cannot go everywhere from here.
+    """
+
+    def __init__(self, now: Reference, line: Line, limits: tuple[Array, Array, Array], pace: Pace) -> None:
+        super().__init__(now, limits, pace)
+        self._line, self._looks = line, 0
+        if line.singular(self._q):
+            raise MoveRefused("singular here; use a joint motion")
+
+    def _look(self) -> None:
+        """Now and then, whether it still can."""
+        self._looks += 1
+        if self._looks % LOOK_TICKS == 0 and self._line.singular(self._q):
+            self.problem = "singular ahead; use a joint motion"
+
+
+class ToolStream(LineStream):
     """A speed of the tool centre point, and one about it (speedl); or a pose that is approached (servoc).
 
     Args:
@@ -169,32 +198,27 @@ class ToolStream(JointStream):
         limits: tuple[Array, Array, Array],
         pace: Pace,
     ) -> None:
-        super().__init__(now, limits, pace)
+        super().__init__(now, Line(dynamics, tcp, now.q), limits, pace)
         self._R_FT = R_FT
-        self._line = Line(dynamics, tcp, self._q)
-        if self._line.singular(self._q):
-            raise MoveRefused("singular here; use a joint motion")
         self._v, self._w = self._line.twist(self._q, self._qd)
-        self._looks = 0
         self.renew(move)
 
-    def renew(self, move: SpeedTool | ServoTool) -> None:
-        """Another speed or pose."""
+    def renew(self, move: SpeedTool | ServoTool) -> Self:
+        """Itself, with another speed or pose."""
         self._move, self.done = move, False
         if isinstance(move, SpeedTool):
             self._change = (move.acceleration * TICK, move.turning_acceleration * TICK)
             self._left = move.time if move.time > 0.0 else math.inf
         else:
             self._change = (move.acceleration * TICK, move.acceleration * TICK / LEVER)
+        return self
 
     def _wanted(self) -> Array:
         v, w = self._course()
         self._v, near = _towards(self._v, self._share * v, self._change[0])
         self._w, upright = _towards(self._w, self._share * w, self._change[1])
         self.done = self.done or (near and upright)
-        self._looks += 1
-        if self._looks % LOOK_TICKS == 0 and self._line.singular(self._q):
-            self.problem = "singular ahead; use a joint motion"
+        self._look()
         return self._line.speeds(self._q, self._v, self._w)
 
     def _course(self) -> tuple[Array, Array]:

@@ -57,7 +57,7 @@ class Parts:
         )
         self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
         self.taring = SimpleNamespace(zero=(0.1,) * 6, due=False)
-        self.scripting = SimpleNamespace(guided=None, done=7)
+        self.scripting = SimpleNamespace(guided=None, force="force", done=7)
         self.publisher = Publisher(
             cast("Robot", self.robot),
             cast("Tooling", self.tooling),
@@ -88,7 +88,7 @@ class Parts:
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
-            "script_done": 7,
+            "force": "force", "script_done": 7,
         } | changes  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from app.urscript.machine.signature import (
 )
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.motion.script_requests import (
+    ForceMode,
     Guided,
     ScriptedArc,
     ScriptedJoints,
@@ -195,13 +196,36 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), takes_time=True)
 
 
+TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")
+"""What the frame of force_mode does, by its type 1 to 3."""
+
+
 def of_force(robot: RobotSide) -> Iterator[Builtin]:
     """force_mode and tool_contact."""
+    gain = [1.0]
 
-    def force_mode(*given: Value) -> None:
-        if any(each not in (0, 1) for each in given[1]):
+    def force_mode(frame: PoseValue, *given: Value) -> None:
+        selection, wrench, type_, limits = given
+        if any(each not in (0, 1) for each in selection):
             raise Misuse("selection_vector: expected six of 0 and 1")
-        raise Misuse("this robot cannot do it yet (force mode)")
+        position, turned = placed(frame)
+        free = tuple(bool(each) for each in selection)
+        try:
+            force = ForceMode(
+                free=free,
+                wrench=wrench,
+                limits=limits,
+                origin=position,
+                R_BU=rotation(turned),
+                turns=TURNS[type_ - 1],
+                gain=gain[0],
+            )
+        except ValueError as error:
+            raise Misuse(str(error)) from None
+        robot.arm.push(force)
+
+    def scale(scaling: float) -> None:
+        gain[0] = scaling
 
     yield builtin(
         "force_mode",
@@ -212,9 +236,10 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
         Taken("type", within(integer, 1, 3)),
         Taken("limits", numbers(6)),
     )
-    yield builtin("end_force_mode", lambda: None)  # none is on
+    yield builtin("end_force_mode", lambda: robot.arm.push(None))
+    # The arm has a damping of its own: it goes no faster than its limits, and pushes on whatever it meets.
     yield builtin("force_mode_set_damping", lambda d: None, Taken("damping", within(number, 0.0, 1.0)))
-    yield builtin("force_mode_set_gain_scaling", lambda s: None, Taken("scaling", within(number, 0.0, 2.0)))
+    yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
     yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))
 
 

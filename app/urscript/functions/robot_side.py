@@ -4,7 +4,7 @@ from typing import Any, Protocol
 
 from app.robot_interface.controller.field_record import FieldRecord
 from app.urscript.functions.script_sockets import ScriptSockets
-from pendant.motion.script_requests import ScriptedMove
+from pendant.motion.script_requests import ForceMode, ScriptedMove
 from sim.simulation import Simulation
 
 Axes = tuple[float, ...]
@@ -28,6 +28,10 @@ class ArmSide(Protocol):
 
     def drop(self, number: int) -> None:
         """Nobody waits for a motion any more: the arm comes to rest, unless another one follows in this tick."""
+        ...
+
+    def push(self, force: ForceMode | None) -> None:
+        """Push besides the motion, until the script ends or says otherwise; None: no more."""
         ...
 
     def leave(self) -> None:

@@ -10,7 +10,7 @@ from pendant.decision import Decision
 from pendant.events.event import Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.nearness import Nearness
-from pendant.motion.script_requests import Guided, Scripted, ScriptedMove, ScriptedStop
+from pendant.motion.script_requests import ForceMode, Guided, Scripted, ScriptedMove, ScriptedStop
 from pendant.program.steps import ProgramState, script_program
 from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode, Phase
@@ -79,6 +79,13 @@ class ScriptArm:
         """Nobody waits any more."""
         if number == self._count and self._done < number:
             self.ask(ScriptedStop(deceleration=OWN_STOP))
+
+    def push(self, force: ForceMode | None) -> None:
+        """Push besides the motion; None: no more."""
+        if force is not None:
+            self._want(replace(self._wish, force=force))
+        elif self._wish.force is not None:
+            self._wish = replace(self._wish, force=None)
 
     def leave(self) -> None:
         """Be guided by hand no more."""

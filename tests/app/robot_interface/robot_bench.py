@@ -10,8 +10,11 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from sim.arm.scenario import Load, Scenario
 from sim.exchange.desk import Wishes
+from sim.plant.changes import AnyChange
+from sim.plant.touch import Touch
 from sim.simulation import Simulation
 from tests.sim.arms import UR5E
+from tests.sim.bench import push
 
 
 class Watcher:
@@ -35,10 +38,17 @@ class RobotBench:
     """Ticks as the loop does."""
 
     def __init__(
-        self, programs: Path | None = None, true: float = 0.0, configured: float = 0.0, **settings: float | bool
+        self,
+        programs: Path | None = None,
+        true: float = 0.0,
+        configured: float = 0.0,
+        scenario: Scenario | None = None,
+        **settings: float | bool,
     ) -> None:
         self.settings = apply(Settings(), {name.replace("__", "."): value for name, value in settings.items()})
-        self.scenario = Scenario(payload_true=Load(mass=true), payload_configured=Load(mass=configured), mismatch="nominal")
+        self.scenario = scenario or Scenario(
+            payload_true=Load(mass=true), payload_configured=Load(mass=configured), mismatch="nominal"
+        )
         self.cabinet = Cabinet(lambda: self.simulation, UR5E.chain.joints, ProgramFolder(programs))
         self.watcher = Watcher()
         self.cabinet.listen(self.watcher)
@@ -48,15 +58,25 @@ class RobotBench:
         """Start over."""
         self.simulation = Simulation(UR5E, self.scenario, self.settings)
 
-    def step(self, count: int = 1, inputs: Inputs = NOTHING) -> Decision:
-        """`inputs` are those of the page, in the first of the ticks."""
+    def pull(self, force: tuple[float, float, float], count: int) -> Decision:
+        """A hand pulls at the flange with this force, axes of W [N]."""
+        return self.step(count, touches=(push("flange", force),))
+
+    def change(self, *changes: AnyChange) -> Decision:
+        """Something happens to the arm or around it."""
+        return self.step(changes=changes)
+
+    def step(
+        self, count: int = 1, inputs: Inputs = NOTHING, touches: tuple[Touch, ...] = (), changes: tuple[AnyChange, ...] = ()
+    ) -> Decision:
+        """`inputs` are those of the page, in the first of the ticks, like `changes`; `touches` last for all of them."""
         decision = None
         for _ in range(count):
             tick = self.simulation.tick_count + 1
-            wishes = Wishes(inputs, (), ()).joined(self.cabinet.wishes(tick, self.simulation.snapshot))
+            wishes = Wishes(inputs, touches, changes).joined(self.cabinet.wishes(tick, self.simulation.snapshot))
             decision = self.simulation.tick(wishes)
             self.cabinet.see(tick, decision)
-            inputs = NOTHING
+            inputs, changes = NOTHING, ()
         assert decision is not None
         return decision
 

@@ -13,8 +13,8 @@ SETTLED = 150
 class ScriptBench:
     """Runs one script after the other."""
 
-    def __init__(self) -> None:
-        self.robot = RobotBench()
+    def __init__(self, robot: RobotBench | None = None) -> None:
+        self.robot = robot or RobotBench()
         self.runner = ScriptRunner(self.robot.cabinet)
         self.robot.step(SETTLED)
 

@@ -80,13 +80,6 @@ def test_a_circle_ends_where_it_should() -> None:
     assert trouble == ""
 
 
-def test_what_cannot_be_done_says_so() -> None:
-    _, trouble = told("force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,-10,0,0,0], 2, [0.1,0.1,0.1,0.1,0.1,0.1])")
-    assert "this robot cannot do it yet (force mode)" in trouble
-    _, trouble = told("force_mode(p[0,0,0,0,0,0], [0,0,2,0,0,0], [0,0,-10,0,0,0], 2, [0.1,0.1,0.1,0.1,0.1,0.1])")
-    assert "selection_vector: expected six of 0 and 1" in trouble
-
-
 def begun(text: str, **robot: float) -> ScriptBench:
     """A script runs on a robot that is so."""
     bench = ScriptBench()

@@ -1,12 +1,16 @@
 """What a running script wants is done motion by motion, for as long as it says so in every tick (FD-23)."""
 
 import math
+import re
+from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.motion.script_requests import (
+    ForceMode,
     Guided,
     Scripted,
     ScriptedJoints,
@@ -18,6 +22,7 @@ from pendant.motion.script_requests import (
 )
 from pendant.program.steps import ProgramState, RunScript, script_program
 from pendant.tick.modes import Law, Mode
+from pendant.tick.pose import UNTURNED
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
@@ -39,11 +44,63 @@ def running(**changes: float | bool) -> Bench:
     return bench
 
 
-def said(bench: Bench, move: ScriptedMove | None = None, done: int = 0, **more: bool) -> None:
+def said(bench: Bench, move: ScriptedMove | None = None, done: int = 0, **more: Any) -> None:
     """A tick in which the script says this, and the law has finished move `done`."""
     seen = estimate()
     seen.move_done = done
     bench.step(Inputs(script=Scripted(move=move, **more)), seen)
+
+
+PUSHING = ForceMode(
+    free=(False, False, True, False, False, False),
+    wrench=(0.0, 0.0, -10.0, 0.0, 0.0, 0.0),
+    limits=(0.1,) * 6,
+    origin=(0.0, 0.0, 0.0),
+    R_BU=UNTURNED,
+)
+
+
+def test_it_pushes_for_as_long_as_it_says_so_and_runs() -> None:
+    bench = running()
+    assert bench.last.force is None
+    said(bench, force=PUSHING)
+    assert bench.last.force is PUSHING
+    bench.step(Inputs(script=Scripted(force=PUSHING), commands=(Command.PAUSE_PROGRAM,)))
+    assert bench.last.force is None
+    bench.run(60)
+    bench.step(Inputs(script=WORD, commands=(Command.RESUME_PROGRAM,)))
+    assert bench.last.force is None
+    said(bench, force=PUSHING)
+    said(bench)
+    assert bench.last.force is None
+
+
+def test_silence_ends_the_push_with_the_program() -> None:
+    bench = running(hold__silence=SILENCE * 0.002)
+    said(bench, force=PUSHING)
+    for tick in range(SILENCE + 1):
+        assert bench.last.force is PUSHING, tick
+        bench.step(NOTHING)
+    assert (bench.last.force, bench.last.mode) == (None, Mode.TEACH)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"wrench": (0.0, 0.0, math.nan, 0.0, 0.0, 0.0)}, "nan is not a finite number"),
+        ({"limits": (0.1, 0.1, 0.1, 0.1, -1e-9, 0.1)}, "limits: -1e-09 for ry, allowed: 0 or more"),
+        ({"wrench": (0.0, 0.0, 90.1, 0.0, 0.0, 0.0)}, "wrench: a force of 90.1, allowed: 90 at most"),
+        ({"wrench": (0.0, 0.0, 0.0, 10.1, 0.0, 0.0), "free": (True,) * 6}, "wrench: a torque of 10.1, allowed: 10 at most"),
+    ],
+)
+def test_a_push_that_cannot_be_says_so(changes: dict[str, Any], told: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(told)):
+        replace(PUSHING, **changes)
+
+
+def test_a_push_may_be_as_strong_as_it_can_and_what_is_not_free_does_not_count() -> None:
+    replace(PUSHING, wrench=(999.0, 0.0, 90.0, 10.0, 0.0, 0.0))
+    replace(PUSHING, wrench=(0.0, 0.0, 90.0, 0.0, 0.0, 10.0), free=(True,) * 6, limits=(0.0,) * 6)
 
 
 def test_until_it_asks_for_something_the_arm_stands() -> None:
