@@ -23,6 +23,7 @@ class Command(Word):
 
     EMERGENCY_STOP = "emergency_stop"
     EMERGENCY_STOP_RELEASED = "emergency_stop_released"  # its button is out again; the drives stay off
+    PROTECTIVE_STOP = "protective_stop"  # by a program's wish, as after a limit
     POWER_OFF = "power_off"  # the arm comes to rest, then its drives are switched off and the brakes hold it
     RESET = "reset"
     SAFEGUARD_OPEN = "safeguard_open"  # a level of the safety input: door open, light curtain broken

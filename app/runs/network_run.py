@@ -7,9 +7,12 @@ from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.controller.rtde_fields import OUTPUTS
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands, Pending
-from app.session.actions import AskForFreeDrive, DashboardLine, OfClient, ReadField
+from app.session.actions import AskForFreeDrive, DashboardLine, OfClient, ReadField, SendScript
 from app.session.expectation_watch import Verdict
 from app.session.session_file import Session
+from app.urscript.language.trouble import ScriptTrouble
+from app.urscript.running.script_runner import ScriptRunner
+from app.urscript.running.told import Telling, Told
 from pendant.decision import Decision
 from pendant.events.event import Event
 from pendant.settings.schema import ticks
@@ -37,6 +40,9 @@ class NetworkRun:
         for i, action in enumerate(session.timeline):
             if isinstance(action, ReadField) and action.field not in OUTPUTS:
                 raise BadInput(session.title, f"timeline[{i}].field", action.field, "an output field of RTDE, such as robot_mode")
+            if isinstance(action, SendScript) and action.text.lstrip().startswith("sec "):
+                allowed = "a program, such as def name(): ... end; of a secondary one no end is told"
+                raise BadInput(session.title, f"timeline[{i}].text", action.text.split(":")[0], allowed)
         if simulation.arm.n != JOINTS:
             raise BadInput(session.title, "robot", simulation.arm.name, f"an arm of {JOINTS} joints for clients of the network")
         self._cabinet = Cabinet(lambda: simulation, simulation.arm.chain.joints, ProgramFolder())
@@ -44,7 +50,12 @@ class NetworkRun:
         self._commands = DashboardCommands(self._cabinet, simulation.arm.name.upper().removesuffix("E"))
         self._asked: list[tuple[int, DashboardLine, str | Pending]] = []  # in this tick
         self._reads: list[tuple[int, ReadField]] = []
-        self.verdicts: list[Verdict] = []
+        self._scripts = ScriptRunner(self._cabinet)
+        self._sent: list[tuple[int, SendScript, list[str]]] = []  # with what each has told
+        self._running = 0  # of them, which runs
+        self._troubles: dict[int, ScriptTrouble | None] = {}  # of those that are over, by their places
+        self._scripts.listen(self._take)
+        self._verdicts: list[Verdict] = []
 
     def tick(self, number: int) -> None:
         """RTDE's fields are written for who listens."""
@@ -63,11 +74,43 @@ class NetworkRun:
                 self._asked.append((place, action, answer))
                 if isinstance(answer, Pending):
                     self._cabinet.ask(answer.ask)
+            elif isinstance(action, SendScript):
+                self._send(place, action)
             elif isinstance(action, AskForFreeDrive):
                 self._cabinet.free_drive_until = self._cabinet.ticks + ticks(action.length)
             else:
                 self._reads.append((place, action))
         return self._cabinet.wishes(tick, snapshot)
+
+    def _send(self, place: int, action: SendScript) -> None:
+        self._sent.append((place, action, []))
+        try:
+            self._scripts.offer(action.text)
+        except ScriptTrouble as trouble:
+            self._troubles[place] = trouble
+
+    def _take(self, told: Told) -> None:
+        if told.kind is Telling.STARTED:
+            self._running = len(self._sent) - 1
+        place, _, lines = self._sent[self._running]
+        if told.kind is Telling.TEXT:
+            lines.append(told.text)
+        elif told.kind is Telling.ENDED:
+            self._troubles[place] = self._scripts.trouble
+
+    def verdicts(self) -> list[Verdict]:
+        """Of what the clients were told, when the session is over."""
+        found = list(self._verdicts)
+        for place, action, lines in self._sent:
+            over, trouble = place in self._troubles, self._troubles.get(place)
+            ended = "it still runs" if not over else "over" if trouble is None else str(trouble)
+            wanted = f"timeline[{place}] the script ends " + (f'with "{action.trouble}"' if action.trouble else "by itself")
+            as_it_should = over and (action.trouble in str(trouble) if action.trouble else trouble is None)
+            found.append(Verdict(as_it_should, wanted, ended))
+            for k, line in enumerate(action.tells):
+                said = lines[k] if k < len(lines) else ""
+                found.append(Verdict(said.startswith(line), f'timeline[{place}] the script says "{line}"', f'"{said}"'))
+        return found
 
     def see(self, tick: int, decision: Decision) -> None:
         """Take in what the robot decided, and judge what the clients were told."""
@@ -75,11 +118,11 @@ class NetworkRun:
         for place, line, answer in self._asked:
             said = answer.answer(answer.ask.done.result(0.0)) if isinstance(answer, Pending) else answer
             wanted = f'timeline[{place}] "{line.send}" is answered "{line.reply}"'
-            self.verdicts.append(Verdict(said.startswith(line.reply), wanted, f'"{said}" at {tick * TICK:.3f} s'))
+            self._verdicts.append(Verdict(said.startswith(line.reply), wanted, f'"{said}" at {tick * TICK:.3f} s'))
         for place, read in self._reads:
             value = self._cabinet.record.get(read.field)
             number = value[read.index] if isinstance(value, list) else value
             low, high = (-float("inf") if read.min is None else read.min), (float("inf") if read.max is None else read.max)
             wanted = f"timeline[{place}] {read.field} from {low:g} to {high:g}"
-            self.verdicts.append(Verdict(low <= number <= high, wanted, f"{number:g} at {tick * TICK:.3f} s"))
+            self._verdicts.append(Verdict(low <= number <= high, wanted, f"{number:g} at {tick * TICK:.3f} s"))
         self._asked, self._reads = [], []

@@ -210,7 +210,7 @@ def run(
                 time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
     _compare(watches, session, prepared)
     outcome.took = time.perf_counter() - begun
-    outcome.verdicts = [each.verdict() for each in watches] + ([] if clients is None else clients.verdicts)
+    outcome.verdicts = [each.verdict() for each in watches] + ([] if clients is None else clients.verdicts())
     for place, action in timeline.unstarted():
         seen = f'"{action.after}" never came (time {action.nth}), or too late'
         outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))

@@ -19,6 +19,7 @@ Control = Literal[
     "free_drive",
     "emergency_stop",
     "emergency_stop_released",
+    "protective_stop",
     "power_off",
     "reset",
     "leave_free_drive",
@@ -42,6 +43,8 @@ Control = Literal[
 # Beyond what a person or a dropped load does to an arm, and still within what the physics can bear.
 Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]
 Torque = Annotated[list[Annotated[float, Meta(ge=-500, le=500)]], Meta(min_length=3, max_length=3)]  # [N·m]
+
+Lines = Annotated[list[Text], Meta(max_length=100)]
 
 HOLDABLE = tuple(button.value for button in Button)
 
@@ -228,7 +231,15 @@ class AskForFreeDrive(Action, tag="remote_free_drive", frozen=True, kw_only=True
     length: Span = msgspec.field(name="for")  # [s]
 
 
-OfClient = DashboardLine | ReadField | AskForFreeDrive
+class SendScript(Action, tag="script", frozen=True, kw_only=True):
+    """A client sends a program in URScript, which runs in place of the one that runs (docs/guide/scripts.md)."""
+
+    text: Annotated[str, Meta(min_length=1, max_length=100_000)]
+    tells: Lines = msgspec.field(default_factory=list)  # how what it says with textmsg must begin, from its first line on
+    trouble: Text = ""  # that its error must contain; "": none may end it, and by the end of the session it must be over
+
+
+OfClient = DashboardLine | ReadField | AskForFreeDrive | SendScript
 """What clients of the network interfaces do, in a session without a network."""
 
 AnyAction = (

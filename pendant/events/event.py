@@ -70,6 +70,7 @@ class Kind(StrEnum):
     LEFT_ENABLING = "left_enabling"
     RUN_ENABLING = "run_enabling"
     EMERGENCY_STOP = "emergency_stop"
+    PROTECTIVE_STOP = "protective_stop"
     EMERGENCY_STOP_RELEASED = "emergency_stop_released"
     POWERED_OFF = "powered_off"
     SAFEGUARD_STOP = "safeguard_stop"

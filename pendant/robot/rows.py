@@ -31,6 +31,9 @@ SAFETY: dict[Kind, EventRow] = {
         cool_down=True,
         category=1,
     ),
+    Kind.PROTECTIVE_STOP: protected(
+        "Protective stop: asked for", "Stopped while in {mode}. Its program says why; reset to go on.", ("mode",)
+    ),
     Kind.EMERGENCY_STOP_RELEASED: info("Emergency stop released", "Reset to go on."),
     Kind.POWERED_OFF: EventRow(
         Effect.LEAVE_TO_STOP,

@@ -47,6 +47,9 @@ class SafetyInputs:
         elif Command.EMERGENCY_STOP_RELEASED in commands and self._robot.safety is Safety.EMERGENCY_STOP:
             self._robot.safety = Safety.SAFEGUARD_STOP if self._safeguard else self._resting
             events.append(Event(Kind.EMERGENCY_STOP_RELEASED, estimate.tick))
+        if Command.PROTECTIVE_STOP in commands and self._robot.safety < Safety.PROTECTIVE_STOP:
+            event = Event(Kind.PROTECTIVE_STOP, estimate.tick, {"mode": self._robot.mode})
+            self._robot.happen(event, settings, events)
         if Command.POWER_OFF in commands and not self._robot.stopping.off:
             self._robot.happen(Event(Kind.POWERED_OFF, estimate.tick, {"mode": self._robot.mode}), settings, events)
         if Command.RESET in commands:

@@ -297,6 +297,11 @@ def _safety(w: World, t: int, i: Step, static: bool, present: bool, kinds: list[
     ):
         kinds.append(Kind.EMERGENCY_STOP_RELEASED)
         w.safety = Safety.SAFEGUARD_STOP if w.safeguard else calm
+    if Command.PROTECTIVE_STOP in i.commands and w.safety not in (Safety.PROTECTIVE_STOP, Safety.EMERGENCY_STOP):
+        kinds.append(Kind.PROTECTIVE_STOP)
+        if w.phase is not Phase.OFF:
+            _end(w, t, present, cool=True)
+        _stop(w, t, Safety.PROTECTIVE_STOP, static)
     if Command.POWER_OFF in i.commands and w.off_from > t:
         kinds.append(Kind.POWERED_OFF)
         if w.phase is not Phase.OFF:

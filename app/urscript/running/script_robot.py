@@ -83,7 +83,7 @@ class ScriptRobot:
         elif word == "zero":
             self.asks.append(Ask((Command.ZERO_SENSOR,)))
         elif word == "protective_stop":
-            self.asks.append(Ask((Command.EMERGENCY_STOP,)))
+            self.asks.append(Ask((Command.PROTECTIVE_STOP,)))
         elif word == "power_off":
             self.asks.append(Ask((Command.POWER_OFF,)))
         elif word == "gravity":

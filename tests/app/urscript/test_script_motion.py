@@ -4,7 +4,7 @@ import pytest
 
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
-from pendant.tick.modes import Mode
+from pendant.tick.modes import Mode, Safety
 from tests.app.robot_interface.robot_bench import RobotBench
 from tests.app.urscript.script_bench import ScriptBench
 
@@ -125,3 +125,12 @@ def test_a_stop_ends_the_motion_of_a_script(command: Command) -> None:
     bench.robot.step(600)
     assert bench.state is None or bench.robot.step().mode is Mode.STOP
     assert abs(bench.robot.simulation.plant.qd).max() < 1e-3
+
+
+def test_a_script_may_ask_for_a_protective_stop() -> None:
+    bench = begun(" speedj([0.2,0,0,0,0,0], 0.5, 0.5)\n protective_stop()\n sleep(5)")
+    bench.robot.step(600)
+    decision = bench.robot.step()
+    assert (decision.mode, decision.safety) == (Mode.STOP, Safety.PROTECTIVE_STOP)
+    assert bench.state is None
+    assert [event.kind for event in bench.robot.watcher.events].count(Kind.PROTECTIVE_STOP) == 1
