@@ -45,7 +45,6 @@ Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_leng
 Torque = Annotated[list[Annotated[float, Meta(ge=-500, le=500)]], Meta(min_length=3, max_length=3)]  # [N·m]
 
 Lines = Annotated[list[Text], Meta(max_length=100)]
-
 HOLDABLE = tuple(button.value for button in Button)
 
 

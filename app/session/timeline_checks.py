@@ -4,7 +4,18 @@ from typing import NamedTuple
 
 from app.files.bodies import check_load
 from app.files.checked import ABSENT, BadInput
-from app.session.actions import Action, AnyAction, Axes, ChangeSettings, Effort, Laboratory, LoadProgram, SelectTool, SetPayload
+from app.session.actions import (
+    Action,
+    AnyAction,
+    Axes,
+    ChangeSettings,
+    Effort,
+    Laboratory,
+    LoadProgram,
+    OfClient,
+    SelectTool,
+    SetPayload,
+)
 from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session
 from pendant.all_settings import Settings, apply
@@ -42,6 +53,13 @@ def check_actions(actions: list[AnyAction], prepared: Prepared) -> None:
     session = Session(title=prepared.where, duration=LONGEST, timeline=actions)
     parts = ["foot", *prepared.arm.chain.joints, "flange", "tool"]
     for i, action in enumerate(actions):
+        if isinstance(action, OfClient):
+            raise BadInput(
+                prepared.where,
+                f"actions[{i}].do",
+                action.__struct_config__.tag,
+                "what no client does: clients have their own ports",
+            )
         _check_action(action, f"actions[{i}]", session=session, prepared=prepared, parts=parts, where=prepared.where)
 
 

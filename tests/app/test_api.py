@@ -40,6 +40,12 @@ def test_a_session_comes_from_fields_a_name_or_a_file(tmp_path: Path) -> None:
         session(FIELDS, robot="ur6")
 
 
+@pytest.mark.parametrize(("says", "passes"), [("2", True), ("3", False)])
+def test_a_program_in_the_robots_language_runs_from_python(says: str, passes: bool) -> None:
+    script = {"at": 0.4, "do": "script", "text": "def hello():\n  textmsg(1 + 1)\nend\n", "tells": [says]}
+    assert run(session({"title": "hello", "duration": 0.6, "timeline": [script]})).passed is passes
+
+
 def test_a_run_keeps_its_files_where_asked(tmp_path: Path) -> None:
     assert run(session(FIELDS)).passed
     assert run(session(FIELDS), tmp_path).passed

@@ -24,6 +24,11 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServedRobot]:
     served.stop()
 
 
+def test_what_a_client_does_is_refused_on_the_control_channel(robot: ServedRobot) -> None:
+    with pytest.raises(ValueError, match=r"actions.0..do = dashboard: what no client does"):
+        robot.do({"do": "dashboard", "at": 0.0, "send": "play"})
+
+
 @pytest.fixture
 def fresh(robot: ServedRobot) -> ServedRobot:
     """The robot soon after its start, in remote control."""
