@@ -14,8 +14,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.motion.moves import Reference
-from sim.motion.references import DELAY
+from sim.motion.moves import DELAY, Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
 

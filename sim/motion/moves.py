@@ -9,8 +9,12 @@ from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.sensors import LATENCY
 
 Array = NDArray[np.float64]
+
+DELAY = LATENCY + 1
+"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
 
 SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leave them at rest
 BRAKING_SHARE = 0.7  # of a joint's torque that a stop plans with; the rest is for the feedback

@@ -28,18 +28,14 @@ from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory
 from sim.motion.line import Line
-from sim.motion.moves import Motion, MoveRefused, Reference, Stop, Strength, stop_time
+from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
 from sim.motion.planned import JointTrajectory, LinearTrajectory
 from sim.motion.streams import JointStream, ServoStream, SpeedStream, ToolStream
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
-from sim.sensing.sensors import LATENCY
 
 Array = NDArray[np.float64]
-
-DELAY = LATENCY + 1
-"""Ticks between a reference and the measurement of what it led to: each measurement is compared with its own reference."""
 
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
 STANDING = 0.02  # [rad/s]

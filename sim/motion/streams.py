@@ -11,7 +11,7 @@ from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import matrix_from_quaternion
 from sim.motion.line import Line, rotation_vector
-from sim.motion.moves import MoveRefused, Reference, check_range
+from sim.motion.moves import DELAY, MoveRefused, Reference, check_range
 from sim.motion.pace import RAMP, SHARE, Pace
 from sim.motion.planned import LEVER
 from sim.rigid_body.dynamics import Dynamics
@@ -98,7 +98,8 @@ class ServoStream(JointStream):
 
         qdd = K (q_wanted - q - T qd)
 
-    An angle that goes on evenly is followed T later, whatever K is; K says how fast a step is made up for, and K T² < 4 lets it
+    An angle that goes on evenly is followed T later, whatever K is. The arm itself is DELAY ticks behind its reference, so T is
+    the look-ahead less these, and the arm is the look-ahead behind. K says how fast a step is made up for, and K T² < 4 lets it
     swing over. Source: UR, ServoJ command (gain: "the same way as the P-term", look-ahead: "to project the current position
     forward in time with the current velocity"); the delay by T is measured (UR client library, issue 86).
     """
@@ -115,7 +116,7 @@ class ServoStream(JointStream):
         """
         self._target = np.array(move.q)
         check_range(self._target, self._position, "servoj")
-        self._gain, self._ahead, self._left = move.gain, move.lookahead, move.time
+        self._gain, self._ahead, self._left = move.gain, move.lookahead - DELAY * TICK, move.time
         return self
 
     def _wanted(self) -> Array:

@@ -38,14 +38,14 @@ def test_with_a_blend_radius_the_tool_does_not_stop_between_two_lines(blend: str
 
 
 def test_servo_commands_are_followed_the_look_ahead_later() -> None:
-    """At 0.2 rad/s and 0.1 s of look-ahead the reference is 0.02 rad behind."""
+    """At 0.2 rad/s and 0.1 s of look-ahead the arm is 0.02 rad behind, and its reference two ticks less."""
     (behind, turned), trouble = told(
         "q = get_target_joint_positions()\n a = q[0]\n i = 0\n"
         " while i < 1000:\n  i = i + 1\n  q[0] = q[0] + 0.0004\n  servoj(q, t=0.002, lookahead_time=0.1, gain=300)\n end\n"
         " t = get_target_joint_positions()\n textmsg(q[0] - t[0])\n stopj(2.0)\n"
         " x = get_actual_joint_positions()\n textmsg(x[0] - a)"
     )
-    assert behind == pytest.approx(0.02, abs=1e-3)
+    assert behind == pytest.approx(0.0192, abs=3e-4)
     assert 0.38 < turned < 0.4
     assert trouble == ""
 

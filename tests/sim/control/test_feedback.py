@@ -11,8 +11,7 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.control.feedback import SUPPORT, Feedback
-from sim.motion.moves import Reference
-from sim.motion.references import DELAY
+from sim.motion.moves import DELAY, Reference
 from tests.sim.arms import UR5E
 from tests.sim.laws import EXACT, N, dynamics, estimate
 

@@ -1,0 +1,102 @@
+"""How far behind the commands of servoj the joints are, given anew in every tick.
+
+What a UR is measured to do: with a look-ahead of 0.03 s and a gain of 1200 the measured joint angles are 17 ticks of 2 ms, 34 ms,
+behind those sent, by cross-correlation; 2 or 3 of these ticks are the way there and back (Universal Robots Client Library,
+issue 86, "Reduce Delay Time of ServoJ Command"). So the arm is the look-ahead behind, and 4 ms more at most; the manual names the
+look-ahead alone, 0.03 to 0.2 s. Here there is no way there and back: commands are given and angles measured on the robot.
+https://github.com/UniversalRobots/Universal_Robots_Client_Library/issues/86
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.api import session, stepped
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.program_folder import ProgramFolder
+from app.urscript.running.script_runner import ScriptRunner
+from benchmarks.common import Report, main
+from pendant.inputs import NOTHING
+from pendant.tick.modes import TICK, TICK_RATE
+from sim.exchange.desk import Wishes
+
+BEYOND = 4.0
+"""More than the look-ahead [ms], by the measurement above."""
+
+GAINS = (100.0, 300.0, 1200.0, 2000.0)
+LOOKAHEADS = (0.03, 0.05, 0.1, 0.2)
+JOINTS = {"base": 0, "elbow": 2, "wrist 3": 5}
+SECONDS = 6.0
+FREQUENCY, AMPLITUDE = 0.5, 0.15  # of the sine [Hz, rad]; it grows from nothing in a second
+
+PROGRAM = """def servo():
+  q = get_target_joint_positions()
+  begin = q[{joint}]
+  k = 0
+  while k < {ticks}:
+    t = k * {tick}
+    grown = t
+    if grown > 1:
+      grown = 1
+    end
+    q[{joint}] = begin + grown * {amplitude} * sin({turning} * t)
+    write_output_float_register(0, q[{joint}])
+    servoj(q, t={tick}, lookahead_time={lookahead}, gain={gain})
+    k = k + 1
+  end
+  stopj(2.0)
+end
+"""
+
+Array = NDArray[np.float64]
+
+
+def followed(joint: int, lookahead: float, gain: float) -> tuple[Array, Array]:
+    """Angles of a joint that the script commands, and those that are measured, tick by tick [rad]."""
+    simulation = stepped(session({"title": "servo", "robot": "ur5e", "duration": 1.0}))
+    cabinet = Cabinet(lambda: simulation, simulation.arm.chain.joints, ProgramFolder())
+    runner = ScriptRunner(cabinet)
+    commanded: list[float] = []
+    measured: list[float] = []
+    ticks = round(SECONDS * TICK_RATE)
+    turning = 2.0 * math.pi * FREQUENCY
+    text = PROGRAM.format(
+        joint=joint, ticks=ticks, tick=TICK, amplitude=AMPLITUDE, turning=turning, lookahead=lookahead, gain=gain
+    )
+    for tick in range(1, ticks + 2 * TICK_RATE):
+        if tick == TICK_RATE // 2:
+            runner.offer(text)
+        decision = simulation.tick(Wishes(NOTHING, (), ()).joined(cabinet.wishes(tick, simulation.snapshot)))
+        cabinet.see(tick, decision)
+        if tick > TICK_RATE // 2 and runner.state is not None:
+            commanded.append(float(cabinet.record.get("output_double_register_0")))  # pyright: ignore[reportArgumentType]
+            measured.append(float(simulation.estimate.q[joint]))
+    if runner.trouble is not None:
+        raise RuntimeError(str(runner.trouble))
+    there = slice(2 * TICK_RATE, ticks)  # the sine has its full size
+    return np.array(commanded)[there], np.array(measured)[there]
+
+
+def delay(commanded: Array, measured: Array) -> float:
+    """By which the measured angles follow the commanded ones [ms]: where their difference is least, between ticks as well."""
+    a = commanded - commanded.mean()
+    most = round(0.4 * TICK_RATE)
+    squares = np.array([float(np.mean((measured[most:] - measured.mean() - a[most - k : a.size - k]) ** 2)) for k in range(most)])
+    k = int(np.argmin(squares[1:-1])) + 1
+    before, here, after = squares[k - 1 : k + 2].tolist()
+    return 1000.0 * TICK * (k + 0.5 * (before - after) / (before - 2.0 * here + after))
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    full = report.options.full
+    for lookahead in LOOKAHEADS:
+        for gain in GAINS if full else (300.0, 1200.0):
+            delays = [delay(*followed(joint, lookahead, gain)) for joint in (JOINTS.values() if full else (0,))]
+            what = f"look-ahead {lookahead:g} s, gain {gain:g}: delay"
+            report.row(what, max(delays), "ms", at_most=1000.0 * lookahead + BEYOND, n=len(delays))
+
+
+if __name__ == "__main__":
+    main("servo_delay", measure)
