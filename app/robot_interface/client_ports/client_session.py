@@ -57,6 +57,7 @@ class StreamSession:
 
     def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool) -> None:
         self.cabinet, self.outbox = robot.cabinet, outbox
+        outbox.patient = writable  # a client may only send programs, and ur-rtde does
         self._peers, self._peer, self._writable, self._scripts = robot.peers, peer, writable, robot.scripts
         hosts = frozenset({peer.address.rpartition(":")[0]})
         self._text = TextCommands(robot.commands, self.cabinet.ask, self._complain, scripts=robot.scripts, hosts=hosts)

@@ -1,4 +1,4 @@
-"""What is on its way to one client. Sending never waits: who reads late misses packages, who never reads is dropped."""
+"""What is on its way to one client. Sending never waits: who reads late misses packages; who never reads is dropped, or misses all."""
 
 import socket
 import threading
@@ -20,6 +20,7 @@ class Outbox:
         self._lock = threading.Lock()
         self._waiting = bytearray()
         self._since = 0.0  # that something waits
+        self.patient = False  # with a client that never reads: it only sends, and misses what does not fit
         self.dead = ""  # why nothing can be sent any more
         self.skipped = 0  # packages that were not sent because older ones waited
         self.sent = 0  # bytes
@@ -35,7 +36,9 @@ class Outbox:
             if self._push():
                 self._give(data)
             elif len(self._waiting) + len(data) > MOST:
-                self.dead = "it does not read"
+                self.skipped += 1
+                if not self.patient:
+                    self.dead = "it does not read"
             else:
                 self._waiting += data
 
@@ -59,7 +62,7 @@ class Outbox:
             return not self.dead
         waiting, self._waiting = self._waiting, bytearray()
         self._give(waiting)
-        if self._waiting and time.monotonic() - self._since > PATIENCE:
+        if self._waiting and not self.patient and time.monotonic() - self._since > PATIENCE:
             self.dead = self.dead or "it does not read"
         return not self._waiting and not self.dead
 

@@ -73,6 +73,20 @@ def test_who_lets_too_much_wait_is_given_up(pair: Pair) -> None:
     assert not box.offer(b"more")
 
 
+def test_with_patience_who_only_sends_is_kept_and_memory_is_bounded(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr(module.time, "monotonic", lambda: now)
+    box = Outbox(pair[0])
+    box.patient = True
+    for _ in range(3 * MOST // 100_000):
+        now += module.PATIENCE
+        box.send(bytes(100_000))
+        box.flush()
+    assert not box.dead
+    assert len(box._waiting) <= MOST
+    assert box.skipped > 10
+
+
 def test_who_does_not_read_for_long_is_given_up(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setattr(module.time, "monotonic", lambda: now)
