@@ -1,4 +1,4 @@
-"""What is on its way to one client. Sending never waits: who reads late misses packages; who never reads is dropped, or misses all."""
+"""What is on its way to one client. Sending never waits: who reads late misses packages, who never reads is dropped."""
 
 import socket
 import threading

@@ -1,10 +1,11 @@
 """Functions that move the arm (URScript manual, module motion)."""
 
 from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
 from typing import Literal, NamedTuple
 
 from app.urscript.functions.pose_algebra import quaternion
-from app.urscript.functions.robot_side import RobotSide
+from app.urscript.functions.robot_side import ArmSide, RobotSide
 from app.urscript.functions.sensing_values import Kinematics
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.signature import (
@@ -13,7 +14,6 @@ from app.urscript.machine.signature import (
     any_value,
     builtin,
     integer,
-    items,
     number,
     numbers,
     pose,
@@ -22,7 +22,6 @@ from app.urscript.machine.signature import (
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.motion.script_requests import (
     ForceMode,
-    Guided,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
@@ -64,17 +63,28 @@ def placed(x: PoseValue) -> Placed:
     return Placed((x[0], x[1], x[2]), quaternion(tuple(x[3:])))
 
 
+@contextmanager
+def controlling(arm: ArmSide) -> Iterator[None]:
+    """A thread of the program moves the arm. Raises Misuse: another one does (URScript manual, Threads)."""
+    arm.take()
+    try:
+        yield
+    finally:
+        arm.give()
+
+
 def of_moves(robot: RobotSide) -> Iterator[Builtin]:
     """movej, movel, movep, movec and the stops."""
     arm = Kinematics(robot)
 
     def until_done(move: ScriptedMove) -> Doing:
-        number_ = robot.arm.ask(move)
-        try:
-            while not robot.arm.done(number_):
-                yield
-        finally:
-            robot.arm.drop(number_)
+        with controlling(robot.arm):
+            number_ = robot.arm.ask(move)
+            try:
+                while not robot.arm.done(number_):
+                    yield
+            finally:
+                robot.arm.drop(number_)
 
     def joints(where: tuple[float, ...] | PoseValue) -> tuple[float, ...]:
         if type(where) is not PoseValue:
@@ -145,9 +155,10 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     arm = Kinematics(robot)
 
     def for_time(move: ScriptedMove, seconds: float) -> Doing:
-        robot.arm.ask(move)
-        for _ in range(max(round(min(seconds, MOST) * TICK_RATE), 1)):
-            yield
+        with controlling(robot.arm):
+            robot.arm.ask(move)
+            for _ in range(max(round(min(seconds, MOST) * TICK_RATE), 1)):
+                yield
 
     def servoj(*given: Value) -> Doing:
         q, _, _, t, lookahead, gain = given
@@ -162,9 +173,10 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         if move.time > 0.0:
             yield from for_time(move, move.time)
             return
-        number_ = robot.arm.ask(move)
-        while not robot.arm.done(number_):
-            yield
+        with controlling(robot.arm):
+            number_ = robot.arm.ask(move)
+            while not robot.arm.done(number_):
+                yield
 
     def speedj(qd: Value, a: float, t: float) -> Doing:
         return until_reached(SpeedJoints(qd=qd, acceleration=a, time=t))
@@ -241,30 +253,3 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
     yield builtin("force_mode_set_damping", lambda d: None, Taken("damping", within(number, 0.0, 1.0)))
     yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
     yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))
-
-
-def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
-    """freedrive_mode and teach_mode."""
-
-    def free(axes: Value, feature: Value) -> None:
-        if len(axes) != 6 or any(each not in (0, 1) for each in axes):
-            raise Misuse("freeAxes: expected six of 0 and 1")
-        chosen = tuple(bool(each) for each in axes)
-        if type(feature) is str:
-            if feature not in ("base", "tool"):
-                raise Misuse(f'feature: {feature!r}; expected "base", "tool" or a pose')
-            pose_ = robot.record.get("actual_TCP_pose") if feature == "tool" else (0.0,) * 6
-        else:
-            pose_ = pose(feature)
-        robot.arm.ask(Guided(axes=chosen, R_BU=rotation(quaternion(tuple(pose_[3:])))))  # pyright: ignore[reportIndexIssue]
-
-    axes = Taken("freeAxes", items, (1, 1, 1, 1, 1, 1))
-    yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"))
-    yield builtin("teach_mode", lambda: _guided(robot))
-    yield builtin("end_freedrive_mode", robot.arm.leave)
-    yield builtin("end_teach_mode", robot.arm.leave)
-    yield builtin("get_freedrive_status", robot.arm.free_drive_status)
-
-
-def _guided(robot: RobotSide) -> None:
-    robot.arm.ask(Guided())

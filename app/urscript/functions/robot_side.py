@@ -18,6 +18,14 @@ class ArmSide(Protocol):
         """Ask for a motion or a stop from the next tick on, in place of what is done; its number."""
         ...
 
+    def take(self) -> None:
+        """A thread begins to move the arm, until it gives it back. Raises Misuse: another one does."""
+        ...
+
+    def give(self) -> None:
+        """A thread moves the arm no more."""
+        ...
+
     def done(self, number: int) -> bool:
         """Whether a motion is done, has come to where the next may begin, or another took its place.
 

@@ -1,11 +1,15 @@
-"""Functions that set the robot up: payload, tool centre point, sensor, watchdog, stops (URScript manual, module motion)."""
+"""Functions that set the robot up: payload, tool centre point, sensor, watchdog, stops, guiding (URScript, module motion)."""
 
 from collections.abc import Iterator
 
 from app.urscript.functions.motions import ZERO_UP
+from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
-from app.urscript.machine.signature import Builtin, Taken, any_value, boolean, builtin, number, numbers, pose, within
+from app.urscript.language.trouble import Misuse
+from app.urscript.machine.signature import Builtin, Taken, any_value, boolean, builtin, items, number, numbers, pose, within
 from app.urscript.machine.values import Value
+from pendant.motion.script_requests import Guided
+from pendant.tick.pose import rotation
 
 
 def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
@@ -44,6 +48,33 @@ def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
     )
     for each in ("ft_rtde_input_enable", "enable_external_ft_sensor"):
         yield builtin(each, lambda *given: robot.command("external_sensor", enable=given[0]), *sensor)
+
+
+def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
+    """freedrive_mode and teach_mode."""
+
+    def free(axes: Value, feature: Value) -> None:
+        if len(axes) != 6 or any(each not in (0, 1) for each in axes):
+            raise Misuse("freeAxes: expected six of 0 and 1")
+        chosen = tuple(bool(each) for each in axes)
+        if type(feature) is str:
+            if feature not in ("base", "tool"):
+                raise Misuse(f'feature: {feature!r}; expected "base", "tool" or a pose')
+            pose_ = robot.record.get("actual_TCP_pose") if feature == "tool" else (0.0,) * 6
+        else:
+            pose_ = pose(feature)
+        robot.arm.ask(Guided(axes=chosen, R_BU=rotation(quaternion(tuple(pose_[3:])))))  # pyright: ignore[reportIndexIssue]
+
+    axes = Taken("freeAxes", items, (1, 1, 1, 1, 1, 1))
+    yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"))
+    yield builtin("teach_mode", lambda: _guided(robot))
+    yield builtin("end_freedrive_mode", robot.arm.leave)
+    yield builtin("end_teach_mode", robot.arm.leave)
+    yield builtin("get_freedrive_status", robot.arm.free_drive_status)
+
+
+def _guided(robot: RobotSide) -> None:
+    robot.arm.ask(Guided())
 
 
 def _centre(value: Value) -> Value:

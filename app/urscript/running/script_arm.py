@@ -50,6 +50,7 @@ class ScriptArm:
         self._commands: tuple[Command, ...] = ()  # of the next tick
         self._waited = 0  # ticks for the program to begin, or to go on
         self._resuming = False
+        self._taken = False  # a thread moves the arm
         self._done = 0
         self._mode, self._phase, self._static = Mode.TEACH, Phase.OFF, False
         self._nearness = Nearness.OK
@@ -67,6 +68,16 @@ class ScriptArm:
         self._count += 1
         self._want(replace(self._wish, move=replace(move, id=self._count)))
         return self._count
+
+    def take(self) -> None:
+        """A thread begins to move the arm. Raises Misuse: another one does."""
+        if self._taken:
+            raise Misuse("another thread is controlling the robot")
+        self._taken = True
+
+    def give(self) -> None:
+        """It moves it no more."""
+        self._taken = False
 
     def done(self, number: int) -> bool:
         """Whether a request is done, or another took its place."""
@@ -118,6 +129,7 @@ class ScriptArm:
 
     def end(self, *, whole: bool) -> None:
         """The script is over; `whole`: it has come to its own end. The arm comes to rest."""
+        self._taken = False
         if self._state in ACTIVE:
             self._over = True
             self._ending = None if whole and self._state is ProgramState.RUNNING else Command.STOP_PROGRAM

@@ -1,63 +1,11 @@
 """RTDEControlInterface of ur-rtde, unmodified: it uploads a program of its own, which moves the arm of a served robot."""
 
-import time
-from collections.abc import Callable, Iterator
-
 import numpy as np
-import pytest
 from rtde_control import RTDEControlInterface
 from rtde_receive import RTDEReceiveInterface
 
 from app.testing import ServedRobot
-
-HOME = [0.0, -1.2, 1.5, -1.87, -1.57, 0.0]
-ASIDE = [0.2, *HOME[1:]]
-
-
-@pytest.fixture(scope="module")
-def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ServedRobot]:
-    served = ServedRobot(tmp_path_factory.mktemp("robot"), {"mismatch": "nominal", "posture": HOME})
-    served.start()
-    served.remote(True)
-    yield served
-    served.stop()
-
-
-@pytest.fixture(scope="module")
-def seen(robot: ServedRobot) -> Iterator[RTDEReceiveInterface]:
-    client = RTDEReceiveInterface(robot.host, 500.0)
-    yield client
-    client.disconnect()
-
-
-@pytest.fixture(scope="module")
-def arm(robot: ServedRobot) -> Iterator[RTDEControlInterface]:
-    client = RTDEControlInterface(robot.host, 500.0)
-    yield client
-    client.stopScript()
-    client.disconnect()
-
-
-def at(seen: RTDEReceiveInterface) -> np.ndarray:
-    return np.array(seen.getActualQ())
-
-
-def until(true: Callable[[], bool], patience: float = 5.0) -> None:
-    """Wait for it: a busy machine is late."""
-    end = time.monotonic() + patience
-    while not true():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
-def settled(seen: RTDEReceiveInterface, patience: float = 5.0) -> np.ndarray:
-    """Joint angles when the arm stands."""
-    until = time.monotonic() + patience
-    while time.monotonic() < until:
-        time.sleep(0.05)
-        if np.abs(seen.getActualQd()).max() < 2e-3:
-            return at(seen)
-    raise AssertionError("the arm goes on moving")
+from tests.app.robot_interface.waiting import ASIDE, HOME, at, settled, until
 
 
 def test_joint_motions(arm: RTDEControlInterface, seen: RTDEReceiveInterface) -> None:
@@ -119,8 +67,8 @@ def test_speeds_of_joints_and_tool(arm: RTDEControlInterface, seen: RTDEReceiveI
     settled(seen)
 
 
-def test_free_drive_goes_through_the_activation(arm: RTDEControlInterface, robot: ServedRobot) -> None:
+def test_free_drive_goes_through_the_activation(arm: RTDEControlInterface, controlled: ServedRobot) -> None:
     assert arm.freedriveMode()
-    robot.wait_until(10.0, mode="FREE_DRIVE")
+    controlled.wait_until(10.0, mode="FREE_DRIVE")
     assert arm.endFreedriveMode()
-    robot.wait_until(5.0, mode="RUN")
+    controlled.wait_until(5.0, mode="RUN")

@@ -134,3 +134,21 @@ def test_a_script_may_ask_for_a_protective_stop() -> None:
     assert (decision.mode, decision.safety) == (Mode.STOP, Safety.PROTECTIVE_STOP)
     assert bench.state is None
     assert [event.kind for event in bench.robot.watcher.events].count(Kind.PROTECTIVE_STOP) == 1
+
+
+THREADS = """thread goes():
+  while True:
+    speedj([0.1,0,0,0,0,0], 0.5, 0.02)
+  end
+end
+h = run goes()
+sleep(0.3)
+{then}
+movej(get_target_joint_positions(), a=1.0, v=1.0)
+textmsg(1)"""
+
+
+def test_two_threads_do_not_move_the_arm_at_once() -> None:
+    _, trouble = told(THREADS.format(then="sync()"))
+    assert trouble.endswith("another thread is controlling the robot")
+    assert told(THREADS.format(then="kill h")) == ([1.0], "")
