@@ -56,6 +56,15 @@ def test_a_servo_target_out_of_range_ends_the_script_with_its_place() -> None:
     assert trouble.endswith(": servoj: joint 1 would reach 9.0000 rad, allowed ±6.2832")
 
 
+def test_a_speed_without_an_acceleration_stays_as_it_is() -> None:
+    (before, after), trouble = told(
+        "speedj([0.2,0,0,0,0,0], 1.0, 0.5)\n s = get_target_joint_speeds()\n textmsg(s[0])\n"
+        " speedj([0.5,0,0,0,0,0], 0, 0.2)\n s = get_target_joint_speeds()\n textmsg(s[0])\n stopj(2.0)"
+    )
+    assert (before, after) == (pytest.approx(0.2), pytest.approx(0.2))
+    assert trouble == ""
+
+
 def test_a_tool_speed_is_held_for_its_time() -> None:
     (up, aside), _ = told(
         "p = get_target_tcp_pose()\n speedl([0,0,0.05,0,0,0], 0.5, 1.0)\n stopl(1.0)\n"
