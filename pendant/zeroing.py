@@ -77,10 +77,10 @@ class TareRun:
             taring.restart()
         else:
             freed = robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE or self._haptics.busy
-            stands = robot.static and not freed and (move is None or isinstance(move, STANDING))
+            stands = robot.static and not freed and (move is None or isinstance(move, STANDING) or self._scripted)
             events += taring.step(estimate, self._mean, stands, settings.limits.activation)
         if commands and Command.ZERO_SENSOR in commands:
-            running = robot.sequencer.state is ProgramState.RUNNING
+            running = robot.sequencer.state is ProgramState.RUNNING and not self._scripted
             why_not = "a program runs: pause or stop it first" if running else self._why_not(estimate, wrench_ok)
             if why_not:
                 events.append(Event(Kind.ZERO_REFUSED, estimate.tick, {"reason": why_not}))
@@ -93,6 +93,11 @@ class TareRun:
                 self._run.zeroed(estimate.tick, events)
             elif robot.sequencer.impatient():
                 self._run.fail(f"force sensor not zeroed, {why_not}", estimate.tick, events)
+
+    @property
+    def _scripted(self) -> bool:
+        """A script moves the arm as it likes; it is known to push at nothing."""
+        return self._robot.sequencer.scripted and self._run.scripting.force is None
 
     def _why_not(self, estimate: Estimate, wrench_ok: bool) -> str:
         """Why the sensor cannot be zeroed in this tick, or ""."""

@@ -120,7 +120,7 @@ class PrimarySession(StreamSession):
         """Messages: keys of programs, texts and errors of everything else that is more than a note."""
         if not self._messages:
             return
-        if event.kind in KEYS and self._scripts.state is None:
+        if event.kind in KEYS and self._scripts.state is None and not self._scripts.arm.at_work:
             self.outbox.send(key_message(self.cabinet.clock, KEYS[event.kind], str(event.values["name"])))
         level = LEVELS.get(TABLE[event.kind].severity)
         if level is not None:

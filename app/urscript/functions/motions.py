@@ -12,10 +12,12 @@ from app.urscript.machine.signature import (
     Builtin,
     Taken,
     any_value,
+    boolean,
     builtin,
     integer,
     number,
     numbers,
+    optional,
     pose,
     within,
 )
@@ -182,7 +184,7 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         return until_reached(SpeedJoints(qd=qd, acceleration=a, time=t))
 
     def speedl(xd: Value, a: float, t: float, turning: Value) -> Doing:
-        about = a if turning is None else within(number, 1e-6, MOST)(turning)
+        about = a if turning is None else ZERO_UP(turning)
         return until_reached(
             SpeedTool(speed=tuple(xd[:3]), turning=tuple(xd[3:]), acceleration=a, turning_acceleration=about, time=t)
         )
@@ -199,13 +201,19 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         Taken("gain", within(number, 100.0, 2000.0), 300.0),
         takes_time=True,
     )
-    a, t = Taken("a", POSITIVE), Taken("t", ZERO_UP, 0.0)
+    a, t = Taken("a", ZERO_UP), Taken("t", ZERO_UP, 0.0)  # without acceleration a speed stays: clients' splines do so
     blend = Taken("r", ZERO_UP, 0.0)
     yield builtin(
         "servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, takes_time=True
     )
     yield builtin("speedj", speedj, Taken("qd", numbers(6)), a, t, takes_time=True)
     yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), takes_time=True)
+    scales = (Taken(f"{of}_scale", optional(numbers(6)), None) for of in ("viscous", "coulomb"))
+    yield builtin("direct_torque", _no_torques, q._replace(name="torque"), Taken("friction_comp", boolean, True), *scales)
+
+
+def _no_torques(*_: Value) -> None:
+    raise Misuse("torques of a script are not simulated")
 
 
 TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")

@@ -46,6 +46,10 @@ class ArmSide(Protocol):
         """Be guided by hand no more."""
         ...
 
+    def zero(self) -> None:
+        """Zero the flange's sensor as soon as the arm has stood for a while."""
+        ...
+
     def steps_back(self, direction: Axes) -> int:
         """Ticks since the tool has been in contact against this direction, axes of B; zeros for any; 0 for none."""
         ...
@@ -87,5 +91,5 @@ class RobotSide(Protocol):
         ...
 
     def command(self, word: str, **values: Any) -> None:
-        """Something of the robot besides its motion: "payload", "tcp", "zero", "protective_stop", "gravity", "watchdog"."""
+        """Something of the robot besides its motion: "payload", "tcp", "protective_stop", "gravity", "watchdog"."""
         ...

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.limits import NODES_A_TICK
 from app.urscript.machine.operators import effort
 from app.urscript.machine.signature import (
     Builtin,
@@ -32,8 +31,8 @@ from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
 
-SEARCH = NODES_A_TICK
-"""What a search for joint angles counts as, in steps of the evaluator."""
+SEARCH = 300
+"""What a step of a search for joint angles counts as, in steps of the evaluator."""
 
 STEADY = 0.01
 """Joint speed below which the arm counts as steady [rad/s]."""
@@ -63,7 +62,6 @@ class Kinematics:
     def inverse(self, x: PoseValue, near: tuple[float, ...], tcp: tuple[float, ...] | None) -> tuple[float, ...] | None:
         """Joint angles for a pose of the tool centre point, the nearest that steps from `near` lead to; None: none is found."""
         simulation = self._robot.simulation
-        effort[0] += SEARCH
         at, R_FT = _placed(self.tcp if tcp is None else tcp)
         p, R = _placed(x)
         R_F = R @ R_FT.T
@@ -93,6 +91,7 @@ def _newton(dynamics: Dynamics, target: tuple[Array, Array], q: Array) -> Array 
     p_wanted, R_wanted = target
     q = q.copy()
     for _ in range(20):
+        effort[0] += SEARCH
         p, R, jacobian = dynamics.update(q)
         error = np.concatenate((p_wanted - p, rotation_vector(R_wanted @ R.T)))
         size = math.sqrt(float(error @ error))

@@ -28,7 +28,7 @@ def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
     yield builtin("set_target_payload", payload, mass, cog, Taken("inertia", numbers(6), (0.0,) * 6), now)
     name = Taken("tcp_name", any_value, "")
     yield builtin("set_tcp", lambda x, n: robot.command("tcp", pose=x), Taken("pose", pose), name)
-    yield builtin("zero_ftsensor", lambda: robot.command("zero"))
+    yield builtin("zero_ftsensor", robot.arm.zero)
     yield builtin("protective_stop", lambda: robot.command("protective_stop"))
     yield builtin("set_gravity", lambda d: robot.command("gravity", gravity=d), Taken("d", numbers(3)))
     action = Taken("action", any_value, "pause")

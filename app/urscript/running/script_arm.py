@@ -24,6 +24,14 @@ PATIENCE = ticks(3.0)
 AGAIN = ticks(0.1)
 """Between attempts to begin or to go on."""
 
+STOOD = ticks(1.2)
+"""The arm has to stand so long before its sensor can be zeroed."""
+
+ZEROING = ticks(5.0)
+"""A script's wish to zero the sensor is kept so long; every REPEATED the pendant is asked again."""
+
+REPEATED = ticks(0.5)
+
 STATUS = {Nearness.OK: 0, Nearness.NEAR: 1, Nearness.TOO_NEAR: 2}
 
 OWN_STOP = 4.0
@@ -38,6 +46,7 @@ class ScriptArm:
     Attributes:
         refusal: why the arm cannot do what was asked for, until somebody takes it; "".
         gone: somebody else ended the script's motion.
+        at_work: the program that the pendant runs, or ended in this tick, is the script's.
     """
 
     def __init__(self) -> None:
@@ -55,15 +64,20 @@ class ScriptArm:
         self._mode, self._phase, self._static = Mode.TEACH, Phase.OFF, False
         self._nearness = Nearness.OK
         self._contact: tuple[int, Contact] | None = None  # that lasts, and the tick in which it began
-        self._tick = 0
+        self._tick = self._stood = 0  # ticks, and those in which the arm has stood
+        self._zero = 0  # ticks for which the wish to zero the sensor is kept
         self.refusal = ""
-        self.gone = False
+        self.gone = self.at_work = False
 
     # of the script
 
     def ask(self, move: ScriptedMove) -> int:
-        """Ask for a motion or a stop, in place of what is done; its number."""
-        if isinstance(self._wish.move, Guided):
+        """Ask for a motion or a stop, in place of what is done; its number. Who is guided by hand, and asks again, goes on so."""
+        before = self._wish.move
+        if isinstance(before, Guided):
+            being = before.id > self._done or self._phase is not Phase.OFF
+            if being and before == replace(move, id=before.id):
+                return before.id
             self.leave()
         self._count += 1
         self._want(replace(self._wish, move=replace(move, id=self._count)))
@@ -105,6 +119,10 @@ class ScriptArm:
         if isinstance(self._wish.move, Guided):
             self._count += 1
             self._wish = replace(self._wish, move=ScriptedStop(id=self._count))
+
+    def zero(self) -> None:
+        """Zero the flange's sensor as soon as the arm has stood for a while."""
+        self._zero = ZEROING
 
     def steps_back(self, direction: Axes) -> int:
         """Ticks since the tool has been in contact against this direction."""
@@ -160,6 +178,10 @@ class ScriptArm:
     def inputs(self, equips: bool) -> Inputs:
         """What the pendant gets for the tick that begins; `equips`: with tool or payload of the script."""
         commands, self._commands = self._commands, ()
+        if self._zero:
+            self._zero -= 1
+            if self._zero == 0 or (self._stood >= STOOD and (self._stood - STOOD) % REPEATED == 0):
+                commands += (Command.ZERO_SENSOR,)
         if self._over:
             if self._ending is not None:
                 commands += (self._ending,)
@@ -183,6 +205,7 @@ class ScriptArm:
     def see(self, decision: Decision) -> None:
         """Take in a tick."""
         self._tick += 1
+        self._stood = self._stood + 1 if decision.static else 0
         self._mode, self._phase, self._static = decision.mode, decision.phase, decision.static
         self._done = decision.script_done
         if decision.singularity is not None:
@@ -198,6 +221,7 @@ class ScriptArm:
             self._take(event.kind, event.values)
         if self._state in ACTIVE:
             self._state = decision.program if decision.program in ACTIVE else ProgramState.STOPPED
+        self.at_work = before in ACTIVE or self._state in ACTIVE
         if before in ACTIVE and self._state not in ACTIVE:
             if not self._over:
                 self.gone, self._wish, self._wanted = True, Scripted(), False
@@ -207,6 +231,8 @@ class ScriptArm:
         waiting = self._wanted and self._state not in ACTIVE
         if kind is Kind.PROGRAM_STARTED and waiting and values["name"] == NAME:
             self._state, self._waited = ProgramState.RUNNING, 0
+        elif kind is Kind.SENSOR_ZEROED:
+            self._zero = 0
         elif kind is Kind.PROGRAM_RESUMED:
             self._resuming = False
         elif (kind in REFUSED and self._wanted) or (kind is Kind.COMMAND_REFUSED and waiting and self._waited >= PATIENCE):

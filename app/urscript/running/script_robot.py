@@ -80,8 +80,6 @@ class ScriptRobot:
             self._payload(**values)
         elif word == "tcp":
             self._tcp(values["pose"])
-        elif word == "zero":
-            self.asks.append(Ask((Command.ZERO_SENSOR,)))
         elif word == "protective_stop":
             self.asks.append(Ask((Command.PROTECTIVE_STOP,)))
         elif word == "power_off":

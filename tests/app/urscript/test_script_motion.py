@@ -56,6 +56,15 @@ def test_a_servo_target_out_of_range_ends_the_script_with_its_place() -> None:
     assert trouble.endswith(": servoj: joint 1 would reach 9.0000 rad, allowed ±6.2832")
 
 
+def test_a_speed_without_an_acceleration_stays_as_it_is() -> None:
+    (before, after), trouble = told(
+        "speedj([0.2,0,0,0,0,0], 1.0, 0.5)\n s = get_target_joint_speeds()\n textmsg(s[0])\n"
+        " speedj([0.5,0,0,0,0,0], 0, 0.2)\n s = get_target_joint_speeds()\n textmsg(s[0])\n stopj(2.0)"
+    )
+    assert (before, after) == (pytest.approx(0.2), pytest.approx(0.2))
+    assert trouble == ""
+
+
 def test_a_tool_speed_is_held_for_its_time() -> None:
     (up, aside), _ = told(
         "p = get_target_tcp_pose()\n speedl([0,0,0.05,0,0,0], 0.5, 1.0)\n stopl(1.0)\n"
@@ -107,6 +116,51 @@ def test_a_script_frees_the_arm_through_the_whole_activation() -> None:
     bench.runner.stop()
     bench.robot.step(10)
     assert bench.robot.step().mode is not Mode.FREE_DRIVE
+
+
+def test_who_is_guided_by_hand_and_asks_again_goes_on_so() -> None:
+    bench = begun(" while True:\n  freedrive_mode()\n  sleep(0.004)\n end")
+    assert any(bench.robot.step().mode is Mode.FREE_DRIVE for _ in range(1500))
+    bench.robot.step(100)
+    kinds = [event.kind for event in bench.robot.watcher.events]
+    assert bench.robot.step().mode is Mode.FREE_DRIVE
+    assert kinds.count(Kind.SIGNAL_SEEN) == 1
+    assert Kind.DEACTIVATED not in kinds
+
+
+def test_the_sensor_is_zeroed_as_soon_as_the_arm_has_stood_after_a_motion() -> None:
+    bench = begun(" q = get_target_joint_positions()\n q[0] = q[0] + 0.1\n movej(q)\n zero_ftsensor()\n sleep(5)")
+    bench.robot.step(1500)
+    kinds = [event.kind for event in bench.robot.watcher.events]
+    assert Kind.SENSOR_ZEROED in kinds
+    assert Kind.ZERO_REFUSED not in kinds
+
+
+def test_a_sensor_that_cannot_be_zeroed_is_told_of_and_zeroed_no_more() -> None:
+    bench = begun(" zero_ftsensor()\n while True:\n  speedj([0.02,0,0,0,0,0], 0.5, 0.5)\n end")
+    bench.robot.step(5000)
+    kinds = [event.kind for event in bench.robot.watcher.events]
+    assert kinds.count(Kind.ZERO_REFUSED) == 1
+    assert Kind.SENSOR_ZEROED not in kinds
+
+
+def test_the_sensor_is_not_zeroed_while_a_script_pushes() -> None:
+    push = " force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,0,0,0,0], 2, [0.1,0.1,0.1,0.2,0.2,0.2])\n"
+    bench = begun(f" sleep(1)\n{push} sleep(1)\n zero_ftsensor()\n sleep(6)")
+    bench.robot.step(4500)
+    assert Kind.SENSOR_ZEROED not in [event.kind for event in bench.robot.watcher.events]
+
+
+def test_poses_can_be_followed_in_every_tick() -> None:
+    """A search for joint angles next to those that the arm has fits into a tick, with what else a client's program does."""
+    (searches,), trouble = told(
+        "x = get_target_tcp_pose()\n n = 0\n"
+        " while n < 200:\n  n = n + 1\n  x[2] = x[2] + 0.0001\n"
+        "  servoj(get_inverse_kin(x, get_target_joint_positions()), t=0.002)\n end\n textmsg(n)",
+        ticks=210,
+    )
+    assert searches == 200
+    assert trouble == ""
 
 
 def test_a_payload_that_nobody_told_of_is_refused_to_a_script_too() -> None:

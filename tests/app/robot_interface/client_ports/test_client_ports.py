@@ -259,6 +259,16 @@ def test_a_program_runs_and_primary_clients_are_told(cell: Cell, kind: str) -> N
     assert [each[9:] for each in told[messages.MessageType.KEY]] == [b"PROGRAM_XXX_STARTEDhello", b"PROGRAM_XXX_STOPPEDhello"]
 
 
+def test_a_program_that_moves_the_arm_is_told_of_once(cell: Cell) -> None:
+    session, theirs = cell.open("primary")
+    cell.robot.step(150)
+    packages(theirs)
+    say(session, "def way():\n  speedj([0.1,0,0,0,0,0], 0.5, 0.5)\nend\n")
+    cell.robot.step(600)
+    told = [each[9:] for each in kinds(theirs)[messages.MessageType.KEY]]
+    assert told == [b"PROGRAM_XXX_STARTEDway", b"PROGRAM_XXX_STOPPEDway"]
+
+
 def test_an_error_is_told_with_line_and_column(cell: Cell) -> None:
     session, theirs = cell.open("primary")
     packages(theirs)
