@@ -17,15 +17,19 @@ from app.log.live import LiveRecording
 from app.log.playback import Player
 from app.log.reader import read
 from app.log.scan import repair
-from app.robot_interface.interfaces import RobotInterfaces
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.program_folder import ProgramFolder
+from app.robot_interface.interfaces import JOINTS, RobotInterfaces
 from app.robot_serving import Network, open_interfaces, until_stopped
 from app.runs.runner import simulate
 from app.session.prepare import Prepared
+from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.listening import access_through, free_port
 from app.web.access.site import Site
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
+from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
 
 
@@ -71,8 +75,9 @@ def serve_until_interrupted(
     interfaces = None if network is None else open_interfaces(loop, prepared, network, recording)
     try:
         loop.start()
+        scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
         robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
-        page = partial(robot, keeper=keeper, lesson=lesson)
+        page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson)
         served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
         try:
             yield Serving(served, interfaces)
@@ -108,6 +113,16 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
         ended.wait()
     finally:
         shown.close()
+
+
+def scripts_beside(loop: Loop, arm: Arm) -> ScriptRunner | None:
+    """Runs programs in URScript beside the page, without a network; None for an arm that the language does not know."""
+    if arm.n != JOINTS:
+        return None
+    cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(), lambda: loop.desk.high)
+    cabinet.state.remote = False
+    loop.companion = cabinet
+    return ScriptRunner(cabinet)
 
 
 def _serve(page: Callable[..., Served], *, port: int | None, usual: int) -> Served:

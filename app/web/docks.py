@@ -5,6 +5,7 @@ import viser
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
+from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.guard import Guard
 from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
@@ -17,6 +18,7 @@ from app.web.tabs.jog_tab import JogTab
 from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
 from app.web.tabs.recording import RecordingSwitch
+from app.web.tabs.script_tab import ScriptTab
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
@@ -43,6 +45,7 @@ class Docks:
         arm: Arm,
         recording: LiveRecording,
         interfaces: RobotInterfaces | None,
+        scripts: ScriptRunner | None,
         keeper: Keeper | None,
     ) -> None:
         self._loop, self._arm, self._keeper = loop, arm, keeper
@@ -73,6 +76,10 @@ class Docks:
         self.journal.look_at = self.plots.look_at
         with self._lower.add_tab("Record"):
             self.recording = RecordingSwitch(gui, recording)
+        self.script: ScriptTab | None = None
+        if scripts is not None:
+            with self._lower.add_tab("Script"):
+                self.script = ScriptTab(gui, scripts)
         self.network: NetworkTab | None = None
         if interfaces is not None:
             with self._lower.add_tab("Network"):
@@ -102,6 +109,7 @@ class Docks:
             self.recording.export,
             self.teach.save,
             self.teach.load,
+            *(() if self.script is None else (self.script.save, self.script.load)),
         )
         sheet.content = style.sheet(
             self.panel.stop._impl.uuid,
@@ -126,6 +134,7 @@ class Docks:
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
             self.recording.show(),
+            self.script is not None and self.script.show(),
             self.network is not None and self.network.show(),
         ]
         self.keep()

@@ -14,6 +14,7 @@ from app.files.taught_program import Lesson
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording, must_be_writable
 from app.robot_interface.interfaces import RobotInterfaces
+from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.control import Control
 from app.web.access.listening import Access, access_through, must_be_free
 from app.web.access.site import Site
@@ -46,6 +47,7 @@ class Served(Site):
         port: int,
         recording: LiveRecording,
         interfaces: RobotInterfaces | None,
+        scripts: ScriptRunner | None = None,
         keeper: Keeper | None = None,
     ) -> None:
         super().__init__(access, port, brand_color=(25, 113, 194))
@@ -64,6 +66,7 @@ class Served(Site):
             arm=arm,
             recording=recording,
             interfaces=interfaces,
+            scripts=scripts,
             keeper=keeper,
         )
         self.panel, self.lab = self.docks.panel, self.docks.lab
@@ -151,6 +154,7 @@ def serve(
     record: Path | None = None,
     recording: LiveRecording | None = None,
     interfaces: RobotInterfaces | None = None,
+    scripts: ScriptRunner | None = None,
     keeper: Keeper | None = None,
     lesson: Lesson | None = None,
 ) -> Served:
@@ -162,6 +166,7 @@ def serve(
         record: record from the start, into this folder; None: when it is switched on.
         recording: the switch of recordings; None for one of its own, into `record` or the working folder.
         interfaces: the robot on the network, for the page to show; None where there is none.
+        scripts: runs programs in URScript; None: the page has no tab for them.
         keeper: keeps set-up, settings and what is taught for the next start; None: nobody does.
         lesson: what was taught before; None: nothing.
 
@@ -176,7 +181,16 @@ def serve(
         must_be_writable(record)
         recording.start()
     served = Served(
-        loop, arm, scenario, meshes=meshes, access=access, port=port, recording=recording, interfaces=interfaces, keeper=keeper
+        loop,
+        arm,
+        scenario,
+        meshes=meshes,
+        access=access,
+        port=port,
+        recording=recording,
+        interfaces=interfaces,
+        scripts=scripts,
+        keeper=keeper,
     )
     if lesson is not None:
         served.docks.teach.begin_with(lesson)

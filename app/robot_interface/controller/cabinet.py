@@ -10,7 +10,7 @@ from app.robot_interface.controller.controller_state import ControllerState
 from app.robot_interface.controller.field_record import BEGIN, FieldRecord
 from app.robot_interface.controller.measured_fields import MeasuredFields
 from app.robot_interface.controller.program_folder import ProgramFolder
-from app.robot_interface.controller.robot_words import RuntimeState
+from app.robot_interface.controller.scripts_side import Scripts
 from app.robot_interface.controller.status_fields import StatusFields
 from app.session.actions import Action
 from app.session.timeline import Timeline
@@ -46,44 +46,6 @@ class Listener(Protocol):
 
 AT_MOST = ticks(1.5)
 """Ticks that a wish waits for the arm to stand still; then the robot says itself that it moves."""
-
-
-class Scripts(Protocol):
-    """What runs scripts, beside everybody else who acts."""
-
-    @property
-    def state(self) -> RuntimeState | None:
-        """Of the script; None: none runs."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """Of the script that runs."""
-        ...
-
-    def wishes(self, tick: int) -> Wishes | None:
-        """What the script wants of the tick that begins; None: nothing."""
-        ...
-
-    def see(self, decision: Decision) -> None:
-        """Take in what the robot decided."""
-        ...
-
-    def begin(self) -> None:
-        """The simulation starts over."""
-        ...
-
-    def stop(self) -> None:
-        """End the script."""
-        ...
-
-    def pause(self) -> None:
-        """Let it wait."""
-        ...
-
-    def resume(self) -> None:
-        """Let it go on."""
-        ...
 
 
 @dataclass(slots=True)
@@ -135,6 +97,7 @@ class Cabinet:
         self._acts: list[Act] = []  # to begin with the next tick
         self._timeline = Timeline([], joints)
         self._static = False  # the arm stood still in the last tick
+        self._seen: Decision | None = None  # of the last tick
         self.ticks = 0  # done so far, through resets too
         self.events: list[Event] = []  # of the running simulation
         self._settled = False  # the robot has been brought into remote control
@@ -230,16 +193,22 @@ class Cabinet:
         self._understand(tick, decision)
         self.record.put("timestamp", self.clock)
         self.record.put("control_step", self.ticks)
-        if listeners or self.script is not None:
-            self._measured.fill(self._simulation(), decision)
-            self._status.fill(self.state, decision, self._high() | self._timeline.high)
-            for listener in listeners:
-                for event in decision.events:
-                    listener.told(event)
-                listener.tick(self.ticks)
+        self._seen = decision
+        if listeners or (self.script is not None and self.script.reads):
+            self.refresh()
+        for listener in listeners:
+            for event in decision.events:
+                listener.told(event)
+            listener.tick(self.ticks)
         for ask in self._asked:
             ask.done.set_result(decision.events)
         self._asked = []
+
+    def refresh(self) -> None:
+        """Have the record say how the last tick was: it is kept up only while somebody listens, or a script reads it."""
+        if self._seen is not None:
+            self._measured.fill(self._simulation(), self._seen)
+            self._status.fill(self.state, self._seen, self._high() | self._timeline.high)
 
     def repeat(self) -> None:
         """Nothing has been simulated for a while; the network's thread has everybody say that the robot is still there."""
@@ -255,6 +224,7 @@ class Cabinet:
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
         self.events = []
         self._settled = self._static = False
+        self._seen = None
         self.free_drive_until, self._wanted = 0, False
         if self.script is not None:
             self.script.begin()

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from app.files.bad_input import BadInput
-from app.robot_interface.controller.cabinet import Ask, Cabinet, Scripts
+from app.robot_interface.controller.cabinet import Ask, Cabinet
 from app.robot_interface.controller.robot_words import SERIAL, VERSION, OperationalMode, RobotMode, RuntimeState, SafetyMode
+from app.robot_interface.controller.scripts_side import Scripts
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState

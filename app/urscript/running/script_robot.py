@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
 from app.urscript.functions.pose_algebra import quaternion
@@ -10,12 +10,14 @@ from app.urscript.functions.robot_side import ArmSide
 from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.limits import MOST_MESSAGES
+from app.urscript.machine.machine import Machine
 from app.urscript.running.told import Telling, Told, printable
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool, tool_problem
-from pendant.inputs import Command
+from pendant.inputs import NOTHING, Command, Inputs
 from pendant.tick.modes import TICK_RATE
 from sim.arm.frames import matrix_from_quaternion
+from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
 TOOL_NAME = "script"
@@ -132,3 +134,18 @@ class ScriptRobot:
             raise Misuse(f"variable_name: {name!r} is no input of RTDE")
         silent = 0 if frequency == 0.0 else math.ceil(TICK_RATE / frequency)
         self.watchdog = None if action == "ignore" or not silent else (name, silent, action)
+
+
+class OfferedScript(NamedTuple):
+    """A script that can run."""
+
+    machine: Machine
+    robot: ScriptRobot
+    text: str
+
+
+def joined(a: Inputs, b: Inputs) -> Inputs:
+    """Both of a tick."""
+    if a is NOTHING or b is NOTHING:
+        return b if a is NOTHING else a
+    return Wishes(a, (), ()).joined(Wishes(b, (), ())).inputs

@@ -3,7 +3,6 @@
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
 
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
@@ -14,7 +13,7 @@ from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
 from app.urscript.running.script_arm import ScriptArm
-from app.urscript.running.script_robot import ScriptRobot
+from app.urscript.running.script_robot import OfferedScript, ScriptRobot, joined
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
 from pendant.inputs import NOTHING, Inputs
@@ -31,14 +30,6 @@ SECONDARY_TICKS = 5
 """A secondary program that runs longer takes time, which it must not."""
 
 
-class OfferedScript(NamedTuple):
-    """A script that can run."""
-
-    machine: Machine
-    robot: ScriptRobot
-    text: str
-
-
 class ScriptRunner:
     """Beside the cabinet, in its ticks. `offer`, `stop`, `pause` and `resume` may be called from any thread.
 
@@ -47,7 +38,7 @@ class ScriptRunner:
     """
 
     def __init__(self, cabinet: Cabinet) -> None:
-        self._cabinet = cabinet
+        self.cabinet = cabinet
         self._lock = threading.Lock()
         self._next: OfferedScript | None = None
         self._stop = False
@@ -141,6 +132,11 @@ class ScriptRunner:
         return "" if self._running is None else self._running.machine.script.name
 
     @property
+    def reads(self) -> bool:
+        """A script runs, which may read the robot's record."""
+        return self._running is not None or bool(self._beside)
+
+    @property
     def line(self) -> int:
         """Of the script that runs; 0: none does."""
         return 0 if self._running is None else self._running.machine.line
@@ -150,11 +146,11 @@ class ScriptRunner:
         return {} if self._running is None else self._running.machine.variables()
 
     def _made(self, text: str, hosts: frozenset[str]) -> OfferedScript:
-        state = self._cabinet.state
+        state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
         body = read_script(text)
-        robot = ScriptRobot(self._cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self._cabinet.simulation.scenario.seed)
+        robot = ScriptRobot(self.cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self.cabinet.simulation.scenario.seed)
         secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
         machine = Machine(body, builtins_of(robot, self._history, secondary))
         return OfferedScript(machine, robot, text)
@@ -175,7 +171,7 @@ class ScriptRunner:
                 self._watch(running.robot)
         for k, (script, age) in enumerate(self._beside):
             over = script.machine.tick()
-            inputs = _joined(inputs, self._taken(script.robot))
+            inputs = joined(inputs, self._taken(script.robot))
             if not over and age >= SECONDARY_TICKS:
                 script.machine.trouble = ScriptTrouble(NOWHERE, "a secondary program must not take time")
                 over = True
@@ -185,7 +181,7 @@ class ScriptRunner:
         if self._beside:
             self._beside = [each for each in self._beside if each[1] >= 0]
         equips = inputs is not NOTHING and bool(inputs.load or inputs.tool or inputs.tools)
-        inputs = _joined(inputs, self.arm.inputs(equips))
+        inputs = joined(inputs, self.arm.inputs(equips))
         return None if inputs is NOTHING else Wishes(inputs, (), ())
 
     def see(self, decision: Decision) -> None:
@@ -194,7 +190,7 @@ class ScriptRunner:
         self.arm.see(decision)
         if self._running is None:
             return
-        self._history.appendleft(tuple(self._cabinet.simulation.estimate.q.tolist()))
+        self._history.appendleft(tuple(self.cabinet.simulation.estimate.q.tolist()))
         if decision.mode is Mode.STOP or self.arm.gone:
             self._end(self._unable(refusal or self.arm.refusal))
         elif refusal and refusal == self.arm.refusal:  # nobody waits for what was refused
@@ -217,6 +213,8 @@ class ScriptRunner:
             next_, self._next = self._next, None
             stop, self._stop = self._stop, False
             waiting, self._waiting = self._waiting, []
+        if next_ is not None or waiting:
+            self.cabinet.refresh()
         if next_ is not None or stop:
             self._end(None)
         if next_ is not None:
@@ -233,20 +231,20 @@ class ScriptRunner:
         inputs = NOTHING
         asks, robot.asks = robot.asks, []
         for ask in asks:
-            inputs = _joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
+            inputs = joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
         if robot.tool is not None:
             made, robot.tool = robot.tool, None
-            table = tuple(each for each in self._cabinet.simulation.tools if each.name != made.name)
-            inputs = _joined(inputs, Inputs(tools=(*table, made), tool=made.name))
+            table = tuple(each for each in self.cabinet.simulation.tools if each.name != made.name)
+            inputs = joined(inputs, Inputs(tools=(*table, made), tool=made.name))
         return inputs
 
     def _watch(self, robot: ScriptRobot) -> None:
         """End or pause a script whose client is silent for longer than it said."""
         assert robot.watchdog is not None
         name, silent, action = robot.watchdog
-        count = self._cabinet.writes.get(name, 0)
+        count = self.cabinet.writes.get(name, 0)
         seen = self._seen.get(name)
-        now = self._cabinet.ticks
+        now = self.cabinet.ticks
         if seen is None or seen[0] != count:
             self._seen[name] = (count, now)
         elif now - seen[1] > silent:
@@ -271,9 +269,3 @@ class ScriptRunner:
         script.robot.sockets.end()
         if trouble is not None:
             self.tell(Told(Telling.TROUBLE, printable(trouble.text), script.machine.script.name, trouble.place))
-
-
-def _joined(a: Inputs, b: Inputs) -> Inputs:
-    if a is NOTHING or b is NOTHING:
-        return b if a is NOTHING else a
-    return Wishes(a, (), ()).joined(Wishes(b, (), ())).inputs

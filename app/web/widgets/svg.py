@@ -220,6 +220,16 @@ def contacts(rows: Iterable[tuple[str, ...]]) -> str:
     return f'<div class="pd-contacts"><table><tr>{heads}</tr>{lines}</table></div>'
 
 
+def listing(rows: Iterable[tuple[int, str]], marked: int, state: str) -> str:
+    """Lines of a program with their numbers; one is marked, which is in `state`: "" for where it went wrong."""
+    lines = "".join(
+        f"<li value={number}{NOW if number == marked else ''}>{escape(line) or '&nbsp;'}"
+        f"{f' <em>{escape(state)}</em>' if number == marked and state else ''}</li>"
+        for number, line in rows
+    )
+    return f'<ol class="pd-listing">{lines}</ol>' if lines else ""
+
+
 NOW = ' class="pd-now"'
 
 

@@ -1,0 +1,36 @@
+"""A program in the robot's own language, run from the page without a network."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Page
+
+from app.serving import scripts_beside
+from app.web.server import Served, serve
+from pendant.events.event import Kind
+from sim.run.loop import Loop
+from tests.e2e.cell import Cell
+from tests.e2e.test_everyday import open_tab
+
+pytestmark = pytest.mark.e2e
+
+
+@pytest.fixture
+def served(loop: Loop) -> Iterator[Served]:
+    """With the tab for scripts, as `pendant serve` has it."""
+    arm = loop.simulation.arm
+    page = serve(loop, arm, loop.simulation.scenario, scripts=scripts_beside(loop, arm))
+    yield page
+    page.close()
+
+
+def test_run_the_example_and_mend_a_mistake(visit: Callable[..., Page], cell: Cell) -> None:
+    page = visit(1280, 800)
+    open_tab(page, "Script")
+    page.get_by_role("button", name="Run", exact=True).last.click()
+    page.locator(".pd-listing .pd-now", has_text="movej").wait_for()
+    cell.wait(lambda: cell.happened(Kind.PROGRAM_FINISHED), "there and back")
+    page.get_by_text("turned by 0.3").wait_for()
+    page.locator("textarea:visible").last.fill("def wrong():\n  nothing()\nend")
+    page.get_by_role("button", name="Run", exact=True).last.click()
+    page.get_by_text("line 2, column").first.wait_for()
