@@ -13,6 +13,9 @@ MAX_FILE = 48 * 1024
 MAX_TEXT = 200
 """Longest text that a control takes."""
 
+MAX_LINES = 40_000
+"""Longest text that a control of many lines takes: it comes in one message."""
+
 LARGEST = 1e6
 """Largest number that is squared: the far plane of a camera and the pixels of a window are within it."""
 
@@ -69,6 +72,11 @@ def _plain(text: str) -> bool:
     return len(text) <= MAX_TEXT and text.isprintable()
 
 
+def _lines(text: str) -> bool:
+    """Whether a text is lines without control characters."""
+    return len(text) <= MAX_LINES and text.replace("\n", "").replace("\t", "").isprintable()
+
+
 def _fits(control: Any, value: Any) -> bool:
     """Whether `value` has the type and range of the control. Kinds of control that are not named here take nothing."""
     if isinstance(control, viser.GuiButtonHandle):
@@ -84,7 +92,7 @@ def _fits(control: Any, value: Any) -> bool:
     if isinstance(control, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
         return isinstance(value, str) and value in control.options
     if isinstance(control, viser.GuiTextHandle):
-        return isinstance(value, str) and _plain(value)
+        return isinstance(value, str) and (_lines(value) if control.multiline else _plain(value))
     return False
 
 

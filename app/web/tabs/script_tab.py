@@ -5,11 +5,12 @@ import viser
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
 from app.urscript.running.told import Telling
+from app.web.access.takes import MAX_LINES
 from app.web.widgets import svg
 from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 
-MOST = 100_000
+MOST = MAX_LINES
 """Characters of a program."""
 
 LONGEST = 200
