@@ -130,6 +130,9 @@ def parsed(text: str, where: str) -> object:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f"line {min(mark.line, text.count(chr(10))) + 1}" if mark else ""  # libyaml puts an end below the last line
-        raise BadInput(where, line, ABSENT, f"expected YAML ({error.problem or error.context})") from None
+        problem = error.problem or error.context or ""
+        if "nesting depth" in problem:  # libyaml 0.2.6 reads ahead and gives up at 1000, before the loader sees an event
+            raise BadInput(where, f"{line}: here", ABSENT, f"expected at most {DEEPEST} levels of nesting") from None
+        raise BadInput(where, line, ABSENT, f"expected YAML ({problem})") from None
     except yaml.YAMLError as error:
         raise BadInput(where, "", ABSENT, f"expected YAML ({error})") from None
