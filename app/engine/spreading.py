@@ -19,6 +19,9 @@ AHEAD = 3
 LOOK = 3.0
 """How often the processes of this machine are looked at [s]."""
 
+PAUSE = 0.02
+"""How often it is looked for results [s]; what waits at the workers keeps them busy meanwhile."""
+
 LIVES = 1
 """Times that a piece is given out again, alone, after it was lost with all workers that tried it."""
 
@@ -119,7 +122,7 @@ class _Spreading:
                     return None
             if self._ready.has_ready():
                 return next(self._ready)
-            time.sleep(0.005)
+            time.sleep(PAUSE)
 
     def _begin(self, under_way: dict[int, Any]) -> None:
         from distributed import as_completed
