@@ -1,4 +1,4 @@
-"""What the engine costs beside the ticks of the sessions that it runs, in time and in memory. Measured with the machine to itself."""
+"""What the engine costs beside the ticks of the sessions that it runs, in time and in memory."""
 
 from benchmarks.common import Report, main
 from benchmarks.sweeps.costs import cost, memory

@@ -18,6 +18,8 @@ CONFIG = {
     "distributed.admin.log-length": 100,
     "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
     "distributed.admin.tick.interval": "500ms",  # by default each process stops the session in it fifty times a second to look
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.disk": False,
     "distributed.worker.memory.monitor-interval": "1s",
     "distributed.comm.timeouts.connect": "10s",
 }

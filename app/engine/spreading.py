@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
 from itertools import chain, islice
 from typing import Any, TypeVar
 
@@ -28,6 +29,10 @@ LIVES = 1
 
 class Lost(Exception):
     """A piece of work whose workers died each time."""
+
+
+class Away(Exception):
+    """A result that went with its worker or its scheduler before it came here, or is late."""
 
 
 def spread(
@@ -104,6 +109,12 @@ class _Spreading:
                 continue
             try:
                 result = self._result(future, under_way[place], lost, lives.setdefault(place, LIVES))
+            except Away:
+                # Dask does the piece again, or calls its future cancelled or lost.
+                self._places[future] = place
+                self._ready.add(future)
+                time.sleep(PAUSE)
+                continue
             except Lost:
                 # It, or one that a worker had beside it, ends workers: it is tried again when nothing else is under way.
                 lives[place] -= 1
@@ -154,6 +165,10 @@ class _Spreading:
             if lost is None:
                 raise BadInput("workers", "", ABSENT, "died each time that they did a piece of the work") from None
             return lost(item)
+        except (TimeoutError, CancelledError, OSError):
+            if future.status == "error":  # raised by the work itself
+                raise
+            raise Away from None
 
     def _threads(self) -> int:
         if self._scheduler is None:

@@ -76,13 +76,9 @@ def _kept(out: Path) -> int:
 
 
 def _workers_of(pid: int) -> list[psutil.Process]:
-    """The processes that do the runs; Dask names them so when they are ready."""
+    """The processes that do the runs, or start up to do them."""
     with suppress(psutil.NoSuchProcess):
-        return [
-            each
-            for each in psutil.Process(pid).children(recursive=True)
-            if each.cmdline()[:1] and "dask worker" in each.cmdline()[0]
-        ]
+        return [each for each in psutil.Process(pid).children() if "spawn_main" in " ".join(each.cmdline())]
     return []
 
 

@@ -1,12 +1,14 @@
 """Fuzz every way in for a time, on all cores: python -m tools.fuzz [--seconds 3600] [--cases 100000]. Exit code 1: a defect."""
 
 import argparse
+import os
 import sys
 import time
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 
-from app.engine.spreading import spread
-from tools.fuzz.cases import Batch, batch, ended
+from tools.fuzz.cases import batch
 from tools.fuzz.targets import targets
 
 BATCH = 250
@@ -27,17 +29,18 @@ def main() -> int:
     told: dict[tuple[str, str], Counter[str]] = {}
     done, defects = Counter[str](), 0
     begun, seed = time.monotonic(), asked.seed * 1_000_000_000
-    while time.monotonic() - begun < asked.seconds and defects < ENOUGH:
-        if min(done["structured"], done["bytes"]) >= asked.cases:
-            break
-        seed += 100_000
-        jobs = [Batch(number, seed + 10 * number + kind, bool(kind), BATCH) for number in range(len(names)) for kind in (0, 1)]
-        for _, (name, kind, counts, defect) in spread(batch, jobs, lost=ended):
-            told.setdefault((name, kind), Counter()).update(counts)
-            done[kind] += counts["cases"]
-            if defect:
-                defects += 1
-                sys.stdout.write(f"{defect}\n")
+    with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
+        while time.monotonic() - begun < asked.seconds and defects < ENOUGH:
+            if min(done["structured"], done["bytes"]) >= asked.cases:
+                break
+            seed += 100_000
+            jobs = [(number, seed + 10 * number + kind, bool(kind), BATCH) for number in range(len(names)) for kind in (0, 1)]
+            for name, kind, counts, defect in pool.map(batch, jobs):
+                told.setdefault((name, kind), Counter()).update(counts)
+                done[kind] += counts["cases"]
+                if defect:
+                    defects += 1
+                    sys.stdout.write(f"{defect}\n")
     for (name, kind), counts in sorted(told.items()):
         sys.stdout.write(f"{name:16} {kind:11} {counts['cases']:8d} cases, {counts['accepted']:8d} accepted\n")
     took = time.monotonic() - begun

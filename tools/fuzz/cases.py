@@ -7,7 +7,6 @@ import traceback
 from collections import Counter
 from pathlib import Path
 from random import Random
-from typing import NamedTuple
 
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import seed as seeded
@@ -22,24 +21,6 @@ LARGEST = 300_000
 
 
 CHECKS = (HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much, HealthCheck.large_base_example)
-
-
-class Batch(NamedTuple):
-    """Cases that are drawn at once."""
-
-    number: int  # of the target
-    seed: int
-    of_bytes: bool  # damaged bytes, or else cases that fit the types
-    count: int
-
-
-class BatchOutcome(NamedTuple):
-    """What came of a batch."""
-
-    target: str
-    kind: str
-    counts: Counter[str]
-    defect: str  # that ended it; "" where there is none
 
 
 class Found(Exception):
@@ -111,32 +92,23 @@ def by_bytes(target: Target, seed: int, count: int, folder: Path) -> Counter[str
     return told
 
 
-def _named(job: Batch) -> tuple[Target, str]:
-    return targets()[job.number], "bytes" if job.of_bytes else "structured"
-
-
-def batch(job: Batch) -> BatchOutcome:
-    """Run a batch of cases of one target."""
-    target, kind = _named(job)
+def batch(job: tuple[int, int, bool, int]) -> tuple[str, str, Counter[str], str]:
+    """A batch of cases of one target: its name, the kind, the counts, and the defect that ended it."""
+    number, seed, of_bytes, count = job
+    target = targets()[number]
+    kind = "bytes" if of_bytes else "structured"
     with tempfile.TemporaryDirectory() as folder:
         first = Path(folder) / f"first{target.suffix}"
         first.write_bytes(target.seeds[0])
         target.run(first)  # what is loaded and compiled once does not count
         first.unlink()
         try:
-            told = (by_bytes if job.of_bytes else structured)(target, job.seed, job.count, Path(folder))
-            return BatchOutcome(target.name, kind, told, "")
+            told = (by_bytes if of_bytes else structured)(target, seed, count, Path(folder))
+            return target.name, kind, told, ""
         except Found as found:
             left = next(Path(folder).iterdir(), None)
-            kept = Path("out/fuzz") / f"{target.name.replace(' ', '-')}-{kind}-{job.seed}{target.suffix}"
+            kept = Path("out/fuzz") / f"{target.name.replace(' ', '-')}-{kind}-{seed}{target.suffix}"
             if left is not None:
                 kept.parent.mkdir(parents=True, exist_ok=True)
                 kept.write_bytes(left.read_bytes())
-            return BatchOutcome(target.name, kind, Counter(cases=1), f"{found}\nkept in {kept}")
-
-
-def ended(job: Batch) -> BatchOutcome:
-    """What stands for a batch that ended its process each time."""
-    target, kind = _named(job)
-    defect = f"{target.name}: {job.count} cases of kind {kind}, seed {job.seed}: the process that ran them ended"
-    return BatchOutcome(target.name, kind, Counter(cases=1), defect)
+            return target.name, kind, Counter(cases=1), f"{found}\nkept in {kept}"
