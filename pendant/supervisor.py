@@ -194,12 +194,12 @@ class Supervisor:
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
-        sequencer, robot, use = self._sequencer, self._robot, self.settings.contact
+        sequencer, robot, use = self._sequencer, self._robot, self._run.contact_use(self.settings.contact, estimate)
         on = (use.on or self._run.feels) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"
-            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact):
+            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact, estimate.v_tcp):
                 robot.braking, action = True, until.then
             events.append(told(contact, estimate.tick, action))
 

@@ -47,6 +47,7 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_STOPPED: info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: info("Program {name} finished", "", ("name",)),
     Kind.PROGRAM_FAILED: denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
+    Kind.PROGRAM_TELLS: EventRow(Effect.INFO, Severity.NOTICE, "{text}", "Program {name}.", ("name", "text", "tone")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
