@@ -124,6 +124,7 @@ class Served(Site):
         self.hand.let_go(client)
         self.panel.let_go(client)
         self.docks.jog.let_go(client)
+        self.docks.walls.let_go(client)
         self.guard.operator.engage(client, False, self.guard.now())
 
     def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:

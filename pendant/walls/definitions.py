@@ -8,6 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from pendant.settings.bounds import MOST_WALLS
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Quaternion, Vector, rotation, turned_back
 from pendant.tick.words import Word
@@ -90,6 +91,7 @@ class Border(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     force: Annotated[float, Meta(ge=1.0, le=500.0)] = 150.0  # most that it resists with [N]
     push_back: Annotated[float, Meta(ge=1.0, le=50.0)] = 8.0  # smallest force that counts as the user's [N]
     reaction: Reaction = Reaction.STAY
+    on: bool = True  # it holds in free-drive; one that is off is only remembered
 
     def __post_init__(self) -> None:
         if not 0.999 < math.hypot(*self.orientation) < 1.001:
@@ -156,6 +158,8 @@ def problem(borders: tuple[AnyBorder, ...], parts: frozenset[str], references: f
         parts: names of the parts that can be watched.
         references: names of the frames and objects that they can lie in.
     """
+    if len(borders) > MOST_WALLS:
+        return f"walls: {len(borders)} are too many, allowed: {MOST_WALLS}"
     seen: set[str] = set()
     for border in borders:
         if border.name in seen:

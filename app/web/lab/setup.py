@@ -54,7 +54,7 @@ class LabSetup:
 
     def file(self) -> bytes:
         """The running set-up with its settings, as a configuration."""
-        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings)).encode()
+        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings, self._loop.walls)).encode()
 
     def read(self, name: str, content: bytes) -> None:
         """Begin with the set-up of a file, or say in a line why not."""
@@ -92,6 +92,7 @@ class LabSetup:
                 tool for tool in self._loop.tools if isinstance(tool, ToolModel)
             ],  # as they were edited; the app has no others
             world=world,
+            walls=list(self._loop.walls),
             seed=int(self.seed.value),
             mismatch="on" if self.mismatch.value else "nominal",
         )

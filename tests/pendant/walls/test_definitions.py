@@ -35,6 +35,7 @@ def test_the_defaults() -> None:
         "force": 150.0,
         "push_back": 8.0,
         "reaction": "stay",
+        "on": True,
         "offset": (0.0, 0.0, 0.0),
         "policy": "stepwise",
         "literal": False,
