@@ -147,6 +147,10 @@ class Docks:
         self.keep()
         return any(changed)
 
+    def skip(self) -> None:
+        """What has happened so far is of another arm, and not shown here."""
+        self._read = len(self._loop.events(0))
+
     def keep(self, *, now: float | None = None) -> None:
         """Have what changed kept for the next start; `now` is the clock, which says whether it is time to."""
         keeper = self._keeper

@@ -99,6 +99,11 @@ class Guard:
         """Let every client use `control`, not the operator alone."""
         self._anyone.add(control._impl.uuid)
 
+    def forget(self) -> None:
+        """The page is cleared: what was for anyone, and handles, are no more."""
+        self._anyone.clear()
+        self._movable.clear()
+
     def for_nobody(self, control: Any) -> None:
         """Forget a control that was for anyone: it is no more."""
         self._anyone.discard(control._impl.uuid)

@@ -1,6 +1,7 @@
 """What a laboratory sets up before the arm is switched on: mounting, tool, world, seed, mismatch."""
 
 import math
+from collections.abc import Awaitable, Callable
 
 import msgspec
 import viser
@@ -27,7 +28,9 @@ class LabSetup:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._arm = loop, arm
+        self._change_arm: Callable[[str], Awaitable[None]] | None = None
         with gui.add_folder("Set-up", expand_by_default=False):
+            self.arm = gui.add_dropdown("Arm", (arm.name,), hint="Another one begins as it was kept, or as shipped")
             self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
             self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
             self.tool = gui.add_dropdown("Tool", (AS_IS, *tools()))
@@ -41,6 +44,9 @@ class LabSetup:
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
+            if self.arm.value != self._arm.name and self._change_arm is not None:
+                await self._change_arm(self.arm.value)
+                return
             self._begin(Prepared(self._arm, self.chosen(), self._loop.settings, None, "the page"))
 
         @self.save.on_click
@@ -51,6 +57,12 @@ class LabSetup:
         @self.load.on_upload
         async def _(_: viser.GuiEvent) -> None:
             self.read(self.load.value.name, self.load.value.content)
+
+    def offer_arms(self, names: tuple[str, ...], change: Callable[[str], Awaitable[None]]) -> None:
+        """Have these arms to choose from; `change` goes over to one."""
+        self._change_arm = change
+        self.arm.options = names if self._arm.name in names else (self._arm.name, *names)
+        self.arm.value = self._arm.name
 
     def file(self) -> bytes:
         """The running set-up with its settings, as a configuration."""

@@ -46,6 +46,7 @@ class Ticker:
     def __init__(self, during: Callable[[int], None] = lambda tick: None) -> None:
         self.plant = SimpleNamespace(tick=0)
         self.scenario = Scenario(seed=42)
+        self.walls: tuple[Area, ...] = ()
         self.wishes: list[Wishes] = []
         self._during = during
 
