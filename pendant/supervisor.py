@@ -28,7 +28,7 @@ from pendant.robot.robot_mode import Robot
 from pendant.robot.safety_inputs import SafetyInputs
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
-from pendant.settings_lock import change
+from pendant.settings_lock import change, locked
 from pendant.signals.enabling_device import EnablingDevice
 from pendant.signals.keep_alive import KeepAlive
 from pendant.signals.sources import PROGRAM
@@ -37,7 +37,6 @@ from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
 from pendant.tick.pose import Pose, Wrench, from_rpy
 from pendant.tick.state import State, state_of
 from pendant.tooling.tool_in_use import Fitting, Tooling
-from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder
 from pendant.zeroing import ForceReaders, TareRun
@@ -93,8 +92,8 @@ class Supervisor:
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
-        self._containment = Containment(borders, frames or {})
-        self._free = FreeDrive(self._joints, rated, self._containment, JointZones(rated, ranges or (math.inf,) * n_joints))
+        self.containment = Containment(borders, frames or {})
+        self._free = FreeDrive(self._joints, rated, self.containment, JointZones(rated, ranges or (math.inf,) * n_joints))
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
@@ -126,11 +125,6 @@ class Supervisor:
         return self._tooling.tools
 
     @property
-    def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
-        """Every wall and area that holds, and every area that will in free-drive, with where its shape lies in B."""
-        return self._containment.every_place(self.settings.walls)
-
-    @property
     def state(self) -> State:
         """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
 
@@ -154,11 +148,13 @@ class Supervisor:
         self._free_drive(estimate, wrench_ok, events)
         self._equip(estimate, inputs, events)
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
+        trying = self._free.phase is not _OFF
+        if inputs.borders is not None:
+            events += self.containment.change(inputs.borders, locked(self._robot.mode, trying), estimate.tick)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
-            trying = self._free.phase is not _OFF
             self.settings, changed = change(self.settings, wanted, mode=self._robot.mode, trying=trying, tick=estimate.tick)
             events += changed
             self._refresh()
@@ -249,7 +245,7 @@ class Supervisor:
 
     def _turn_tool(self) -> None:
         """Who needs to know how the tool centre point is turned in the flange."""
-        self._containment.R_FT = self._sequencer.R_FT = from_rpy(*self._tooling.fitting.tool.rpy)
+        self.containment.R_FT = self._sequencer.R_FT = from_rpy(*self._tooling.fitting.tool.rpy)
 
     def _refresh(self) -> None:
         """What every tick needs of the settings."""

@@ -108,6 +108,8 @@ class Kind(StrEnum):
     TOOL_CHANGED = "tool_changed"
     TOOL_REFUSED = "tool_refused"
     TOOLS_CHANGED = "tools_changed"
+    WALLS_CHANGED = "walls_changed"
+    WALLS_REFUSED = "walls_refused"
     PAYLOAD_CHANGED = "payload_changed"
     POSTURE_MEASURED = "posture_measured"
     POSTURE_REFUSED = "posture_refused"

@@ -66,6 +66,8 @@ PROGRAM: dict[Kind, EventRow] = {
     ),
     Kind.TOOLS_CHANGED: info("Table of tools: {change}", "{count} tools.", ("change", "count")),
     Kind.TOOL_REFUSED: denied("Not changed: {what}", "{reason}.", ("what", "reason")),
+    Kind.WALLS_CHANGED: info("Walls: {change}", "{count} walls and areas.", ("change", "count")),
+    Kind.WALLS_REFUSED: denied("Walls not changed", "{reason}.", ("reason",)),
     Kind.PAYLOAD_CHANGED: info(
         "Payload {mass:.2f} kg",
         "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm; with tool {tool} {total:.2f} kg.",

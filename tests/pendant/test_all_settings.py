@@ -67,6 +67,7 @@ EXPECTED = {
     "axes.rx": (True, None, None, "", "FD-4", False),
     "axes.ry": (True, None, None, "", "FD-4", False),
     "axes.rz": (True, None, None, "", "FD-4", False),
+    **{f"joints.{name}": (True, None, None, "", "FD-4", False) for name in ("on", *(f"j{k}" for k in range(1, 13)))},
     "axes.frame": ("base", None, None, "", "FD-4", False),
     "axes.roll": (0.0, -3.15, 3.15, "rad", "FD-4", False),
     "axes.pitch": (0.0, -3.15, 3.15, "rad", "FD-4", False),
