@@ -74,7 +74,7 @@ def _bring(control: viser.GuiCheckboxHandle, value: bool) -> None:
 
 
 def _label(axis: str) -> str:
-    return f"{axis}: turn about {axis[1]}" if axis.startswith("r") else f"{axis}: way along it"
+    return f"Turn about {axis[1].upper()}" if axis.startswith("r") else f"Move along {axis.upper()}"
 
 
 def _facts(settings: Settings, snapshot: Snapshot) -> list[tuple[str, str]]:
