@@ -114,6 +114,8 @@ EXPECTED = {
     "program.speed": (1.0, 0.0, 1.0, "", "CD-15", False),
     "tools.ramp": (1.0, 0.0, 10.0, "s", "tools", False),
     "tools.measure": (0.5, 0.1, 5.0, "s", "tools", False),
+    "tools.room": (0.1, 0.02, 0.5, "m", "tools", False),
+    "tools.clearance": (0.03, 0.005, 0.2, "m", "tools", False),
 }
 SIGNALS = {
     "signals.button": (True, None, None, "", "FD-5", True),
