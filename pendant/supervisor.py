@@ -103,7 +103,7 @@ class Supervisor:
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(
-            self._tooling, self._robot, self._mean, self._calls, containment=self._containment, shape=shape
+            self._tooling, self._robot, self._mean, self._calls, containment=self.containment, shape=shape
         )
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
         self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)

@@ -1,4 +1,4 @@
-"""ur-rtde's control interface, unmodified, lets a hand guide the arm: what is checked, ended and ramped is so for its program too."""
+"""ur-rtde's control interface, unmodified, lets a hand guide the arm: its program is checked, ended and ramped as on the page."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
