@@ -43,6 +43,7 @@ def setup_of(arm: Arm, scenario: Scenario, settings: Settings, walls: tuple[AnyB
         seed=scenario.seed,
         mismatch=scenario.mismatch,
         soft_sensor=scenario.soft_sensor,
+        self_contact=scenario.self_contact,
         world=scenario.world,
         walls=list(walls),
     )

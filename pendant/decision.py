@@ -60,6 +60,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
     force: ForceMode | None = None  # with which the arm pushes besides its motion, under Law.FOLLOW
+    signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
 
     @property

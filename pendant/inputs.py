@@ -43,8 +43,9 @@ class Command(Word):
     RESUME_PROGRAM = "resume_program"
     STOP_PROGRAM = "stop_program"
     WIZARD_MEASURE = "wizard_measure"  # measure the payload in this posture
+    WIZARD_RUN = "wizard_run"  # the arm turns its wrist by itself and measures the payload
     WIZARD_APPLY = "wizard_apply"  # configure what was found
-    WIZARD_CLEAR = "wizard_clear"  # forget the postures
+    WIZARD_CLEAR = "wizard_clear"  # forget the postures; an arm that turns its wrist for them comes to rest
     ZERO_SENSOR = "zero_sensor"  # what the flange force/torque sensor says of the untouched arm is subtracted from now on
     DETECTION = "detection"  # switch contact detection on or off (CD-1)
 

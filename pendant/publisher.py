@@ -3,7 +3,7 @@
 from pendant.all_settings import Settings, limits_checksum
 from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
-from pendant.events.event import Event
+from pendant.events.event import Event, Kind
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of, with_joints
 from pendant.motion.scripting import Scripting
@@ -18,10 +18,11 @@ from pendant.tooling.tool_in_use import Tooling
 class Publisher:
     """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
 
-    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_taring", "_tooling")
+    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_signs", "_taring", "_tooling")
 
     def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting, settings: Settings) -> None:
         self._robot, self._tooling, self._taring, self._scripting = robot, tooling, taring, scripting
+        self._signs = 0
         self.refresh(settings)
 
     def refresh(self, settings: Settings) -> None:
@@ -51,6 +52,9 @@ class Publisher:
         robot, tooling, taring, use = self._robot, self._tooling, self._taring, self._settings
         free, sequencer, mode = robot.free, robot.sequencer, robot.mode
         arm, phase, helping = free.arm, free.phase, free.helping
+        if events:
+            told = sum(event.kind is Kind.PROGRAM_TELLS and event.values["tone"] is True for event in events)
+            self._signs += told + (len(contacts) if use.contact.audible else 0)
         locks = self._free_axes() if mode is _FREE_DRIVE else None
         trying = phase is _SEQUENCE
         balance = free.balance if trying else None
@@ -95,6 +99,7 @@ class Publisher:
             static=robot.static,
             speed=use.program.speed,
             force=self._scripting.force,
+            signs=self._signs,
             script_done=self._scripting.done,
         )
 

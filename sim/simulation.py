@@ -15,7 +15,7 @@ from pendant.tick.pose import Pose
 from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
-from sim.arm.chain import chain, load_body, plate_body, tool_body
+from sim.arm.chain import arm_shape, chain, load_body, plate_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.control.controller import Controller
@@ -90,6 +90,7 @@ class Simulation:
             frames=known_frames(scenario),
             equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
             sensor=sensor_spec(arm),
+            shape=arm_shape(arm),
         )
         self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting

@@ -37,6 +37,7 @@ Control = Literal[
     "reduced_on",
     "reduced_off",
     "wizard_measure",
+    "wizard_run",
     "wizard_apply",
     "wizard_clear",
     "zero_sensor",

@@ -134,6 +134,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
         world=world,
         walls=setup.walls,
         soft_sensor=setup.soft_sensor,
+        self_contact=setup.self_contact,
         seed=setup.seed,
         mismatch=setup.mismatch,
     )

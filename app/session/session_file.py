@@ -38,6 +38,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
+    self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     world: World | Text = []  # objects, or the name of a bundled world
     walls: Walls = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
 

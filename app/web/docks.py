@@ -10,6 +10,7 @@ from app.web.access.guard import Guard
 from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
 from app.web.panel.mode_panel import Panel
+from app.web.recordings.recording import RecordingSwitch
 from app.web.running import Running
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
@@ -17,7 +18,6 @@ from app.web.tabs.contact_log import Contacts
 from app.web.tabs.jog_tab import JogTab
 from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
-from app.web.tabs.recording import RecordingSwitch
 from app.web.tabs.script_tab import ScriptTab
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
@@ -78,7 +78,7 @@ class Docks:
             self.plots = Plots(gui, loop, arm)
         self.journal.look_at = self.plots.look_at
         with self._lower.add_tab("Record"):
-            self.recording = RecordingSwitch(gui, recording)
+            self.recording = RecordingSwitch(server, recording, arm)
         self.script: ScriptTab | None = None
         if scripts is not None:
             with self._lower.add_tab("Script"):
@@ -106,6 +106,7 @@ class Docks:
             self.tools.enter,
             self.tools.apply,
             self.tools.clear,
+            self.tools.measure,
             self.tools.editor.save,
             self.tools.editor.load,
             self.walls.here,
@@ -113,6 +114,8 @@ class Docks:
             self.walls.undo,
             self.contacts.export,
             self.recording.export,
+            self.recording.replay.leave,
+            self.recording.replay.download,
             self.teach.save,
             self.teach.load,
             *(() if self.script is None else (self.script.save, self.script.load)),
@@ -140,7 +143,7 @@ class Docks:
             self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
-            self.recording.show(),
+            self.recording.show(snapshot),
             self.script is not None and self.script.show(),
             self.network is not None and self.network.show(),
         ]

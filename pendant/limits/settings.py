@@ -46,6 +46,9 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
         max=5.0, on=False
     )
     motor_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", text="torque of a motor")] = Limit(max=0.9, on=False)
+    motor_current: Annotated[Limit, _limit(0.01, 1.0, "of largest", "FD-9", text="current of a motor, as measured")] = Limit(
+        max=0.9, on=False
+    )
     joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", text="external torque of a joint")] = Limit(max=0.04)
     payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", text="force as a wrong payload would cause it")] = Limit(
         max=5.8

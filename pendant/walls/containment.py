@@ -36,6 +36,7 @@ def tether(walls: WallSettings) -> Wall:
         safety_period=walls.safety_period,
         band=min(walls.band, 0.8 * walls.operation_radius),
         activation_size=max(walls.activation_radius / walls.operation_radius, 0.05),
+        push=walls.push,
         push_back=walls.push_back,
         reaction=walls.tether_reaction,
     )

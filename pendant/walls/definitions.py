@@ -89,6 +89,7 @@ class Border(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     stiffness: Annotated[float, Meta(ge=0.0, le=20000.0)] = 4000.0  # beyond the border, against motion further out [N/m]
     damping: Annotated[float, Meta(ge=0.0, le=1000.0)] = 200.0  # at the border, against motion outwards [N·s/m]
     force: Annotated[float, Meta(ge=1.0, le=500.0)] = 150.0  # most that it resists with [N]
+    push: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0  # back inwards at the border, at rest too; it grows through the band [N]
     push_back: Annotated[float, Meta(ge=1.0, le=50.0)] = 8.0  # smallest force that counts as the user's [N]
     reaction: Reaction = Reaction.STAY
     on: bool = True  # it holds in free-drive; one that is off is only remembered

@@ -29,6 +29,11 @@ COARSE = "?fixedDpr=0.3"
 """Draws the scene with a tenth of the pixels, in software ten times as fast; controls stay sharp, the pointer where it is."""
 
 
+def chromium_path() -> str | None:
+    """Where Chromium is on this machine."""
+    return next((found for name in BROWSERS if (found := shutil.which(name))), None)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "e2e: drives a real browser")
     config.addinivalue_line("markers", "every_size: a further size of the window, for `make e2e-full` alone")
@@ -37,7 +42,7 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """Chromium of this machine, drawing in software."""
-    path = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    path = chromium_path()
     if path is None:
         pytest.fail("no Chromium found: install it, on Debian or Ubuntu with `apt-get install chromium`", pytrace=False)
     with sync_playwright() as playwright:

@@ -29,7 +29,7 @@ TOPICS = {
     "Limits, walls, locked axes": (
         *("soft-limits", "dynamic-limits", "joint-limits", "wall-walked-down", "wall-made", "axis-locks", "only-the-elbow"),
     ),
-    "Payload, tool, sensor": ("payload-wizard", "zeroed", "hanging", "friction-warm-up"),
+    "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "zeroed", "hanging", "friction-warm-up"),
     "Programs and contact": ("hold", "program", "touch-the-table", "network"),
 }
 """What the scenarios teach, by the names of their files."""

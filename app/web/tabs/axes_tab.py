@@ -108,7 +108,7 @@ def _bring(control: viser.GuiCheckboxHandle, value: bool) -> None:
 
 
 def _label(axis: str) -> str:
-    return f"Turn about {axis[1]}" if axis.startswith("r") else f"Move along {axis}"
+    return f"Turn about {axis[1].upper()}" if axis.startswith("r") else f"Move along {axis.upper()}"
 
 
 def _many(held: list[str], count: int) -> str:
