@@ -122,7 +122,7 @@ class Served(Site):
             brought = await asyncio.to_thread(arms.bring, ready)
         except BadInput as refusal:
             message.show(svg.note("Refused", str(refusal), Colour.AMBER))
-            self._changing = False
+            self._changing = self._still_page = False
             return
         prepared = ready.prepared
         dark = self.preferences.dark
