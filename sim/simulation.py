@@ -90,7 +90,6 @@ class Simulation:
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         reach = math.inf if wrench is None else wrench.force.range
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
-        fixed = Load(mass=plate.mass, com=plate.com.tolist())
         self.supervisor = Supervisor(
             settings,
             arm.n,
@@ -99,7 +98,9 @@ class Simulation:
             ranges=tuple(arm.limits.position),
             borders=tuple(scenario.walls),
             frames=known_frames(scenario),
-            equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
+            equipment=Equipment(
+                tools, used, scenario.payload_configured, arm.payload, Load(mass=plate.mass, com=plate.com.tolist())
+            ),
             sensor=_sensor_spec(arm),
             shape=arm_shape(arm),
         )
