@@ -8,6 +8,7 @@ from pendant.motion.script_requests import Scripted
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
 from pendant.tick.words import Word
+from pendant.walls.definitions import AnyBorder
 
 
 class Button(Word):
@@ -71,6 +72,7 @@ class Inputs:
     jog: JogMove | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
     jog_released: bool = False  # that button was let go
     script: Scripted | None = None  # what the running script wants, said in this tick (a keep-alive)
+    borders: tuple[AnyBorder, ...] | None = None  # walls and areas from now on, all of them; None: as they were
 
 
 NOTHING = Inputs()

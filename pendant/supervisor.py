@@ -29,7 +29,7 @@ from pendant.robot.robot_mode import Robot
 from pendant.robot.safety_inputs import SafetyInputs
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
-from pendant.settings_lock import change
+from pendant.settings_lock import change, locked
 from pendant.signals.enabling_device import EnablingDevice
 from pendant.signals.keep_alive import KeepAlive
 from pendant.signals.sources import PROGRAM
@@ -39,7 +39,6 @@ from pendant.tick.pose import Pose, Wrench
 from pendant.tick.state import State, state_of
 from pendant.tooling.arm_shape import ArmShape
 from pendant.tooling.tool_in_use import Fitting, Tooling
-from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder
 from pendant.zeroing import ForceReaders, TareRun
@@ -97,8 +96,8 @@ class Supervisor:
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
-        self._containment = Containment(borders, frames or {})
-        self._free = FreeDrive(self._joints, rated, self._containment, JointZones(rated, ranges or (math.inf,) * n_joints))
+        self.containment = Containment(borders, frames or {})
+        self._free = FreeDrive(self._joints, rated, self.containment, JointZones(rated, ranges or (math.inf,) * n_joints))
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
@@ -132,11 +131,6 @@ class Supervisor:
         return self._tooling.tools
 
     @property
-    def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
-        """Every wall and area that holds, and every area that will in free-drive, with where its shape lies in B."""
-        return self._containment.every_place(self.settings.walls)
-
-    @property
     def state(self) -> State:
         """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
 
@@ -161,11 +155,13 @@ class Supervisor:
         mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode
         self._equipping.step(estimate, inputs, self.settings, events, mode=mode, contacts=self._contacts)
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
+        trying = self._free.phase is not _OFF
+        if inputs.borders is not None:
+            events += self.containment.change(inputs.borders, locked(self._robot.mode, trying), estimate.tick)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
-            trying = self._free.phase is not _OFF
             self.settings, changed = change(self.settings, wanted, mode=self._robot.mode, trying=trying, tick=estimate.tick)
             events += changed
             self._refresh()
@@ -201,12 +197,12 @@ class Supervisor:
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
-        sequencer, robot, use = self._sequencer, self._robot, self.settings.contact
+        sequencer, robot, use = self._sequencer, self._robot, self._run.contact_use(self.settings.contact, estimate)
         on = (use.on or self._run.feels or self._equipping.moving) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"
-            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact):
+            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact, estimate.v_tcp):
                 robot.braking, action = True, until.then
             events.append(told(contact, estimate.tick, action))
 

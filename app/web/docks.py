@@ -22,6 +22,7 @@ from app.web.tabs.script_tab import ScriptTab
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
+from app.web.walls.walls_tab import WallsTab
 from app.web.widgets import style, svg
 from app.web.widgets.svg import Colour
 from pendant.events.event import Event
@@ -59,7 +60,9 @@ class Docks:
         with self._upper.add_tab("Jog"):
             self.jog = JogTab(gui, loop, arm)
         with self._upper.add_tab("Axes"):
-            self.axes = AxesTab(gui, loop)
+            self.axes = AxesTab(gui, loop, arm)
+        with self._upper.add_tab("Walls"):
+            self.walls = WallsTab(server, guard, loop)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
         with self._upper.add_tab("Tools"):
@@ -106,6 +109,9 @@ class Docks:
             self.tools.measure,
             self.tools.editor.save,
             self.tools.editor.load,
+            self.walls.here,
+            self.walls.delete,
+            self.walls.undo,
             self.contacts.export,
             self.recording.export,
             self.recording.replay.leave,
@@ -133,6 +139,7 @@ class Docks:
             self.teach.show(snapshot),
             self.jog.show(snapshot),
             self.axes.show(snapshot),
+            self.walls.show(snapshot, fresh),
             self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
@@ -143,11 +150,15 @@ class Docks:
         self.keep()
         return any(changed)
 
+    def skip(self) -> None:
+        """What has happened so far is of another arm, and not shown here."""
+        self._read = len(self._loop.events(0))
+
     def keep(self, *, now: float | None = None) -> None:
         """Have what changed kept for the next start; `now` is the clock, which says whether it is time to."""
         keeper = self._keeper
         if keeper is None or keeper.problem:
             return
-        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, now=now)
+        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, walls=self._loop.walls, now=now)
         if keeper.problem:
             self.teach.message.show(svg.note("Not kept for the next start", keeper.problem, Colour.AMBER))

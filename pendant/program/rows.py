@@ -47,6 +47,7 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_STOPPED: info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: info("Program {name} finished", "", ("name",)),
     Kind.PROGRAM_FAILED: denied("Program {name} stopped at step {step}", "{reason}.", ("name", "step", "reason")),
+    Kind.PROGRAM_TELLS: EventRow(Effect.INFO, Severity.NOTICE, "{text}", "Program {name}.", ("name", "text", "tone")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
@@ -65,6 +66,8 @@ PROGRAM: dict[Kind, EventRow] = {
     ),
     Kind.TOOLS_CHANGED: info("Table of tools: {change}", "{count} tools.", ("change", "count")),
     Kind.TOOL_REFUSED: denied("Not changed: {what}", "{reason}.", ("what", "reason")),
+    Kind.WALLS_CHANGED: info("Walls: {change}", "{count} walls and areas.", ("change", "count")),
+    Kind.WALLS_REFUSED: denied("Walls not changed", "{reason}.", ("reason",)),
     Kind.PAYLOAD_CHANGED: info(
         "Payload {mass:.2f} kg",
         "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm; with tool {tool} {total:.2f} kg.",

@@ -112,10 +112,21 @@ class Robot:
                 self.pause_program(event.tick, events)
             if effect is Effect.ENTER:
                 self._remembered, self.mode = self.mode, Mode.FREE_DRIVE
+        elif effect is Effect.TO_TEACH:
+            self._to_teach(event.tick, events)
         elif effect is Effect.LEAVE:
             self._leave(event, events)
         elif effect in STOPPING:
             self._stop(event.kind, STOPPING[effect])
+
+    def _to_teach(self, tick: int, events: list[Event]) -> None:
+        """TEACH, before free-drive begins; a program that was begun is stopped (FD-1)."""
+        sequencer = self.sequencer
+        if sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED):
+            values: Values = {"name": self.program_name, "step": sequencer.index + 1}
+            events.append(Event(Kind.PROGRAM_STOPPED, tick, values))
+            sequencer.stop()
+        self.mode = Mode.TEACH
 
     def _leave(self, event: Event, events: list[Event]) -> None:
         """Free-drive is left, back to the mode that it was entered from."""

@@ -4,13 +4,14 @@ import math
 from typing import NamedTuple
 
 from pendant.equipment.load import NOTHING, Load, problem
-from pendant.equipment.tools import Equipment, Tool, difference, first_problem
+from pendant.equipment.tools import Equipment, Tool, first_problem
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import WINDOW, wrench_ok
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.words import difference
 from pendant.tooling.payload_wizard import PayloadWizard
 from pendant.tooling.settings import ToolUse
 

@@ -2,11 +2,14 @@
 
 import shutil
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.files.library import load_arm
+from app.log.live import LiveRecording
+from app.serving import ServedArms
 from app.web.server import Served, serve
 from sim.arm.scenario import Scenario
 from sim.run.loop import Loop
@@ -61,7 +64,9 @@ def loop() -> Iterator[Loop]:
 @pytest.fixture
 def served(loop: Loop) -> Iterator[Served]:
     """The web app of `loop`."""
-    app = serve(loop, loop.simulation.arm, loop.simulation.scenario)
+    recording = LiveRecording(loop, Path())
+    arms = ServedArms(loop, recording)
+    app = serve(loop, loop.simulation.arm, loop.simulation.scenario, recording=recording, arms=arms)
     yield app
     app.close()
 
