@@ -17,6 +17,10 @@ CONFIG = {
     "distributed.admin.low-level-log-length": 100,  # memory stays as it is, however many runs
     "distributed.admin.log-length": 100,
     "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
+    "distributed.admin.tick.interval": "500ms",  # by default each process stops the session in it fifty times a second to look
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.disk": False,
+    "distributed.worker.memory.monitor-interval": "1s",
     "distributed.comm.timeouts.connect": "10s",
 }
 ANSWER = 10.0

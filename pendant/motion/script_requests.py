@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from pendant.program.steps import MOST_FORCE, HandGuide, LinearMove, Move
+from pendant.program.steps import MOST_FORCE, GentleStop, HandGuide, LinearMove, Move
 from pendant.tick.pose import UNTURNED, Rotation, Vector
 
 LOOKAHEAD = (0.03, 0.2)
@@ -104,13 +104,6 @@ class SpeedTool(Move, tag="speedl", frozen=True, forbid_unknown_fields=True, kw_
         _finite(*self.speed, *self.turning, self.acceleration, self.turning_acceleration, self.time)
 
 
-class ScriptedStop(Move, tag="stop", frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Come to rest on the way that the arm is on."""
-
-    of: Literal["joints", "tool"] = "joints"  # whose deceleration it is: of the fastest joint, or of the tool centre point
-    deceleration: float = math.inf  # [rad/s²] or [m/s²]; not more than the arm can
-
-
 class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The arm is guided by hand, after the activation sequence, along and about the free axes of a frame."""
 
@@ -127,7 +120,7 @@ ScriptedMove = (
     | ServoTool
     | SpeedJoints
     | SpeedTool
-    | ScriptedStop
+    | GentleStop
     | Guided
 )
 

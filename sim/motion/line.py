@@ -79,7 +79,7 @@ class Line:
         """Joint speeds (n,) at q for a speed of the tool centre point (3,) and about it (3,), in B; the line is no matter."""
         place = self._dynamics.update(q)
         p, R, _ = place
-        course = (self._tcp, p + R @ self._tcp, R, v, R.T @ w)
+        course = (self._tcp, p + R @ self._tcp, R.copy(), v, R.T @ w)  # a copy has the layout that the kernel is compiled for
         return np.asarray(_solve(place, course, 0.0, 1.0), dtype=np.float64)
 
     def torque(self, q: Array, force: Array) -> Array:

@@ -9,11 +9,11 @@ from pendant.decision import Decision
 from pendant.haptics import Shake
 from pendant.motion.script_requests import (
     ForceMode,
+    GentleStop,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
     ScriptedProcess,
-    ScriptedStop,
     ServoJoints,
     ServoTool,
     SpeedJoints,
@@ -219,7 +219,7 @@ class References:
                 self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
                 self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
-            elif isinstance(move, ScriptedStop | RunScript):
+            elif isinstance(move, GentleStop | RunScript):
                 self._motion = self._slowed(now, move)
             else:
                 self._motion = Stop(q, self._standing)
@@ -230,7 +230,7 @@ class References:
     def _slowed(self, now: Reference, move: Move | None = None) -> Stop:
         """To rest on the way that the arm is on, as hard as it can or as a script says."""
         length = stop_time(self._dynamics, now.q, now.qd, rotor=self._rotor, torque=self._torque)
-        if isinstance(move, ScriptedStop):
+        if isinstance(move, GentleStop):
             speed = np.abs(now.qd).max()
             if move.of == "tool":
                 speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE

@@ -24,12 +24,12 @@ from app.urscript.machine.signature import (
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.motion.script_requests import (
     ForceMode,
+    GentleStop,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
     ScriptedMove,
     ScriptedProcess,
-    ScriptedStop,
     ServoJoints,
     ServoTool,
     SpeedJoints,
@@ -150,7 +150,7 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _stopping(until_done: Callable[[ScriptedMove], Doing], of: Literal["joints", "tool"]) -> Callable[..., Doing]:
-    return lambda a, turning: until_done(ScriptedStop(of=of, deceleration=a))
+    return lambda a, turning: until_done(GentleStop(of=of, deceleration=a))
 
 
 def of_streams(robot: RobotSide) -> Iterator[Builtin]:

@@ -3,12 +3,14 @@
 import os
 import signal
 from collections.abc import Iterator
+from concurrent.futures import CancelledError
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from app.engine.source import identity
-from app.engine.spreading import guarded, spread
+from app.engine.spreading import Away, _Spreading, guarded, spread
 from app.files.bad_input import BadInput
 
 
@@ -81,3 +83,37 @@ def test_a_worker_that_came_later_and_runs_another_source_does_nothing() -> None
     with pytest.raises(BadInput, match=r"a worker: source = .*: expected c0ffee"):
         guarded({**identity(), "source": "c0ffee"}, done.append, 1)
     assert done == []
+
+
+class Answering:
+    """A future that raises when it is asked for its result."""
+
+    def __init__(self, status: str, error: Exception) -> None:
+        self.status, self._error = status, error
+
+    def result(self, timeout: float) -> object:
+        raise self._error
+
+
+@pytest.mark.parametrize("error", [TimeoutError(), CancelledError(), OSError("connection lost")])
+def test_a_result_that_does_not_come_is_no_error_of_the_work(error: Exception) -> None:
+    spreading = _Spreading.__new__(_Spreading)
+    with pytest.raises(Away):
+        spreading._result(Answering("finished", error), 1, None, 1)
+    with pytest.raises(type(error)):
+        spreading._result(Answering("error", error), 1, None, 1)  # the work raised it
+
+
+def test_a_result_that_is_late_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    late, ask = set[object](), _Spreading._result
+
+    def first_late(self: _Spreading, future: object, *more: Any) -> object:
+        if future not in late:
+            late.add(future)
+            raise Away
+        return ask(self, future, *more)
+
+    monkeypatch.setattr(_Spreading, "_result", first_late)
+    found = list(spread(squared, range(12), workers=2))
+    assert sorted((place, value) for place, (value, _) in found) == [(k, k * k) for k in range(12)]
+    assert len(late) == 12
