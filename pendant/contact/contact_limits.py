@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from pendant.contact.settings import ContactUse
+from pendant.contact.settings import BufferStatistic, ContactUse
 from pendant.tick.modes import Mode
 
 LIGHTEST = 0.3
@@ -35,6 +35,13 @@ class ContactLimits(NamedTuple):
     payload_margin: float  # force that a wrong payload may explain, an acceleration difference [kg]
     clamping: float  # force difference over acceleration difference, beyond which it is clamping [kg]
     mass: float  # configured [kg]
+    force_step: int = 3  # ticks between the samples of a difference of force, i (CD-4)
+    acceleration_step: int = 3  # of one of acceleration, j
+    tested: int = 5  # newest samples that the statistical rule tests (CD-6)
+    window: int = 30  # samples before them
+    newest: int = 10  # of the slow rule, p (CD-7)
+    oldest: int = 20  # of its stored values, q
+    median: bool = False  # stands for them, in place of the mean (CD-8)
 
 
 def limits(
@@ -85,4 +92,11 @@ def limits(
         payload_margin=margin,
         clamping=use.clamping_ratio + margin,
         mass=mass,
+        force_step=use.force_step,
+        acceleration_step=use.acceleration_step,
+        tested=use.tested,
+        window=use.window,
+        newest=use.newest,
+        oldest=use.oldest,
+        median=use.statistic is BufferStatistic.MEDIAN,
     )

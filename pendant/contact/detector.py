@@ -6,7 +6,7 @@ from typing import NamedTuple
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.contact_limits import ContactLimits
-from pendant.contact.contact_rules import NEW, STEP, Rule, clear, contact_force, hard, slow, statistical, values
+from pendant.contact.contact_rules import NEW, Rule, clear, contact_force, hard, slow, statistical, values
 from pendant.contact.history import History, Six
 from pendant.contact.settings import ContactUse, RulesNeeded
 from pendant.tick.pose import Vector
@@ -119,7 +119,7 @@ class Detector:
         if use.statistical:
             wanted += 1
             if counts[Rule.STATISTICAL].step(statistical(history, limit), use.soft_count, misses):
-                seen.append((Rule.STATISTICAL, NEW + use.soft_count, False))
+                seen.append((Rule.STATISTICAL, use.tested + use.soft_count, False))
         if use.slow:
             wanted += 1
             sightings, dead = slow(history, limit)
@@ -133,14 +133,19 @@ class Detector:
         """Difference and ratio rule, as `_rule`; `of_values`: the values of now show the ratio, too (CD-4, CD-5)."""
         counts, misses, hard_count = self._counts, use.misses, use.hard_count
         seen: list[tuple[Rule, int, bool]] = []
-        change = hard(self.history, limit)
+        change, step = hard(self.history, limit), max(use.force_step, use.acceleration_step)
         if use.difference:
             confirmed = counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses)
-            if confirmed or (use.retrospective and clear(self.history, limit)):
-                seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
+            if confirmed or (use.retrospective and clear(self.history, limit)) or (change.difference and self._older(use, limit)):
+                seen.append((Rule.DIFFERENCE, step + max(hard_count, use.older_pairs), False))
         if use.ratio and counts[Rule.RATIO].step(change.ratio or of_values, hard_count, misses):
-            seen.append((Rule.RATIO, STEP + hard_count, False))
+            seen.append((Rule.RATIO, step + hard_count, False))
         return seen
+
+    def _older(self, use: ContactUse, limit: ContactLimits) -> bool:
+        """Every older pair of samples shows the difference, too: the buffer confirms it (CD-9)."""
+        ages = range(1, use.older_pairs + 1)
+        return use.older_pairs > 0 and all(hard(self.history, limit, age).difference for age in ages)
 
     def _look_back(self, rule: Rule, length: int, limit: ContactLimits) -> _Sighting:
         """Find the first suspicious sample: the change's direction is known now, so go back while samples lie in it."""

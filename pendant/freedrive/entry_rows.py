@@ -39,6 +39,9 @@ ENTRY: dict[Kind, EventRow] = {
         "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
     ),
     # Entry (FD-9)
+    Kind.TEACH_FIRST: EventRow(
+        Effect.TO_TEACH, Severity.INFO, "Mode TEACH", "It was {from}. Free-drive leads back to TEACH.", ("from",)
+    ),
     Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),

@@ -69,6 +69,7 @@ class Estimate:
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
+    current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
     energy: float = 0.0  # kinetic, of links and rotors [J]
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]

@@ -13,7 +13,7 @@ from sim.arm.chain import Body, chain, load_body, plate_body, tool_body
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.arm.scenario import Load, Scenario
 from sim.plant.joint_friction import Friction
-from sim.plant.objects import add_object, pair_geoms
+from sim.plant.objects import WRIST, add_object, pair_geoms, pair_own
 
 SUBSTEPS = 8
 """Physics steps a control tick: 0.25 ms. An explicit integrator needs less than 2 / w for the fastest series spring, w being its
@@ -131,11 +131,13 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
     for kind in ("force", "torque"):
         _add_sensor(spec, kind, _TYPES[kind], site="tool", step=step)
 
-    if scenario.world:
+    if scenario.world or scenario.self_contact:
         _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
     pair_geoms(spec, arm.chain.joints[0], scenario.world)
+    if scenario.self_contact:
+        pair_own(spec, ("foot", *arm.chain.joints[:-WRIST]))
     return spec
 
 
