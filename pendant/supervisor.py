@@ -157,7 +157,8 @@ class Supervisor:
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         trying = self._free.phase is not _OFF
         if inputs.borders is not None:
-            events += self.containment.change(inputs.borders, locked(self._robot.mode, trying), estimate.tick)
+            where = "the payload wizard's motion" if self._tooling.busy else locked(self._robot.mode, trying)
+            events += self.containment.change(inputs.borders, where, estimate.tick)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
