@@ -99,7 +99,20 @@ class Torques:
 class LinkWatch:
     """Watches the links behind the flange sensor. At most one of them is in contact, as far as is known."""
 
-    __slots__ = ("_age", "_begun", "_bound", "_calm", "_count", "_largest", "_rest", "points", "silent", "torques", "touched")
+    __slots__ = (
+        "_age",
+        "_begun",
+        "_bound",
+        "_calm",
+        "_count",
+        "_largest",
+        "_left_out",
+        "_rest",
+        "points",
+        "silent",
+        "torques",
+        "touched",
+    )
 
     def __init__(self) -> None:
         self.points = (History(), History())  # force and acceleration at the elbow, and at the forearm's end
@@ -107,6 +120,7 @@ class LinkWatch:
         self.touched: int | None = None  # which of `LINKS`
         self.silent = False  # after a release, until the torques have settled
         self._begun = False  # there is something to forget
+        self._left_out = False  # of this tick nothing is known
         self._count = Confirmation()
         self._rest: Array = np.zeros(0)  # torques before the contact [N·m]
         self._bound: Array = np.zeros(0)  # the least bound of a torque since then [N·m]
@@ -115,7 +129,7 @@ class LinkWatch:
         self._age = 0  # ticks since the last change
 
     def sense(self, signals: ContactSignals) -> None:
-        """Take one tick into the buffers; one in which the joints or the sensor do not tell is a gap."""
+        """Take one tick into the buffers. Without joints it is a gap; with the sensor at the end of its range it is left out."""
         if not signals.behind.size:
             if self.torques.count:
                 self.gap()
@@ -123,8 +137,8 @@ class LinkWatch:
         elbow, forearm = signals.each()[2:4]
         assert elbow is not None
         assert forearm is not None
-        if elbow.saturated:
-            self.gap()
+        self._left_out = bool(elbow.saturated)
+        if self._left_out:
             return
         self.torques.push(signals.behind)
         self.points[0].push(elbow)
@@ -147,7 +161,7 @@ class LinkWatch:
 
     def step(self, use: ContactUse, signals: ContactSignals, scale: float) -> Felt | None:
         """One tick, after `sense`; `scale` is that of all thresholds."""
-        if self.torques.count < SETTLED + NEWEST:
+        if self._left_out or self.torques.count < SETTLED + NEWEST:
             return None
         self._begun = True
         bound = signals.doubt * (use.link_limit * scale)
