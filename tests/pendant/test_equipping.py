@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from pendant.all_settings import Settings, apply
 from pendant.contact.contact_change import ArmPose, Change, Contact
