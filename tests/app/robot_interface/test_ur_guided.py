@@ -1,4 +1,4 @@
-"""ur-rtde's control interface, unmodified, lets a hand guide the arm: what is checked, ended and ramped is so for its program too."""
+"""ur-rtde's control interface, unmodified, lets a hand guide the arm: what is checked, ended and ramped is so for it too."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -40,6 +40,7 @@ def test_a_wrong_payload_is_refused_and_told_and_ends_the_program(tmp_path: Path
         until(lambda: not arm.isProgramRunning())
         assert robot.state()["mode"] != "FREE_DRIVE"
         assert arm.reuploadScript()
+        until(arm.isProgramRunning, 15.0)
         assert arm.setPayload(2.0, [0.0, 0.0, 0.0])
         until(lambda: abs(robot.field("payload") - 2.0) < 1e-6)
         assert arm.freedriveMode()
