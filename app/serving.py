@@ -181,6 +181,8 @@ class ServedArms:
         loop.begin(lambda: simulate(prepared))
         while not loop.failure and loop.latest().scenario is not prepared.scenario:
             time.sleep(LOOK)
+        if loop.failure:
+            raise BadInput("the page", "arm", prepared.arm.name, f"an arm that can be simulated: {loop.failure}")
         if self._recording.on:
             told.append("The recording goes on in a file of its own.")
         if self._network is not None:

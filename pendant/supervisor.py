@@ -103,7 +103,7 @@ class Supervisor:
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(
-            self._tooling, self._robot, self._mean, self._calls, containment=self._containment, shape=shape
+            self._tooling, self._robot, self._mean, self._calls, containment=self.containment, shape=shape
         )
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
         self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
@@ -157,7 +157,8 @@ class Supervisor:
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         trying = self._free.phase is not _OFF
         if inputs.borders is not None:
-            events += self.containment.change(inputs.borders, locked(self._robot.mode, trying), estimate.tick)
+            where = "the payload wizard's motion" if self._tooling.busy else locked(self._robot.mode, trying)
+            events += self.containment.change(inputs.borders, where, estimate.tick)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}

@@ -22,6 +22,7 @@ CONFIG = {
     "distributed.admin.system-monitor.disk": False,
     "distributed.worker.memory.monitor-interval": "1s",
     "distributed.comm.timeouts.connect": "10s",
+    "distributed.deploy.lost-worker-timeout": "60s",  # a process that died starts again; on a busy machine that takes long
 }
 ANSWER = 10.0
 """How long a scheduler may take to answer [s]."""
@@ -71,8 +72,12 @@ def connect(workers: int, scheduler: str | None) -> Any:
 
 
 def crippled(workers: int) -> bool:
-    """Whether a process of the embedded cluster ended for good: Dask does not replace one that was killed while it started."""
-    return any(each.status.name in ("closed", "failed") for each in _embedded[workers].workers.values())
+    """Whether a process of the embedded cluster ended for good.
+
+    Dask does not replace one that was killed while it started, and lets go of one that is late to start again.
+    """
+    there = _embedded[workers].workers
+    return len(there) < workers or any(each.status.name in ("closed", "failed") for each in there.values())
 
 
 def end_embedded(workers: int) -> None:

@@ -7,7 +7,7 @@ from concurrent.futures import CancelledError
 from itertools import chain, islice
 from typing import Any, TypeVar
 
-from app.engine.dask_client import PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
+from app.engine.dask_client import ANSWER, PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
 from app.engine.source import identity
 from app.files.bad_input import ABSENT, BadInput
 
@@ -20,8 +20,8 @@ AHEAD = 3
 LOOK = 3.0
 """How often the processes of this machine are looked at [s]."""
 
-PAUSE = 0.02
-"""How often it is looked for results [s]; what waits at the workers keeps them busy meanwhile."""
+PAUSE = 0.005
+"""How often it is looked for results [s]: one that stays with its worker may go with it."""
 
 LIVES = 1
 """Times that a piece is given out again, alone, after it was lost with all workers that tried it."""
@@ -158,7 +158,7 @@ class _Spreading:
         from distributed import KilledWorker
 
         try:
-            return future.result(timeout=PATIENCE)
+            return future.result(timeout=ANSWER)  # it is small; meanwhile nobody looks after the processes
         except KilledWorker:
             if lives > 0:
                 raise Lost from None

@@ -63,7 +63,9 @@ class Holding(Action, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         """Check that the control can be held."""
         super().__post_init__()
-        must_be_holdable(self.control)
+        if self.control not in HOLDABLE:
+            text = f'"{self.control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}'
+            raise ValueError(f"control: {text}")
 
 
 class Press(Holding, tag="press", frozen=True, kw_only=True):
@@ -274,9 +276,3 @@ def triple(values: list[float], factor: float = 1.0) -> Triple:
     """Three numbers times `factor`, as a touch wants them."""
     x, y, z = values
     return (x * factor, y * factor, z * factor)
-
-
-def must_be_holdable(control: str) -> None:
-    """Raise ValueError when `control` acts once and cannot be held."""
-    if control not in HOLDABLE:
-        raise ValueError(f'control: "{control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}')

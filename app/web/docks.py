@@ -68,7 +68,7 @@ class Docks:
         with self._upper.add_tab("Tools"):
             self.tools = ToolsTab(gui, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
-            self.settings = SettingsTab(gui, self.settings_dock, loop)
+            self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
         with self._lower.add_tab("Events"):
             self.journal = Journal(gui)

@@ -33,6 +33,9 @@ from app.web.widgets.svg import Colour
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 
+TOLD = 12.0
+"""What became of the network is seen for so long after another arm was chosen [s]."""
+
 FRAMES_A_PANEL = 4
 """The pendant is brought up to date with every so many pictures."""
 
@@ -119,7 +122,7 @@ class Served(Site):
             brought = await asyncio.to_thread(arms.bring, ready)
         except BadInput as refusal:
             message.show(svg.note("Refused", str(refusal), Colour.AMBER))
-            self._changing = False
+            self._changing = self._still_page = False
             return
         prepared = ready.prepared
         dark = self.preferences.dark
@@ -134,14 +137,16 @@ class Served(Site):
             await self._welcome(client)
             if number in dark:
                 self.preferences.flip_dark(number)
-        self.lab.setup.message.show(svg.note(f"Now the {prepared.arm.title}", brought.said, Colour.GREEN))
+        headline = f"Now the {prepared.arm.title}"
+        self.lab.setup.message.show(svg.note(headline, brought.said, Colour.GREEN))
+        for client in self.server.get_clients().values():
+            client.add_notification(headline, brought.said or "It begins at its start.", auto_close_seconds=TOLD)
 
     def _clear(self) -> None:
         """Take everything off the page, of all clients."""
         self.control.close()
         for client in self.server.get_clients().values():
             client.gui.reset()
-            client.scene.reset()
         self.server.gui.reset()
         self.server.scene.reset()
         self.guard.forget()

@@ -44,7 +44,7 @@ def _fitted(speeds: tuple[float, ...], torques: tuple[tuple[float, ...], ...], s
     speed = np.linspace(0.02, max(speeds), 200)
     basis = np.stack([np.ones_like(speed), speed / (speed + KNEE), speed], axis=1)
     curves = [np.interp(np.sqrt(speed), np.sqrt(speeds), torque) for torque in torques]
-    return np.array([np.linalg.lstsq(basis, scale * curve, rcond=None)[0] for curve in curves])
+    return np.array([np.linalg.lstsq(basis, scale * curve, rcond=None)[0] for curve in curves], dtype=np.float64)
 
 
 class AdaptiveFriction:

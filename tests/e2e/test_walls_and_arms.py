@@ -70,9 +70,13 @@ def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, h
 
     use.drag((0.0, 220.0), reached, "the wall", use.be_free)
     cell.pass_time(0.5)
+    stopped = float(cell.position("flange")[2])
+    cell.pass_time(0.5)
+    assert cell.loop.latest().touches, "the hand still pulls, to a place far below"
     assert cell.loop.latest().decision.mode is Mode.FREE_DRIVE
     assert tab.handles._gizmo is None, "nothing moves a wall that holds"
-    assert -0.02 < float(cell.position("flange")[2]) - moved[2] < 0.02
+    assert abs(float(cell.position("flange")[2]) - stopped) < 0.003
+    assert moved[2] - 0.05 < stopped < moved[2] + 0.02  # a hand that pulls with all its force arrives fast
     use.let_go()
 
 

@@ -38,7 +38,7 @@ from pendant.walls.definitions import AnyBorder, Area
 from sim.arm.frames import rotation_from_rpy
 from sim.exchange.snapshot import Snapshot
 
-NONE = "no wall yet"
+NONE: str = "no wall yet"
 REMEMBERED = 100
 """Edits that can be undone."""
 

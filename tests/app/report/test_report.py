@@ -108,7 +108,7 @@ def test_a_contact_is_timed_from_its_true_onset(log: Log) -> None:
     ]
     log.events += events
     summary = summarise(log)
-    text = page(log, summary)
+    text = page(summary, [])
     del log.events[-len(events) :]
     assert summary.onset_delays == [None, 0.0, pytest.approx(0.01), None, pytest.approx(0.004), None]
     assert re.search(r"<td[^>]*>6</td><td[^>]*>10</td>", text)
