@@ -5,7 +5,7 @@ from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.haptics import Shake
-from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of
+from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of, with_joints
 from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState
 from pendant.robot.reduced import SpeedLimits
@@ -29,7 +29,7 @@ class Publisher:
         """The settings are new."""
         self._settings = settings
         self._checksum = limits_checksum(settings)
-        self._locks = axis_locks(settings.axes)
+        self._locks = with_joints(axis_locks(settings.axes), settings.joints)
 
     def step(
         self,
@@ -104,11 +104,11 @@ class Publisher:
         )
 
     def _free_axes(self) -> AxisLocks | None:
-        """What free-drive keeps of the tool's pose: as the script says, else as the settings do."""
+        """What free-drive keeps of the tool's pose, as the script says, else as the settings do, and of the joints."""
         guided = self._scripting.guided
         if guided is None or all(guided.axes):
             return self._locks
-        return locks_of(guided.axes, guided.R_BU, self._settings.axes)
+        return with_joints(locks_of(guided.axes, guided.R_BU, self._settings.axes), self._settings.joints)
 
 
 _FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick

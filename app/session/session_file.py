@@ -8,18 +8,16 @@ from msgspec import Meta
 
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import ASSETS, shipped
-from app.session.actions import AnyAction
+from app.session.actions import AnyAction, Walls
 from app.session.expectations import AnyExpectation
 from pendant.equipment.load import Angles
 from pendant.equipment.tools import MOST as MOST_TOOLS
 from pendant.program.steps import Program
-from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, MOST_WALLS, Angle, Text
-from pendant.walls.definitions import AnyBorder
+from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, Angle, Text
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import AnyObject, Load, ToolModel
 
 Posture = Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]
-Walls = Annotated[list[AnyBorder], Meta(max_length=MOST_WALLS)]
 Claims = Annotated[list[Text], Meta(max_length=MOST_STEPS)]
 Tools = Annotated[list[ToolModel], Meta(max_length=MOST_TOOLS)]
 World = Annotated[list[AnyObject], Meta(max_length=MOST_OBJECTS)]

@@ -137,11 +137,11 @@ ENTRY: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.WARNING,
         "The force stays: check the payload",
-        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Correct the payload, with hands off.",
+        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Measure the payload, or correct it, with hands off.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
-            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or correct the payload.",
+            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or measure the payload.",
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)

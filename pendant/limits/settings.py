@@ -183,6 +183,26 @@ class AxisSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     ] = 0.01
 
 
+class JointSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Freedom of the joints in free-drive, one by one. An arm with fewer joints has no use for the others."""
+
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-4", "joints can be locked in free-drive", locked=False)] = True
+    j1: Annotated[bool, _switch("FD-4", "joint 1, counted from the base, is free", locked=False)] = True
+    j2: Annotated[bool, _switch("FD-4", "joint 2, counted from the base, is free", locked=False)] = True
+    j3: Annotated[bool, _switch("FD-4", "joint 3, counted from the base, is free", locked=False)] = True
+    j4: Annotated[bool, _switch("FD-4", "joint 4, counted from the base, is free", locked=False)] = True
+    j5: Annotated[bool, _switch("FD-4", "joint 5, counted from the base, is free", locked=False)] = True
+    j6: Annotated[bool, _switch("FD-4", "joint 6, counted from the base, is free", locked=False)] = True
+    j7: Annotated[bool, _switch("FD-4", "joint 7, counted from the base, is free", locked=False)] = True
+    j8: Annotated[bool, _switch("FD-4", "joint 8, counted from the base, is free", locked=False)] = True
+    j9: Annotated[bool, _switch("FD-4", "joint 9, counted from the base, is free", locked=False)] = True
+    j10: Annotated[bool, _switch("FD-4", "joint 10, counted from the base, is free", locked=False)] = True
+    j11: Annotated[bool, _switch("FD-4", "joint 11, counted from the base, is free", locked=False)] = True
+    j12: Annotated[bool, _switch("FD-4", "joint 12, counted from the base, is free", locked=False)] = True
+
+
 class JointLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Zones before the joint limits in free-drive."""
 

@@ -54,6 +54,12 @@ class ScriptedArc(LinearMove, tag="movec", frozen=True, forbid_unknown_fields=Tr
     blend: float = 0.0  # [m]
 
 
+class ScriptedProcess(LinearMove, tag="movep", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point along a straight line to a pose, from the line before on a circle, at one speed."""
+
+    blend: float = 0.0  # so far from its end, and from the begin of the next such line, a circle joins them [m]
+
+
 class ServoJoints(Move, tag="servoj", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Towards joint angles that are given again and again. Without a new one after its time the arm comes to rest."""
 
@@ -106,7 +112,16 @@ class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields
 
 
 ScriptedMove = (
-    ScriptedJoints | ScriptedLine | ScriptedArc | ServoJoints | ServoTool | SpeedJoints | SpeedTool | GentleStop | Guided
+    ScriptedJoints
+    | ScriptedLine
+    | ScriptedArc
+    | ScriptedProcess
+    | ServoJoints
+    | ServoTool
+    | SpeedJoints
+    | SpeedTool
+    | GentleStop
+    | Guided
 )
 
 
@@ -123,6 +138,7 @@ class ForceMode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     R_BU: Rotation  # its orientation
     turns: Literal["not", "to_origin", "with_motion"] = "not"  # its y points from the tool to its origin; its x goes as the tool
     gain: float = 1.0  # of what the missing force changes
+    damping: float | None = None  # share of its speed that it loses in a tick; None: it has no inertia
 
     def __post_init__(self) -> None:
         _finite(*self.wrench, *self.limits, *self.origin, self.gain)

@@ -67,6 +67,7 @@ EXPECTED = {
     "axes.rx": (True, None, None, "", "FD-4", False),
     "axes.ry": (True, None, None, "", "FD-4", False),
     "axes.rz": (True, None, None, "", "FD-4", False),
+    **{f"joints.{name}": (True, None, None, "", "FD-4", False) for name in ("on", *(f"j{k}" for k in range(1, 13)))},
     "axes.frame": ("base", None, None, "", "FD-4", False),
     "axes.roll": (0.0, -3.15, 3.15, "rad", "FD-4", False),
     "axes.pitch": (0.0, -3.15, 3.15, "rad", "FD-4", False),
@@ -113,6 +114,8 @@ EXPECTED = {
     "program.speed": (1.0, 0.0, 1.0, "", "CD-15", False),
     "tools.ramp": (1.0, 0.0, 10.0, "s", "tools", False),
     "tools.measure": (0.5, 0.1, 5.0, "s", "tools", False),
+    "tools.room": (0.1, 0.02, 0.5, "m", "tools", False),
+    "tools.clearance": (0.03, 0.005, 0.2, "m", "tools", False),
 }
 SIGNALS = {
     "signals.button": (True, None, None, "", "FD-5", True),
@@ -296,10 +299,7 @@ CONTACT_NUMBERS = {
     "force_noise": (0.15, 0.02, 2.0, "N", "CD-0", True),
     "acceleration_noise": (0.1, 0.01, 2.0, "m/s²", "CD-0", True),
     "turn_noise": (1.2, 0.0, 20.0, "rad/s²", "CD-0", True),
-    "link_force_noise": (3.0, 0.1, 50.0, "N", "CD-2", True),
-    "link_acceleration_noise": (0.2, 0.02, 5.0, "m/s²", "CD-2", True),
-    "link_force": (60.0, 1.0, 200.0, "N", "CD-2", True),
-    "link_margin": (20.0, 0.0, 100.0, "kg", "CD-11", True),
+    "link_limit": (4.5, 2.0, 20.0, "", "CD-2", True),
     "noise_limit": (3.0, 1.0, 6.0, "", "CD-0", True),
     "hard_limit": (4.0, 2.0, 20.0, "", "CD-4", True),
     "hard_payload": (0.4, 0.0, 5.0, "N/kg", "CD-11", True),

@@ -179,7 +179,7 @@ def test_a_contact_is_told_with_force_rule_and_action() -> None:
     values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
     assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
         "Contact gained: tool",
-        "Change of 17.6 N; rule slow, 20 ticks after it began. Action: none.",
+        "Force change 17.6 N, seen within 20 ticks of 2 ms by rule slow. Action: none.",
     )
 
 

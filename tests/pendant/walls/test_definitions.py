@@ -36,6 +36,7 @@ def test_the_defaults() -> None:
         "push": 0.0,
         "push_back": 8.0,
         "reaction": "stay",
+        "on": True,
         "offset": (0.0, 0.0, 0.0),
         "policy": "stepwise",
         "literal": False,
