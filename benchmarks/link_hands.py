@@ -8,7 +8,7 @@ read for scoring alone.
 import numpy as np
 
 from benchmarks.common import Report, main, spread
-from benchmarks.contacts.hands import LATEST, Hands, Touch, hands
+from benchmarks.contacts.hands import LATEST, LinkHands, LinkTouch, hands
 
 ARMS = {"ur5e": 5.0, "ur10e": 10.0, "ur16e": 10.0}
 """The arms, each with the largest payload of this bench [kg]. A UR3e cannot withstand such hands: its shoulder holds 54 N·m."""
@@ -21,7 +21,7 @@ def measure(report: Report) -> None:
     full, seed = report.options.full, report.options.seed
     rounds = {"ur5e": 88 if full else 6, "ur10e": 10 if full else 1, "ur16e": 10 if full else 1}
     cases = [
-        Hands(arm, share * most, soft, moving, seed + k, PUSHES)
+        LinkHands(arm, share * most, soft, moving, seed + k, PUSHES)
         for arm, most in ARMS.items()
         for k in range(rounds[arm])
         for share, soft, moving in ((0.0, False, False), (0.4, True, True), (1.0, False, k % 2 == 1))
@@ -38,11 +38,11 @@ def measure(report: Report) -> None:
     report.notes += [touch.story for touch in touches if _wrong(touch)][:60]
 
 
-def _wrong(touch: Touch) -> bool:
+def _wrong(touch: LinkTouch) -> bool:
     return touch.delay > 1000.0 * LATEST or not touch.once or not touch.lost or touch.elsewhere > 0 or touch.right is False
 
 
-def _rows(report: Report, what: str, touches: list[Touch], bar: bool = False) -> None:
+def _rows(report: Report, what: str, touches: list[LinkTouch], bar: bool = False) -> None:
     late = sum(touch.delay <= 1000.0 * LATEST for touch in touches)
     report.share(f"{what}: reported within 100 ms", late, len(touches), at_least=0.99 if bar else None)
     delays = sorted(touch.delay for touch in touches)

@@ -29,7 +29,7 @@ FELT, UNFELT = 0.1, 0.02
 LATEST = 0.1  # s
 
 
-class Hands(NamedTuple):
+class LinkHands(NamedTuple):
     """One arm in one posture or program, pushed several times."""
 
     arm: str
@@ -40,10 +40,10 @@ class Hands(NamedTuple):
     pushes: int = 4
 
 
-class Touch(NamedTuple):
+class LinkTouch(NamedTuple):
     """One push, scored."""
 
-    case: Hands
+    case: LinkHands
     link: str
     force: float  # [N]
     delay: float  # from its begin to the first report of any link [ms], infinite for none in time
@@ -54,7 +54,7 @@ class Touch(NamedTuple):
     story: str
 
 
-def hands(case: Hands) -> list[Touch]:
+def hands(case: LinkHands) -> list[LinkTouch]:
     """Run one case."""
     rng = np.random.default_rng([case.seed, 41])
     arm = load_arm(case.arm)
@@ -80,7 +80,7 @@ def wait(simulation: Simulation, ticks: int) -> None:
         simulation.tick(Wishes(NOTHING, (), ()))
 
 
-def push(simulation: Simulation, arm: Arm, case: Hands, rng: np.random.Generator) -> Touch:
+def push(simulation: Simulation, arm: Arm, case: LinkHands, rng: np.random.Generator) -> LinkTouch:
     """One push, and what came of it until the arm is calm again."""
     link = int(rng.integers(2))
     joint = arm.chain.elbow - 1 + link
@@ -88,7 +88,7 @@ def push(simulation: Simulation, arm: Arm, case: Hands, rng: np.random.Generator
     force = float(rng.choice([60.0, 80.0, 120.0, 200.0, 300.0]))
     rise, fall = (int(rng.integers(2, 25)) for _ in range(2))  # ticks: no hand comes or goes within one
     for _ in range(200):
-        point, way, levers = drawn(simulation, arm, joint, share, rng)
+        point, way, levers = drawn(simulation, arm, joint, share=share, rng=rng)
         if max(abs(levers)) >= LEVER:
             break
     held = int(rng.integers(150, 500))
@@ -103,7 +103,7 @@ def push(simulation: Simulation, arm: Arm, case: Hands, rng: np.random.Generator
     expected = arm_part(link, own)
     onsets = [named for k, named, change in found if change is Change.GAINED and k < rise + held]
     releases = [named for k, named, change in found if change is Change.LOST and k >= rise + held]
-    return Touch(
+    return LinkTouch(
         case,
         ("elbow", "forearm")[link],
         force,
@@ -124,7 +124,7 @@ def arm_part(link: int, own: float) -> str | None:
 
 
 def drawn(
-    simulation: Simulation, arm: Arm, joint: int, share: float, rng: np.random.Generator
+    simulation: Simulation, arm: Arm, joint: int, *, share: float, rng: np.random.Generator
 ) -> tuple[tuple[float, float, float], Array, Array]:
     """A point of the link in its own frame, a direction across the link in W, and the lever of a push there on each joint."""
     rigid = simulation.dynamics.recursion

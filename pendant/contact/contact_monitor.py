@@ -9,7 +9,7 @@ from pendant.contact.contact_limits import ContactLimits, limits, scale_of
 from pendant.contact.contact_rules import Rule
 from pendant.contact.detector import Detector, Finding
 from pendant.contact.history import SIZE, SUMMED
-from pendant.contact.link_contact import LINKS, Felt, LinkWatch
+from pendant.contact.link_contact import LINKS, LinkChange, LinkWatch
 from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
@@ -95,7 +95,7 @@ class ContactMonitor:
         felt = self._of_links(estimate, use, mode)
         return contacts if felt is None else (*contacts, self._at_link(felt, estimate.tick, use.look_back))
 
-    def _of_links(self, estimate: Estimate, use: ContactUse, mode: Mode) -> Felt | None:
+    def _of_links(self, estimate: Estimate, use: ContactUse, mode: Mode) -> LinkChange | None:
         links, signals = self.links, estimate.signals
         links.sense(signals)
         if not use.links or not use.slow:
@@ -134,7 +134,7 @@ class ContactMonitor:
         change, rule = finding.change, finding.rule.value
         return Contact(tick, change, rule, TOOL, source, force, acceleration, finding.ratio, steps, pose)
 
-    def _at_link(self, felt: Felt, tick: int, look_back: bool) -> Contact:
+    def _at_link(self, felt: LinkChange, tick: int, look_back: bool) -> Contact:
         (fx, fy, fz), (ax, ay, az) = felt.force, felt.acceleration
         ratio = (fx * ax + fy * ay + fz * az) / max(ax * ax + ay * ay + az * az, STILL * STILL)
         steps, pose = self._begun(felt.steps, look_back)

@@ -57,7 +57,7 @@ BEGUN = 0.2
 """Share of the change at the sighting, from which on a sample belongs to it."""
 
 
-class Felt(NamedTuple):
+class LinkChange(NamedTuple):
     """A change of the contact of a link; vectors in B."""
 
     change: Change
@@ -159,7 +159,7 @@ class LinkWatch:
         self.touched, self.silent = None, False
         self._count.clear()
 
-    def step(self, use: ContactUse, signals: ContactSignals, scale: float) -> Felt | None:
+    def step(self, use: ContactUse, signals: ContactSignals, scale: float) -> LinkChange | None:
         """One tick, after `sense`; `scale` is that of all thresholds."""
         if self._left_out or self.torques.count < SETTLED + NEWEST:
             return None
@@ -173,7 +173,7 @@ class LinkWatch:
             return None
         return self._onset(new, bound, use, signals.elbow)
 
-    def _onset(self, new: Array, bound: Array, use: ContactUse, elbow: int) -> Felt | None:
+    def _onset(self, new: Array, bound: Array, use: ContactUse, elbow: int) -> LinkChange | None:
         """Free: what a joint up to the elbow feels beyond errors of model and sensors is a contact that begins.
 
         Or it is one that ends, where less is felt than before: it began too gently to be seen.
@@ -194,12 +194,12 @@ class LinkWatch:
         largest = float((change / bound)[: elbow + 1].max())
         if float((np.abs(new) / bound).max()) < ENDED * float((np.abs(old) / bound).max()) and (np.abs(old) > 2.0 * bound).any():
             self._over()
-            return self._felt(Change.LOST, link, new, old, lag)
+            return self._felt(Change.LOST, link, new, old=old, lag=lag)
         self.touched, self._calm, self._age = link, 0, 0
         self._rest, self._bound, self._largest = old, bound, largest
-        return self._felt(Change.GAINED, link, new, old, lag)
+        return self._felt(Change.GAINED, link, new, old=old, lag=lag)
 
-    def _held(self, new: Array, bound: Array, elbow: int) -> Felt | None:
+    def _held(self, new: Array, bound: Array, elbow: int) -> LinkChange | None:
         """In contact: it has gone where little is left of its torques."""
         self._age += 1
         self._bound = np.minimum(self._bound, bound)
@@ -212,7 +212,7 @@ class LinkWatch:
             return None
         link, lag = self.touched, min(BEFORE, self.torques.count - STORED)
         self._over()
-        return self._felt(Change.LOST, link, new, self.torques.mean(lag, STORED), lag)
+        return self._felt(Change.LOST, link, new, old=self.torques.mean(lag, STORED), lag=lag)
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0
@@ -227,7 +227,7 @@ class LinkWatch:
             self.silent = False
             self.torques.count = SETTLED + NEWEST
 
-    def _felt(self, change: Change, link: int, new: Array, old: Array, lag: int) -> Felt:
+    def _felt(self, change: Change, link: int, new: Array, *, old: Array, lag: int) -> LinkChange:
         """What is reported: force and acceleration at the link, as the newest mean and the stored one tell them (CD-16)."""
         point = self.points[min(link, 1)]
         n, o = point.mean(0, SEEN), point.mean(lag, STORED)
@@ -236,4 +236,4 @@ class LinkWatch:
         least, steps = BEGUN * float(way @ way), 0
         while steps < lag + NEWEST and float((self.torques.mean(steps, 1) - old) @ way) > least:
             steps += 1
-        return Felt(change, link, force, acceleration, max(steps - 1, 0))
+        return LinkChange(change, link, force, acceleration, max(steps - 1, 0))

@@ -73,7 +73,7 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     ] = 1.2
     link_limit: Annotated[
         float, _number(2.0, 20.0, "", "CD-2", text="links: least change of what a joint feels, in standard deviations")
-    ] = 3.5
+    ] = 6.0
     noise_limit: Annotated[
         float, _number(1.0, 6.0, "", "CD-0", text="differences within so many standard deviations are noise")
     ] = 3.0

@@ -299,7 +299,7 @@ CONTACT_NUMBERS = {
     "force_noise": (0.15, 0.02, 2.0, "N", "CD-0", True),
     "acceleration_noise": (0.1, 0.01, 2.0, "m/s²", "CD-0", True),
     "turn_noise": (1.2, 0.0, 20.0, "rad/s²", "CD-0", True),
-    "link_limit": (3.5, 2.0, 20.0, "", "CD-2", True),
+    "link_limit": (6.0, 2.0, 20.0, "", "CD-2", True),
     "noise_limit": (3.0, 1.0, 6.0, "", "CD-0", True),
     "hard_limit": (4.0, 2.0, 20.0, "", "CD-4", True),
     "hard_payload": (0.4, 0.0, 5.0, "N/kg", "CD-11", True),

@@ -255,7 +255,7 @@ def test_the_slow_rule_watches_the_links(name: str, seen: bool) -> None:
     ("mode", "sensitivity", "seen"), [(Mode.RUN, 1.0, True), (Mode.FREE_DRIVE, 1.0, False), (Mode.RUN, 0.3, False)]
 )
 def test_bounds_of_the_links_follow_mode_and_sensitivity(mode: Mode, sensitivity: float, seen: bool) -> None:
-    """CD-11, CD-12: 9.6 N·m, where the bound is 3.5 N·m."""
+    """CD-11, CD-12: 9.6 N·m, where the bound is 6 N·m."""
     use, monitor = msgspec.structs.replace(USE, sensitivity=sensitivity), ContactMonitor()
     assert any(monitor.step(now, use, mode, on=True) for now in linked(300, 24.0)) is seen
 
