@@ -87,15 +87,16 @@ def push(simulation: Simulation, arm: Arm, case: LinkHands, rng: np.random.Gener
     part, share = arm.chain.joints[joint], float(rng.uniform(0.7, 0.95))
     force = float(rng.choice([60.0, 80.0, 120.0, 200.0, 300.0]))
     rise, fall = (int(rng.integers(2, 25)) for _ in range(2))  # ticks: no hand comes or goes within one
+    point, way, levers = drawn(simulation, arm, joint, share=share, rng=rng)
     for _ in range(200):
-        point, way, levers = drawn(simulation, arm, joint, share=share, rng=rng)
         if max(abs(levers)) >= LEVER:
             break
+        point, way, levers = drawn(simulation, arm, joint, share=share, rng=rng)
     held = int(rng.integers(150, 500))
     found: list[tuple[int, str, Change]] = []
     for k in range(rise + held + fall + PAUSE):
         size = force * float(np.interp(k, [0, rise, rise + held, rise + held + fall], [0.0, 1.0, 1.0, 0.0]))
-        touches = (Push(part, point, tuple((size * way).tolist())),) if size else ()
+        touches = (Push(part, point, (size * float(way[0]), size * float(way[1]), size * float(way[2]))),) if size else ()
         decision = simulation.tick(Wishes(NOTHING, touches, ()))
         found += [(k, contact.part, contact.change) for contact in decision.contacts]
     first = next(((k, named) for k, named, change in found if change is Change.GAINED and named != "tool"), (np.inf, ""))
@@ -138,4 +139,5 @@ def drawn(
     levers = np.array([axes[i] @ np.cross(p - origins[i], way) if i <= joint else 0.0 for i in range(arm.n)])
     body = simulation.plant.model.body(arm.chain.joints[joint]).id
     R, at = simulation.plant.data.xmat[body].reshape(3, 3), simulation.plant.data.xpos[body]
-    return tuple((R.T @ (p - at)).tolist()), way, levers
+    x, y, z = (R.T @ (p - at)).tolist()
+    return (x, y, z), way, levers
