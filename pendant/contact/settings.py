@@ -71,14 +71,9 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     turn_noise: Annotated[
         float, _number(0.0, 20.0, "rad/s²", "CD-0", text="standard deviation of the angular acceleration, each axis")
     ] = 1.2
-    link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", text="standard deviation of the force on a link")] = 3.0
-    link_acceleration_noise: Annotated[
-        float, _number(0.02, 5.0, "m/s²", "CD-2", text="standard deviation of a link's acceleration")
-    ] = 0.2
-    link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", text="slow rule: least change of the force on a link")] = 60.0
-    link_margin: Annotated[
-        float, _number(0.0, 100.0, "kg", "CD-11", text="force on a link that a wrong model may explain, per acceleration")
-    ] = 20.0
+    link_limit: Annotated[
+        float, _number(2.0, 20.0, "", "CD-2", text="links: least change of what a joint feels, in standard deviations")
+    ] = 4.5
     noise_limit: Annotated[
         float, _number(1.0, 6.0, "", "CD-0", text="differences within so many standard deviations are noise")
     ] = 3.0

@@ -172,6 +172,7 @@ class Estimator:
             friction_deviation=friction.deviation,
             tau_ways=transmission.ways,
             tau_ext_deviation=transmission.external_deviation,
+            tau_ext_doubt=transmission.external_doubt,
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,

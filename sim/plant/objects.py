@@ -13,6 +13,9 @@ DEPTH = 0.02
 a transient, measured from 1e3 to 2e5 N/m; d = 0.9 is right statically and far too soft in an impact."""
 
 DAMPING_RATIO = 0.03  # of a contact against 1 kg: real surfaces ring little, and a perfect spring would ring for ever
+RUB = 500.0
+"""Friction of a contact per speed of sliding, up to Coulomb's [N·s/m]: from some cm/s on the whole of it is there. Without this
+it has the normal damping, 4 N·s/m on a soft plate, and at the speeds of an arm hardly any friction."""
 SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]
 SNAP_REST = 0.2  # share of its force that a snap-fit still resists with while it gives way
 SNAP_MASS = 0.2  # of the part that gives way [kg]
@@ -88,6 +91,7 @@ def set_contact_stiffness(model: mujoco.MjModel, world: Sequence[AnyObject]) -> 
         weight = model.body_invweight0[bodies, 0].sum()
         damping = 2.0 * DAMPING_RATIO * stiffness**0.5
         model.pair_solref[k] = -stiffness * weight * (1 - DEPTH), -damping * weight * (1 - DEPTH)
+        model.pair_solreffriction[k] = 0.0, -RUB * weight * (1 - DEPTH)
 
 
 def _object(model: mujoco.MjModel, pair: int, world: Sequence[AnyObject]) -> AnyObject | None:
