@@ -90,4 +90,4 @@ def test_an_arm_that_is_refused_leaves_everything_as_it_was(served: Served, join
 def test_the_arm_that_is_there_begins_again_with_the_set_up(served: Served, join: Join, loop: FakeLoop) -> None:
     client = join()
     client.set(served.lab.setup.begin._impl.uuid, value=True)
-    until(lambda: len(loop.begun) == 1, "begun")
+    until(lambda: len(loop.begun) == 1, "begun", 20.0)

@@ -158,7 +158,7 @@ def test_a_preset_lists_its_changes_then_is_taken_and_undone(served: Served, joi
     client = join()
     tab = served.docks.settings
     view(served, client, VIEWS[1])
-    assert "Nothing would change" in tab.listed.shown
+    until(lambda: "Nothing would change" in tab.listed.shown, "what runs is as shipped")
     client.set(tab.preset._impl.uuid, value="Classroom")
     until(lambda: "Limits during free-drive: Tcp speed" in tab.listed.shown, "the list")
     assert "<td>1.5 m/s</td><td>0.7 m/s</td>" in tab.listed.shown
