@@ -6,7 +6,7 @@ import numpy as np
 
 from pendant.all_settings import Settings
 from pendant.contact.contact_change import Change, Contact
-from pendant.contact.contact_monitor import SOURCES
+from pendant.contact.contact_monitor import TOOL
 from pendant.equipment.payload_fit import LEAST
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
@@ -34,7 +34,7 @@ GENTLE = 0.1
 SETTLING = ticks(0.3)
 """After a turn the arm stands for so long before it is measured."""
 
-TOOL_PART = SOURCES[0].part
+TOOL_PART = TOOL
 
 LOOKS = 25
 """Postures of a way that are looked at."""
