@@ -34,8 +34,6 @@ GENTLE = 0.1
 SETTLING = ticks(0.3)
 """After a turn the arm stands for so long before it is measured."""
 
-TOOL_PART = TOOL
-
 LOOKS = 25
 """Postures of a way that are looked at."""
 
@@ -148,7 +146,7 @@ class Equipping:
         if reason or self._shape is None:
             events.append(Event(Kind.WIZARD_REFUSED, estimate.tick, {"reason": reason}))
             return
-        walls = tuple([(border, place) for border, place in self._containment.every_place(settings.walls) if border.on])
+        walls = self._containment.every_place(settings.walls)
         self._begin = estimate.q.copy()
         self._room = WristRoom(self._shape, self._begin, tooling.fitting.tool, settings.tools, borders=walls)
         self._watch.begin(self._mean.mean()[:3])
@@ -178,7 +176,7 @@ class Equipping:
 
     def _met(self, estimate: Estimate, contacts: tuple[Contact, ...]) -> str:
         """What the turning arm has met, or "". A load that nobody entered looks like a contact of the tool when it is sped up."""
-        gained = [contact for contact in contacts if contact.change is not Change.LOST and contact.part != TOOL_PART]
+        gained = [contact for contact in contacts if contact.change is not Change.LOST and contact.part != TOOL]
         if gained:
             return f"contact at the {gained[0].part}: move the arm to where its wrist has room"
         return self._watch.step(estimate, self._mean.mean()[:3])

@@ -171,9 +171,8 @@ class Detector:
             if (fx - rest[0]) * ux + (fy - rest[1]) * uy + (fz - rest[2]) * uz < noise * size:
                 break
             first = age
-        looked_at = {Rule.STATISTICAL: limit.tested, Rule.SLOW: limit.newest}.get(
-            rule, 1
-        )  # newest samples whose mean it compares
+        # How many of the newest samples the rule compared.
+        looked_at = {Rule.STATISTICAL: limit.tested, Rule.SLOW: limit.newest}.get(rule, 1)
         seen = history.mean(0, min(looked_at, count))
         return _Sighting(rule, first, before, *_change(before, seen, limit))
 

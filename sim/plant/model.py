@@ -69,7 +69,7 @@ def model_of(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjModel:
     """
     # What the model does not depend on is left out of its name, and nothing else: a new field makes other models.
     alike = msgspec.structs.replace(scenario, seed=0, posture=None, payload_configured=Load(mass=0.0), tools=[], walls=[])
-    name = msgspec.msgpack.encode((arm, alike, step))
+    name = msgspec.msgpack.encode((arm, alike, step), enc_hook=float)  # numbers of numpy are floats, too
     model = _compiled.pop(name, None) or build(arm, scenario, step).compile()
     _compiled[name] = model
     if len(_compiled) > KEPT:

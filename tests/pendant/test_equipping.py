@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from pendant.all_settings import Settings, apply
 from pendant.contact.contact_change import ArmPose, Change, Contact
@@ -325,6 +326,8 @@ def test_nothing_of_the_tool_is_changed_while_it_measures() -> None:
     assert cell.events[-1].values == {"reason": "the payload is being measured"}
     cell.step(Inputs(commands=(Command.WIZARD_MEASURE,)))
     assert cell.events[-1].values == {"reason": "the wizard measures by itself"}
+    cell.step(Inputs(borders=(tube(0.5),)))
+    assert cell.events[-1].values == {"reason": "no change of a wall in the payload wizard's motion"}
     cell.step(RUN)  # it goes on
     assert cell.until(*STOPPED).kind is Kind.WIZARD_FINISHED
 
@@ -375,6 +378,12 @@ def test_a_wall_leaves_postures_out_and_is_not_crossed() -> None:
 
 def test_walls_that_are_switched_off_are_no_obstacle() -> None:
     cell = Cell(walls=(tube(0.04),), walls__on=False)
+    cell.step(RUN)
+    assert cell.until(*STOPPED).kind is Kind.WIZARD_FINISHED
+
+
+def test_a_wall_that_is_off_is_no_obstacle() -> None:
+    cell = Cell(walls=(replace(tube(0.04), on=False),))
     cell.step(RUN)
     assert cell.until(*STOPPED).kind is Kind.WIZARD_FINISHED
 
