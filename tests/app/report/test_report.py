@@ -195,7 +195,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
         guidance="",
         values={"rule": "rise", "steps": 4, "action": "none"},
     )
-    text = page(msgspec.structs.replace(summary, contacts=[contact]), charts(log, summary))
+    text = page(msgspec.structs.replace(summary, contacts=[contact], onset_delays=[0.004]), charts(log, summary))
     parser = Page()
     parser.feed(text)
     assert parser.open == []
