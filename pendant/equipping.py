@@ -5,8 +5,6 @@ from enum import StrEnum
 import numpy as np
 
 from pendant.all_settings import Settings
-from pendant.contact.contact_change import Change, Contact
-from pendant.contact.contact_monitor import TOOL
 from pendant.equipment.payload_fit import LEAST
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
@@ -84,7 +82,7 @@ class Equipping:
 
     @property
     def moving(self) -> bool:
-        """The wizard moves the arm: contacts are looked for."""
+        """The wizard moves the arm."""
         return self._robot.turn is not None
 
     def limits(self, reduced: SpeedLimits | None) -> SpeedLimits | None:
@@ -100,7 +98,6 @@ class Equipping:
         events: list[Event],
         *,
         mode: Mode,
-        contacts: tuple[Contact, ...],
     ) -> None:
         """One tick.
 
@@ -110,7 +107,6 @@ class Equipping:
             settings: as they are now.
             events: of this tick; more are added.
             mode: that says whether tool and payload may be changed.
-            contacts: changes in contact in this tick.
         """
         robot, tooling = self._robot, self._tooling
         told = tooling.step(estimate, inputs, settings.tools, mode=mode, phase=robot.free.phase, still=robot.static)
@@ -120,7 +116,7 @@ class Equipping:
             robot.free.forget()
             self._turn_tool()
         if self._stage:
-            reason = self._against(estimate, inputs, contacts)
+            reason = self._against(estimate, inputs)
             if reason:
                 self._stop(reason, estimate.tick, events)
             else:
@@ -135,7 +131,7 @@ class Equipping:
     def _ask(self, estimate: Estimate, settings: Settings, inputs: Inputs, events: list[Event]) -> None:
         """Somebody wants the payload to be measured."""
         robot, tooling = self._robot, self._tooling
-        reason = self._against(estimate, inputs, ())
+        reason = self._against(estimate, inputs)
         if not reason:
             if self._shape is None or len(self._shape.names) < WRIST + 1:
                 reason = "nothing is known of the arm's shape"
@@ -149,13 +145,13 @@ class Equipping:
         walls = tuple([(border, place) for border, place in self._containment.every_place(settings.walls) if border.on])
         self._begin = estimate.q.copy()
         self._room = WristRoom(self._shape, self._begin, tooling.fitting.tool, settings.tools, borders=walls)
-        self._watch.begin(self._mean.mean()[:3])
+        self._watch.begin(estimate, self._mean.mean()[:3])
         tooling.wizard.clear()
         tooling.busy = True
         events.append(Event(Kind.WIZARD_STARTED, estimate.tick))
         self._settle()
 
-    def _against(self, estimate: Estimate, inputs: Inputs, contacts: tuple[Contact, ...]) -> str:
+    def _against(self, estimate: Estimate, inputs: Inputs) -> str:
         """Why the arm must not turn its wrist by itself now, or ""."""
         robot = self._robot
         if robot.mode not in (Mode.NORMAL, Mode.TEACH):
@@ -172,14 +168,7 @@ class Equipping:
             return f"check {JOINTS_SENSED}"
         if not wrench_ok(estimate):
             return "the flange force sensor is not valid"
-        return self._met(estimate, contacts) if self.moving else ""
-
-    def _met(self, estimate: Estimate, contacts: tuple[Contact, ...]) -> str:
-        """What the turning arm has met, or "". A load that nobody entered looks like a contact of the tool when it is sped up."""
-        gained = [contact for contact in contacts if contact.change is not Change.LOST and contact.part != TOOL]
-        if gained:
-            return f"contact at the {gained[0].part}: move the arm to where its wrist has room"
-        return self._watch.step(estimate, self._mean.mean()[:3])
+        return self._watch.step(estimate, self._mean.mean()[:3]) if self._stage else ""
 
     def _go_on(self, estimate: Estimate, settings: Settings, told: list[Event], events: list[Event]) -> None:
         """One tick in which nothing is against it."""

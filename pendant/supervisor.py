@@ -153,7 +153,7 @@ class Supervisor:
         self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
         mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode
-        self._equipping.step(estimate, inputs, self.settings, events, mode=mode, contacts=self._contacts)
+        self._equipping.step(estimate, inputs, self.settings, events, mode=mode)
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
         trying = self._free.phase is not _OFF
         if inputs.borders is not None:
@@ -199,7 +199,7 @@ class Supervisor:
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
         sequencer, robot, use = self._sequencer, self._robot, self._run.contact_use(self.settings.contact, estimate)
-        on = (use.on or self._run.feels or self._equipping.moving) and not (self._tooling.changing or self._haptics.busy)
+        on = (use.on or self._run.feels) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"

@@ -26,7 +26,7 @@ def test_measure_the_payload(visit: Callable[..., Page], cell: Cell, width: int,
     cell.pass_time(2.0)
     open_tab(page, "Tools")
     click(page, "Measure the payload")
-    page.get_by_text("The arm measures its payload").wait_for()
+    page.get_by_text("The arm measures its payload").first.wait_for()
     cell.wait(lambda: cell.happened(Kind.WIZARD_FINISHED), "measured", 90.0)
     page.get_by_text("2.0", exact=False).first.wait_for()
     click(page, "Take")

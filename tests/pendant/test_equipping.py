@@ -7,7 +7,6 @@ import pytest
 from msgspec.structs import replace
 
 from pendant.all_settings import Settings, apply
-from pendant.contact.contact_change import ArmPose, Change, Contact
 from pendant.decision import Decision
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Equipment
@@ -19,9 +18,9 @@ from pendant.program.steps import JointMove, Program, Wait
 from pendant.robot.reduced import SpeedLimits
 from pendant.supervisor import Supervisor
 from pendant.tick.modes import Law, Mode
-from pendant.tick.pose import UNTURNED, Pose
+from pendant.tick.pose import Pose
 from pendant.tooling.arm_shape import ArmShape
-from pendant.tooling.turn_watch import STRUCK
+from pendant.tooling.turn_watch import JOLTED, STRUCK
 from pendant.tooling.wrist_postures import SWING, WANTED
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import HalfSpace, Sphere
@@ -226,39 +225,14 @@ def test_a_hand_that_strikes_a_turning_arm_ends_it(share: float, ends: bool) -> 
         assert "at most 10 N: hands off the arm" in str(cell.events[-1].values["reason"])
 
 
-def contact(change: Change, part: str = "elbow") -> Contact:
-    pose = ArmPose(HOME, (0.0, 0.0, 0.0), UNTURNED)
-    return Contact(1, change, "hybrid", part, "joints", (0.0, 0.0, 9.0), (0.0, 0.0, 0.0), 0.0, 0, pose)
-
-
-@pytest.mark.parametrize(
-    ("change", "part", "ends"),
-    [
-        (Change.GAINED, "elbow", True),
-        (Change.CLAMPING, "forearm", True),
-        (Change.LOST, "elbow", False),
-        (Change.GAINED, "tool", False),
-    ],
-)
-def test_a_contact_of_a_link_ends_it_though_detection_is_off(
-    change: Change, part: str, ends: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_meets_a_link_before_the_sensor_ends_it() -> None:
     cell = Cell()
-    asked: list[bool] = []
-
-    def step(estimate: object, use: object, mode: Mode, on: bool) -> tuple[Contact, ...]:
-        asked.append(on)
-        return (contact(change, part),) if on and len(cell.moves) == 1 and cell.goal is not None else ()
-
-    assert not cell.supervisor.settings.contact.on
-    monkeypatch.setattr(cell.supervisor._monitor, "step", step)
     cell.turning()
-    assert not any(asked)
-    cell.run(3)
-    assert any(asked)
-    assert (Kind.WIZARD_STOPPED in cell.kinds()) is ends
-    if ends:
-        assert f"contact at the {part}" in str(cell.events[-1].values["reason"])
+    cell.changes = {"tau_ext": np.array([0.0, 0.0, 0.0, 1.1 * JOLTED, 0.0, 0.0])}
+    cell.step()
+    assert cell.events[-1].kind is Kind.WIZARD_STOPPED
+    assert "a joint felt 11 N·m, at most 10 N·m" in str(cell.events[-1].values["reason"])
+    assert cell.last.law is Law.BRAKE
 
 
 def test_a_hand_in_a_measurement_is_waited_for_and_then_told() -> None:

@@ -52,6 +52,9 @@ HINTS = {
     Mode.STOP: PanelText("Stopped", "See what happened, then press Reset.", Colour.RED),
 }
 PROGRAM_PAUSED = PanelText("The program is paused", "Run goes on with it, Stop ends it: both on the tab Teach.", Colour.AMBER)
+MEASURING = PanelText(
+    "The arm measures its payload", "It turns its wrist by itself: hands off. Stop measuring is on the tab Tools.", Colour.BLUE
+)
 CLOCK_PAUSED = PanelText(
     "The simulation is paused", "Nothing moves. Run, on the tab Lab, or the key P lets it go on.", Colour.AMBER
 )
@@ -120,6 +123,8 @@ def said(remembered: Remembered, decision: Decision, *, paused: bool = False) ->
         return HINTS[Mode.STOP] if remembered.stop is None else _told(remembered.stop)
     if paused:
         return CLOCK_PAUSED
+    if decision.wizard.doing:
+        return MEASURING
     if remembered.asking is not None and decision.phase in ASKED:
         return _told(remembered.asking)
     if remembered.note is not None:

@@ -52,7 +52,7 @@ class ReplayControls:
         self.ghost = MovingGhost(server, arm, "/ghost/replay", VIOLET)
         gui = server.gui
         names: tuple[str, ...] = (NOTHING,)
-        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Recording", names)
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Replay of", names)
         self.play = gui.add_button("Replay", icon=viser.Icon.PLAYER_PLAY, disabled=True)
         self.line = gui.add_slider("Time [s]", min=0.0, max=1.0, step=0.01, initial_value=0.0, visible=False)
         self.speed = gui.add_button_group("Speed", SPEEDS, visible=False)

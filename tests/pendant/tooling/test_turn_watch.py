@@ -6,7 +6,7 @@ import pytest
 
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK_RATE
-from pendant.tooling.turn_watch import PUSHED, SLOW_ELBOW, SLOW_JOINT, SLOW_TOOL, STRUCK, TurnWatch
+from pendant.tooling.turn_watch import JOLTED, PUSHED, SLOW_ELBOW, SLOW_JOINT, SLOW_TOOL, STRUCK, TurnWatch
 from tests.pendant.estimates import estimate
 
 WEIGHT = (0.0, 0.0, -20.0)
@@ -14,7 +14,7 @@ WEIGHT = (0.0, 0.0, -20.0)
 
 def watching() -> TurnWatch:
     watch = TurnWatch()
-    watch.begin(WEIGHT)
+    watch.begin(estimate(), WEIGHT)
     return watch
 
 
@@ -51,6 +51,26 @@ def test_but_no_farther_than_it_may_change_at_all() -> None:
 
 
 @pytest.mark.parametrize(
+    ("joint", "torque", "ends"),
+    [(3, 0.9 * JOLTED, False), (3, -1.1 * JOLTED, True), (5, 1.1 * JOLTED, True), (4, math.nan, True), (2, 5.0 * JOLTED, False)],
+)
+def test_a_torque_of_a_joint_of_the_wrist_that_comes_at_once(joint: int, torque: float, ends: bool) -> None:
+    watch = watching()
+    torques = [0.0] * 6
+    torques[joint] = torque
+    said = [felt(watch, 0.0, estimate(tau_ext=torques)) for _ in range(20)]
+    assert any(said) is ends
+
+
+def test_a_torque_that_was_there_before_is_no_jolt_nor_one_that_comes_slowly() -> None:
+    """A joint that bears a load from the beginning, which grows by 10 N·m a second: it is 5 N·m behind."""
+    watch = TurnWatch()
+    watch.begin(estimate(tau_ext=[30.0] * 6), WEIGHT)
+    said = [felt(watch, 0.0, estimate(tau_ext=[30.0 + 10.0 * k / TICK_RATE] * 6)) for k in range(3 * TICK_RATE)]
+    assert not any(said)
+
+
+@pytest.mark.parametrize(
     ("tool", "elbow", "joint", "ends"),
     [
         (SLOW_TOOL, SLOW_ELBOW, SLOW_JOINT, False),
@@ -67,5 +87,5 @@ def test_it_is_never_fast(tool: float, elbow: float, joint: float, ends: bool) -
 
 def test_it_begins_anew_with_the_force_that_is_felt_then() -> None:
     watch = watching()
-    watch.begin((30.0, 0.0, 0.0))
+    watch.begin(estimate(), (30.0, 0.0, 0.0))
     assert watch.step(estimate(), (30.0, 0.0, 0.0)) == ""

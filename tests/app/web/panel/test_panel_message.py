@@ -2,11 +2,12 @@
 
 import pytest
 
-from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, PASSING, PROGRAM_PAUSED, Remembered, said
+from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, MEASURING, PASSING, PROGRAM_PAUSED, Remembered, said
 from app.web.server import Served
 from pendant.events.event import Event, Kind
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Safety
+from pendant.tooling.payload_wizard import Progress
 from tests.app.fakes import decision
 from tests.app.web.fake_loop import FakeLoop
 
@@ -63,6 +64,16 @@ def test_what_is_paused_says_so(loop: FakeLoop, still: Served) -> None:
     loop.paused = True
     assert headline(loop, still) == CLOCK_PAUSED.headline
     assert "Clock paused" in still.panel.light.shown
+
+
+def test_an_arm_that_measures_its_payload_says_so_until_it_stops(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.ZERO_DUE, force=3.0, torque=0.1)
+    loop.wizard = Progress(2, doing="turns the wrist")
+    assert headline(loop, still) == MEASURING.headline
+    stop_by_limit(loop)
+    assert headline(loop, still) == "Stopped: flange acceleration"
+    loop.mode, loop.wizard = Mode.TEACH, Progress(2)
+    assert headline(loop, still) != MEASURING.headline
 
 
 def test_start_over_takes_every_message_away(loop: FakeLoop, still: Served) -> None:
