@@ -21,6 +21,8 @@ PIP := $(BIN)/python $(INSTALL)
 WORKERS ?= 2
 SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
+# Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
 .PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels unit e2e e2e-full wheel browser pictures
@@ -70,7 +72,7 @@ contracts: $(VENV)/dev.stamp
 
 # A fresh clone compiles its kernels and modules once, and not in each worker and process of the tests.
 kernels: $(VENV)/dev.stamp
-	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
+	$(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
 
 unit: $(VENV)/dev.stamp | pictures
 	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10

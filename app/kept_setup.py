@@ -13,6 +13,7 @@ from app.files.taught_program import Lesson
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import Setup
 from pendant.all_settings import Settings, describe, value_of
+from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 
@@ -27,8 +28,8 @@ class Kept(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     taught: Lesson
 
 
-def setup_of(arm: Arm, scenario: Scenario, settings: Settings) -> Setup:
-    """A configuration that begins with this arm, scenario and settings."""
+def setup_of(arm: Arm, scenario: Scenario, settings: Settings, walls: tuple[AnyBorder, ...]) -> Setup:
+    """A configuration that begins with this arm, scenario, settings, walls and areas."""
     changed = {row.name: value_of(settings, row.name) for row in describe() if value_of(settings, row.name) != row.default}
     return Setup(
         robot=arm.name,
@@ -42,8 +43,9 @@ def setup_of(arm: Arm, scenario: Scenario, settings: Settings) -> Setup:
         seed=scenario.seed,
         mismatch=scenario.mismatch,
         soft_sensor=scenario.soft_sensor,
+        self_contact=scenario.self_contact,
         world=scenario.world,
-        walls=scenario.walls,
+        walls=list(walls),
     )
 
 
@@ -77,7 +79,7 @@ class Keeper:
     def __init__(self, folder: Path, arm: str) -> None:
         self.path = folder / f"{arm}.yaml"
         self.problem = ""
-        self._seen: tuple[Lesson, Scenario, Settings] | None = None
+        self._seen: tuple[object, ...] | None = None
         self._written = -OFTEN
 
     def read(self) -> Kept | None:
@@ -88,16 +90,25 @@ class Keeper:
         """
         return load(self.path, Kept) if self.path.is_file() else None
 
-    def see(self, lesson: Lesson, arm: Arm, scenario: Scenario, settings: Settings, *, now: float | None = None) -> None:
-        """Write what has changed since it was seen first; `now` is the clock [s]."""
+    def see(
+        self,
+        lesson: Lesson,
+        arm: Arm,
+        scenario: Scenario,
+        settings: Settings,
+        *,
+        walls: tuple[AnyBorder, ...],
+        now: float | None = None,
+    ) -> None:
+        """Write what has changed since it was seen first; `walls` are all of them as they are, `now` is the clock [s]."""
         clock = time.monotonic() if now is None else now
-        seen = (lesson, scenario, settings)
+        seen = (lesson, scenario, settings, walls)
         if self._seen is None:
             self._seen = seen
         if self.problem or all(a is b for a, b in zip(seen, self._seen, strict=True)) or clock < self._written + OFTEN:
             return
         self._seen, self._written = seen, clock
-        self.problem = written(self.path, text_of(Kept(setup=setup_of(arm, scenario, settings), taught=lesson)))
+        self.problem = written(self.path, text_of(Kept(setup=setup_of(arm, scenario, settings, walls), taught=lesson)))
 
 
 def written(path: Path, text: str) -> str:

@@ -2,6 +2,7 @@
 
 import signal
 import threading
+import time
 import webbrowser
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,9 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.files.checked import BadInput
-from app.files.library import mesh_path
+from app.files.library import mesh_path, robots
 from app.files.taught_program import Lesson
-from app.kept_setup import Keeper
+from app.kept_setup import Keeper, keeper_for
 from app.log.live import LiveRecording
 from app.log.playback import Player
 from app.log.reader import read
@@ -22,15 +23,20 @@ from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
 from app.robot_serving import Network, open_interfaces, until_stopped
 from app.runs.runner import simulate
-from app.session.prepare import Prepared
+from app.session.prepare import Prepared, prepare
+from app.session.session_file import Setup
 from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.listening import access_through, free_port
 from app.web.access.site import Site
+from app.web.arm_change import BroughtArm, ReadyArm, meshes_of
 from app.web.replay import Replay
 from app.web.server import Served
 from app.web.server import serve as serve_web
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
+
+LOOK = 0.01
+"""Time between two looks at whether the next arm runs [s]."""
 
 
 class Serving(NamedTuple):
@@ -72,12 +78,13 @@ def serve_until_interrupted(
     ended = until_stopped()
     loop = Loop(lambda: simulate(prepared))
     recording = LiveRecording(loop, record or Path())
-    interfaces = None if network is None else open_interfaces(loop, prepared, network, recording)
+    arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
+    interfaces = arms.open(prepared)
     try:
         loop.start()
         scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
         robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
-        page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson)
+        page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
         served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
         try:
             yield Serving(served, interfaces)
@@ -85,8 +92,7 @@ def serve_until_interrupted(
         finally:
             served.close()
     finally:
-        if interfaces is not None:
-            interfaces.close()
+        arms.close()
         loop.stop()
 
 
@@ -113,6 +119,80 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
         ended.wait()
     finally:
         shown.close()
+
+
+class ServedArms:
+    """Brings one arm after the other into a loop: another begins as if the server had been started with it.
+
+    Clients of the network are parted from the robot as from one that is switched off; the next one answers at the same ports, if
+    these protocols can tell it. A recording goes on in a file of its own.
+
+    Args:
+        loop: that runs, or will.
+        recording: of it.
+        network: where the robot's network interfaces are to be; None: there are none.
+        folder: where set-ups are kept; None: nothing is.
+    """
+
+    def __init__(
+        self, loop: Loop, recording: LiveRecording, *, network: Network | None = None, folder: Path | None = None
+    ) -> None:
+        self._loop, self._recording, self._network, self._folder = loop, recording, network, folder
+        self._interfaces: RobotInterfaces | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The shipped arms."""
+        return tuple(robots())
+
+    def open(self, prepared: Prepared) -> RobotInterfaces | None:
+        """Open the network interfaces, where they are wanted. Raises BadInput as `open_interfaces`."""
+        self._interfaces = (
+            None if self._network is None else open_interfaces(self._loop, prepared, self._network, self._recording)
+        )
+        return self._interfaces
+
+    def close(self) -> None:
+        """End the network interfaces, if they are open."""
+        if self._interfaces is not None:
+            self._interfaces.close()
+            self._interfaces = None
+
+    def ready(self, name: str) -> ReadyArm:
+        """See `ArmChange`."""
+        shipped = prepare(Setup(robot=name), "the page")
+        keeper = None if self._folder is None else keeper_for(shipped.arm, self._folder)
+        prepared, kept = shipped, None
+        try:
+            kept = None if keeper is None else keeper.read()
+            if kept is not None:
+                prepared = prepare(kept.setup, "kept")
+        except BadInput:  # a file that cannot be used stays as it is, and nothing is kept
+            keeper = kept = None
+        simulate(prepared)
+        return ReadyArm(prepared, keeper, None if kept is None else kept.taught, meshes_of(prepared.arm))
+
+    def bring(self, arm: ReadyArm) -> BroughtArm:
+        """See `ArmChange`."""
+        loop, prepared = self._loop, arm.prepared
+        told: list[str] = []
+        self.close()
+        loop.companion = None
+        loop.begin(lambda: simulate(prepared))
+        while not loop.failure and loop.latest().scenario is not prepared.scenario:
+            time.sleep(LOOK)
+        if loop.failure:
+            raise BadInput("the page", "arm", prepared.arm.name, f"an arm that can be simulated: {loop.failure}")
+        if self._recording.on:
+            told.append("The recording goes on in a file of its own.")
+        if self._network is not None:
+            try:
+                self.open(prepared)
+                told.append("Network clients were parted from the last arm and can come again.")
+            except BadInput as refusal:
+                told.append(f"The network interfaces have ended: {refusal}.")
+        scripts = scripts_beside(loop, prepared.arm) if self._interfaces is None else self._interfaces.scripts
+        return BroughtArm(self._interfaces, scripts, " ".join(told))
 
 
 def scripts_beside(loop: Loop, arm: Arm) -> ScriptRunner | None:

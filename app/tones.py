@@ -27,6 +27,7 @@ class Tone(Enum):
     ASK = ((660.0, 880.0), 0.12)
     FREE = ((440.0, 660.0), 0.09)
     HELD = ((660.0, 440.0), 0.09)
+    SIGN = ((880.0, 880.0), 0.08)
     WALL = ((990.0,), 0.07)
     COUNT = ((770.0,), 0.05)
 
@@ -42,13 +43,20 @@ def tone_for(before: Decision, now: Decision) -> Tone | None:
     """What is to be heard at the change from one decision to a later one; of several things the most urgent."""
     if now.mode is Mode.STOP and before.mode is not Mode.STOP:
         return Tone.STOP
-    if now.phase is Phase.FEEDBACK and before.phase is not Phase.FEEDBACK:
+    if _asks(now) and not _asks(before):
         return Tone.ASK
+    if now.signs > before.signs:
+        return Tone.SIGN
     if (now.mode is Mode.FREE_DRIVE) is not (before.mode is Mode.FREE_DRIVE):
         return Tone.FREE if now.mode is Mode.FREE_DRIVE else Tone.HELD
     if any(wall.near > 0.0 for wall in now.walls) and not any(wall.near > 0.0 for wall in before.walls):
         return Tone.WALL
     return Tone.COUNT if _seconds(now) < _seconds(before) else None
+
+
+def _asks(decision: Decision) -> bool:
+    """The robot asks for a confirmation, before the activation sequence or within it."""
+    return decision.phase is Phase.FEEDBACK or any(period.name == "feedback" for period in decision.periods)
 
 
 def _seconds(decision: Decision) -> int:

@@ -1,4 +1,8 @@
-"""Whether any script can hold up the robot: damaged programs, and programs that ask for all there is."""
+"""Whether any script can hold up the robot: damaged programs, and programs that ask for all there is.
+
+First each runs tick by tick, where nothing waits for a clock: no surprise, a clear error. Then all of them are sent to a robot
+whose loop keeps the clock's pace, and whatever they ask for, it loses no time.
+"""
 
 import random
 import resource
@@ -12,16 +16,23 @@ import yaml
 from app.api import session, stepped
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
+from app.runs.runner import simulate
+from app.session.prepare import prepare
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
 from benchmarks.common import Report, main
 from pendant.inputs import NOTHING
+from pendant.tick.modes import TICK
 from sim.exchange.desk import Wishes
+from sim.run.loop import Loop
 
 PROGRAMS = Path(__file__).parent.parent / "tests" / "app" / "urscript" / "conformance.yaml"
 
 LONGEST = 700
 """Ticks that a program gets."""
+
+PATIENCE = 1.2
+"""Time that it gets in the loop: one that lets no time pass is ended after a second [s]."""
 
 SNIPPETS = (
     "end",
@@ -145,6 +156,36 @@ def damaged(count: int, seed: int) -> Iterator[str]:
         yield text
 
 
+def beside_the_clock(report: Report, programs: list[tuple[str, float]]) -> None:
+    """Send programs to a robot whose loop keeps the clock's pace; each with the time that it gets [s]."""
+    prepared = prepare(session({"title": "scripts", "robot": "ur5e", "duration": 1.0}), "scripts")
+    loop = Loop(lambda: simulate(prepared))
+    cabinet = Cabinet(lambda: loop.simulation, prepared.arm.chain.joints, ProgramFolder())
+    runner = ScriptRunner(cabinet)
+    loop.companion = cabinet
+    loop.start()
+    try:
+        time.sleep(1.0)
+        begun, before, lost = time.perf_counter(), cabinet.ticks, loop.dropped
+        for text, seconds in programs:
+            end = time.perf_counter() + seconds
+            try:
+                runner.offer(text)
+            except ScriptTrouble:
+                continue
+            while time.perf_counter() < end:
+                time.sleep(0.01)
+                if runner.state is None:
+                    break
+            runner.stop()
+        took, ticks = time.perf_counter() - begun, cabinet.ticks - before
+    finally:
+        loop.stop()
+    report.row("beside the clock: time lost by stalls", loop.dropped - lost, "s", at_most=0.0, n=len(programs))
+    report.row("beside the clock: simulated over real time", ticks * TICK / took, at_least=0.99, at_most=1.01, n=ticks)
+    report.row("beside the clock: the loop still runs", float(not loop.failure), at_least=1.0)
+
+
 def measure(report: Report) -> None:
     """Fill the report."""
     course, full = Course(), report.options.full
@@ -163,6 +204,8 @@ def measure(report: Report) -> None:
         report.row(f"{name} scripts: ended with an error", sum(bool(each.error) for each in ended), "scripts", n=len(ended))
         report.row(f"{name} scripts: longest part of a tick", max(each.longest for each in ended), "ms", n=len(ended))
         report.notes += sorted({each.surprise for each in wrong})
+    sent = [(text, 0.05) for text in damaged(1000 if full else 50, report.options.seed + 1)]
+    beside_the_clock(report, [*sent, *((text, PATIENCE) for text in hostile(200 if full else 27))])
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     report.row("memory that all of them took", grown, "MB", at_most=400.0)
 

@@ -19,7 +19,7 @@ from pendant.freedrive.settings import (
 )
 from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
-from pendant.limits.settings import AxisSettings, JointLimits, LimitSettings, Soft, Static
+from pendant.limits.settings import AxisSettings, JointLimits, JointSettings, LimitSettings, Soft, Static
 from pendant.program.settings import ProgramUse
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
@@ -83,6 +83,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     unexplained: Unexplained = Unexplained()
     soft: Soft = Soft()
     axes: AxisSettings = AxisSettings()
+    joints: JointSettings = JointSettings()
     joint_limits: JointLimits = JointLimits()
     walls: WallSettings = WallSettings()
     haptics: HapticUse = HapticUse()

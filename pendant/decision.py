@@ -48,7 +48,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
     balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)
-    locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose (FD-4)
+    locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose and of the joints' angles (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
     doubtful: bool = False  # it may be that nobody leads the free arm: its friction is not compensated (FD-19)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
@@ -60,6 +60,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
     force: ForceMode | None = None  # with which the arm pushes besides its motion, under Law.FOLLOW
+    signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
 
     @property

@@ -8,6 +8,7 @@ from pendant.motion.script_requests import Scripted
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
 from pendant.tick.words import Word
+from pendant.walls.definitions import AnyBorder
 
 
 class Button(Word):
@@ -42,8 +43,9 @@ class Command(Word):
     RESUME_PROGRAM = "resume_program"
     STOP_PROGRAM = "stop_program"
     WIZARD_MEASURE = "wizard_measure"  # measure the payload in this posture
+    WIZARD_RUN = "wizard_run"  # the arm turns its wrist by itself and measures the payload
     WIZARD_APPLY = "wizard_apply"  # configure what was found
-    WIZARD_CLEAR = "wizard_clear"  # forget the postures
+    WIZARD_CLEAR = "wizard_clear"  # forget the postures; an arm that turns its wrist for them comes to rest
     ZERO_SENSOR = "zero_sensor"  # what the flange force/torque sensor says of the untouched arm is subtracted from now on
     DETECTION = "detection"  # switch contact detection on or off (CD-1)
 
@@ -70,6 +72,7 @@ class Inputs:
     jog: JogMove | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
     jog_released: bool = False  # that button was let go
     script: Scripted | None = None  # what the running script wants, said in this tick (a keep-alive)
+    borders: tuple[AnyBorder, ...] | None = None  # walls and areas from now on, all of them; None: as they were
 
 
 NOTHING = Inputs()

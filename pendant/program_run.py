@@ -1,12 +1,16 @@
 """What moves the arm by itself: a program, with its commands and its tick in mode RUN, and jogging."""
 
+import math
+
 from pendant.all_settings import Settings
 from pendant.contact.contact_monitor import ContactMonitor
+from pendant.contact.operating import OperatingSensitivity, Operation, follows
+from pendant.contact.settings import ContactUse
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import JOINTS_SENSED, WrenchMean, joints_ok, motion_ok
 from pendant.motion.scripting import Scripting
-from pendant.program.steps import Program, ProgramState, misfit
+from pendant.program.steps import ApplyForce, LinearMove, Program, ProgramState, misfit
 from pendant.robot.jogging import Jogging
 from pendant.robot.robot_mode import Robot
 from pendant.settings.schema import ticks
@@ -28,7 +32,7 @@ PROGRAM_COMMANDS = STARTS_FROM.keys() | {Command.PAUSE_PROGRAM, Command.RESUME_P
 class ProgramRun:
     """Steers the robot's sequencer, and jogs."""
 
-    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot", "scripting")
+    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot", "_sensitivity", "scripting")
 
     def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int) -> None:
         """
@@ -40,12 +44,24 @@ class ProgramRun:
         self._robot, self._mean, self._n = robot, mean, n_joints
         self._jogging = Jogging(robot, n_joints)
         self.scripting = Scripting(robot.sequencer)
+        self._sensitivity = OperatingSensitivity()
         self._origin = Mode.TEACH  # where the program was started from
 
     @property
     def feels(self) -> bool:
         """The running program waits for a change in contact, or looks for it."""
         return self._robot.sequencer.until is not None or self.scripting.feeling
+
+    def contact_use(self, use: ContactUse, estimate: Estimate) -> ContactUse:
+        """The settings of contact detection in this tick: their thresholds follow what the robot does (CD-11)."""
+        if not follows(use):
+            return use
+        move = self._robot.sequencer.move
+        acceleration = move.acceleration if isinstance(move, LinearMove) else 0.0
+        force = math.hypot(*move.force) if isinstance(move, ApplyForce) else 0.0
+        torque, current = float(abs(estimate.tau_J).max()), float(abs(estimate.current).max())
+        running = self._robot.mode is Mode.RUN
+        return self._sensitivity.step(use, Operation(acceleration, force, torque, current, running))
 
     def step(
         self,
@@ -86,6 +102,10 @@ class ProgramRun:
             self._go_on(estimate, monitor, settings, events)
             if sequencer.tool_on is not tool_on:
                 events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
+            if sequencer.telling is not None:
+                says: Values = {"name": robot.program_name, "text": sequencer.telling.text, "tone": sequencer.telling.tone}
+                events.append(Event(Kind.PROGRAM_TELLS, estimate.tick, says))
+                sequencer.telling = None
             for number in sorted(outputs ^ sequencer.outputs):
                 state = "on" if number in sequencer.outputs else "off"
                 events.append(Event(Kind.OUTPUT_SWITCHED, estimate.tick, {"number": number, "state": state}))

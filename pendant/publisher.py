@@ -3,9 +3,9 @@
 from pendant.all_settings import Settings, limits_checksum
 from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
-from pendant.events.event import Event
+from pendant.events.event import Event, Kind
 from pendant.haptics import Shake
-from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of
+from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of, with_joints
 from pendant.motion.scripting import Scripting
 from pendant.program.steps import ProgramState
 from pendant.robot.reduced import SpeedLimits
@@ -18,17 +18,18 @@ from pendant.tooling.tool_in_use import Tooling
 class Publisher:
     """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
 
-    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_taring", "_tooling")
+    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_signs", "_taring", "_tooling")
 
     def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting, settings: Settings) -> None:
         self._robot, self._tooling, self._taring, self._scripting = robot, tooling, taring, scripting
+        self._signs = 0
         self.refresh(settings)
 
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         self._settings = settings
         self._checksum = limits_checksum(settings)
-        self._locks = axis_locks(settings.axes)
+        self._locks = with_joints(axis_locks(settings.axes), settings.joints)
 
     def step(
         self,
@@ -51,6 +52,9 @@ class Publisher:
         robot, tooling, taring, use = self._robot, self._tooling, self._taring, self._settings
         free, sequencer, mode = robot.free, robot.sequencer, robot.mode
         arm, phase, helping = free.arm, free.phase, free.helping
+        if events:
+            told = sum(event.kind is Kind.PROGRAM_TELLS and event.values["tone"] is True for event in events)
+            self._signs += told + (len(contacts) if use.contact.audible else 0)
         locks = self._free_axes() if mode is _FREE_DRIVE else None
         trying = phase is _SEQUENCE
         balance = free.balance if trying else None
@@ -95,15 +99,16 @@ class Publisher:
             static=robot.static,
             speed=use.program.speed,
             force=self._scripting.force,
+            signs=self._signs,
             script_done=self._scripting.done,
         )
 
     def _free_axes(self) -> AxisLocks | None:
-        """What free-drive keeps of the tool's pose: as the script says, else as the settings do."""
+        """What free-drive keeps of the tool's pose, as the script says, else as the settings do, and of the joints."""
         guided = self._scripting.guided
         if guided is None or all(guided.axes):
             return self._locks
-        return locks_of(guided.axes, guided.R_BU, self._settings.axes)
+        return with_joints(locks_of(guided.axes, guided.R_BU, self._settings.axes), self._settings.joints)
 
 
 _FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick

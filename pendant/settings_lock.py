@@ -6,6 +6,18 @@ from pendant.settings.schema import SettingError, Value
 from pendant.tick.modes import Mode
 
 
+def locked(mode: Mode, trying: bool) -> str:
+    """Where no limit, wall or area may change, if that is now; else "".
+
+    Args:
+        mode: of the robot.
+        trying: free-drive is being activated, from the signal on.
+    """
+    if not trying and mode not in (Mode.RUN, Mode.FREE_DRIVE):
+        return ""
+    return str(mode) if mode is Mode.FREE_DRIVE or not trying else "the activation of free-drive"
+
+
 def change(settings: Settings, changes: dict[str, Value], *, mode: Mode, trying: bool, tick: int) -> tuple[Settings, list[Event]]:
     """The settings after the changes that are allowed, each on its own, and what became of every change.
 
@@ -19,8 +31,7 @@ def change(settings: Settings, changes: dict[str, Value], *, mode: Mode, trying:
     events: list[Event] = []
     for name, value in changes.items():
         try:
-            if find(name).locked and (trying or mode in (Mode.RUN, Mode.FREE_DRIVE)):
-                where = mode if mode is Mode.FREE_DRIVE or not trying else "the activation of free-drive"
+            if find(name).locked and (where := locked(mode, trying)):
                 raise SettingError(name, value, f"no change of a limit in {where}")
             old = value_of(settings, name)
             settings = apply(settings, {name: value})

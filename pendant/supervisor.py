@@ -10,6 +10,7 @@ from pendant.contact.contact_monitor import ContactMonitor
 from pendant.context import Surroundings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
+from pendant.equipping import Equipping
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Transition
 from pendant.freedrive.periods import RUNNING
@@ -28,16 +29,16 @@ from pendant.robot.robot_mode import Robot
 from pendant.robot.safety_inputs import SafetyInputs
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
-from pendant.settings_lock import change
+from pendant.settings_lock import change, locked
 from pendant.signals.enabling_device import EnablingDevice
 from pendant.signals.keep_alive import KeepAlive
 from pendant.signals.sources import PROGRAM
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law, Mode, Phase, way_out
-from pendant.tick.pose import Pose, Wrench, from_rpy
+from pendant.tick.pose import Pose, Wrench
 from pendant.tick.state import State, state_of
+from pendant.tooling.arm_shape import ArmShape
 from pendant.tooling.tool_in_use import Fitting, Tooling
-from pendant.walls.barrier import Place
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder
 from pendant.zeroing import ForceReaders, TareRun
@@ -67,6 +68,7 @@ class Supervisor:
         ranges: tuple[float, ...] | None = None,
         equipment: Equipment | None = None,
         sensor: SensorSpec | None = None,
+        shape: ArmShape | None = None,
     ) -> None:
         """
         Args:
@@ -79,6 +81,7 @@ class Supervisor:
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
             sensor: what is known of the flange force/torque sensor; None: that of a UR5e.
+            shape: of the arm; None: nothing is known of it, and the payload wizard turns no wrist by itself.
         """
         self.settings = settings
         self._joints = joints or tuple(f"joint {number}" for number in range(1, n_joints + 1))
@@ -93,16 +96,18 @@ class Supervisor:
         self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
-        self._containment = Containment(borders, frames or {})
-        self._free = FreeDrive(self._joints, rated, self._containment, JointZones(rated, ranges or (math.inf,) * n_joints))
+        self.containment = Containment(borders, frames or {})
+        self._free = FreeDrive(self._joints, rated, self.containment, JointZones(rated, ranges or (math.inf,) * n_joints))
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
         self._tooling = Tooling(equipment or Equipment())
+        self._equipping = Equipping(
+            self._tooling, self._robot, self._mean, self._calls, containment=self.containment, shape=shape
+        )
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
         self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
         self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting, settings=settings)
-        self._turn_tool()
         self._refresh()
 
     @property
@@ -126,11 +131,6 @@ class Supervisor:
         return self._tooling.tools
 
     @property
-    def places(self) -> tuple[tuple[AnyBorder, Place], ...]:
-        """Every wall and area that holds, and every area that will in free-drive, with where its shape lies in B."""
-        return self._containment.every_place(self.settings.walls)
-
-    @property
     def state(self) -> State:
         """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
 
@@ -152,13 +152,17 @@ class Supervisor:
         self._safety.watch(estimate, self.settings, events)
         self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
-        self._equip(estimate, inputs, events)
+        mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode
+        self._equipping.step(estimate, inputs, self.settings, events, mode=mode, contacts=self._contacts)
         self._tare.step(estimate, commands, self.settings, events, wrench_ok=wrench_ok)
+        trying = self._free.phase is not _OFF
+        if inputs.borders is not None:
+            where = "the payload wizard's motion" if self._tooling.busy else locked(self._robot.mode, trying)
+            events += self.containment.change(inputs.borders, where, estimate.tick)
         wanted = inputs.settings
         if commands and Command.DETECTION in commands:
             wanted = {**wanted, "contact.on": not self.settings.contact.on}
         if wanted:
-            trying = self._free.phase is not _OFF
             self.settings, changed = change(self.settings, wanted, mode=self._robot.mode, trying=trying, tick=estimate.tick)
             events += changed
             self._refresh()
@@ -194,12 +198,12 @@ class Supervisor:
 
     def _feel(self, estimate: Estimate, events: list[Event]) -> None:
         """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
-        sequencer, robot, use = self._sequencer, self._robot, self.settings.contact
-        on = (use.on or self._run.feels) and not (self._tooling.changing or self._haptics.busy)
+        sequencer, robot, use = self._sequencer, self._robot, self._run.contact_use(self.settings.contact, estimate)
+        on = (use.on or self._run.feels or self._equipping.moving) and not (self._tooling.changing or self._haptics.busy)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"
-            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact):
+            if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact, estimate.v_tcp):
                 robot.braking, action = True, until.then
             events.append(told(contact, estimate.tick, action))
 
@@ -238,19 +242,6 @@ class Supervisor:
         if happened.transition in NOT_ENTERED and self._sequencer.guiding:
             self._run.fail("free-drive was not entered", estimate.tick, events)
 
-    def _equip(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> None:
-        robot, tooling = self._robot, self._tooling
-        mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else robot.mode
-        events += tooling.step(estimate, inputs, self.settings.tools, mode=mode, phase=self._free.phase, still=robot.static)
-        if tooling.changing:
-            self._calls.relearn()
-            self._free.forget()
-            self._turn_tool()
-
-    def _turn_tool(self) -> None:
-        """Who needs to know how the tool centre point is turned in the flange."""
-        self._containment.R_FT = self._sequencer.R_FT = from_rpy(*self._tooling.fitting.tool.rpy)
-
     def _refresh(self) -> None:
         """What every tick needs of the settings."""
         self._grip()
@@ -262,7 +253,8 @@ class Supervisor:
 
     def _publish(self, events: list[Event]) -> Decision:
         """What follows from all of it."""
-        law, haptics, speeds = self._robot.law(), self._haptics, self._safety.speed_limits(self.settings)
+        law, haptics = self._robot.law(), self._haptics
+        speeds = self._equipping.limits(self._safety.speed_limits(self.settings))
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)

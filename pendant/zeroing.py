@@ -106,8 +106,8 @@ class TareRun:
             return "free-drive is on" if robot.mode is _FREE_DRIVE else "free-drive is being tried"
         if tooling.changing:
             return "the payload is being changed"
-        if tooling.wizard.left:
-            return "a posture is being measured"
+        if tooling.busy or tooling.wizard.left:
+            return "the payload is being measured"
         if not wrench_ok:
             return "the flange force sensor is not valid"
         if self._haptics.busy:

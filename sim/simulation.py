@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
-from pendant.sensor.sensor_spec import SensorSpec
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from pendant.tick.pose import Pose
 from pendant.tooling.tool_in_use import Fitting
+from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
-from sim.arm.chain import NOTHING, chain, load_body, plate_body, tool_body
+from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.control.controller import Controller
@@ -29,7 +29,7 @@ from sim.plant.model import Step
 from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing import calibration
-from sim.sensing.sensor_drift import SensorDrift, lasting, most
+from sim.sensing.sensor_drift import SensorDrift, sensor_spec
 from sim.sensing.sensors import Sensors
 
 Array = NDArray[np.float64]
@@ -46,16 +46,6 @@ def known_frames(scenario: Scenario) -> dict[str, Pose]:
         a, b, c, d, e, f, g, h, i = (R_BW @ R).ravel().tolist()
         poses[name] = Pose((x, y, z), (a, b, c, d, e, f, g, h, i))
     return poses
-
-
-def _sensor_spec(arm: Arm) -> SensorSpec:
-    """What the supervisor knows of the arm's flange sensor."""
-    force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
-    if force_torque is None:
-        return SensorSpec()
-    drift, offset = lasting(force_torque.drift), most(force_torque.drift)
-    shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
-    return SensorSpec(*drift, *offset, force_torque.force.noise, force_torque.torque.noise, shaken)
 
 
 class Simulation:
@@ -98,7 +88,8 @@ class Simulation:
             borders=tuple(scenario.walls),
             frames=known_frames(scenario),
             equipment=Equipment(tools, used, scenario.payload_configured, arm.payload, fixed),
-            sensor=_sensor_spec(arm),
+            sensor=sensor_spec(arm),
+            shape=arm_shape(arm),
         )
         self.zero, self._zero = self.supervisor.zero, None  # until the sensor is zeroed
         self.fitting = self.supervisor.fitting
@@ -124,6 +115,11 @@ class Simulation:
     def tools(self) -> tuple[Tool, ...]:
         """The pendant's table of tools as it is now."""
         return self.supervisor.tools
+
+    @property
+    def walls(self) -> tuple[AnyBorder, ...]:
+        """The pendant's walls and areas as they are now."""
+        return self.supervisor.containment.borders
 
     @property
     def estimate(self) -> Estimate:
@@ -268,7 +264,7 @@ class Simulation:
             plant.touched,
             self.scenario,
             self._reference(),
-            self.supervisor.places,
+            self.supervisor.containment.every_place(self.settings.walls),
         )
 
     def _reference(self) -> Array | None:

@@ -4,12 +4,12 @@ After a change that is meant, `python -m tests.golden` writes the file anew; loo
 """
 
 import json
-import multiprocessing
 import tempfile
 from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
 
+from app.engine.spreading import spread
 from app.files.checked import load
 from app.runs.runner import run, simulate
 from app.session.prepare import prepare
@@ -57,8 +57,7 @@ def _done(name: str) -> tuple[str, list[Deed]]:
 
 def write() -> None:
     """Run every bundled session and keep what it did."""
-    with multiprocessing.get_context("spawn").Pool(2) as pool:
-        everything = dict(pool.imap_unordered(_done, sorted(bundled("sessions"))))
+    everything = dict(done for _, done in spread(_done, sorted(bundled("sessions")), workers=2))
     lines = [f"{json.dumps(name)}: {json.dumps(everything[name])}" for name in sorted(everything)]
     FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 

@@ -17,7 +17,12 @@ CONFIG = {
     "distributed.admin.low-level-log-length": 100,  # memory stays as it is, however many runs
     "distributed.admin.log-length": 100,
     "distributed.admin.tick.limit": "30s",  # a machine that is busy is no news
+    "distributed.admin.tick.interval": "500ms",  # by default each process stops the session in it fifty times a second to look
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.disk": False,
+    "distributed.worker.memory.monitor-interval": "1s",
     "distributed.comm.timeouts.connect": "10s",
+    "distributed.deploy.lost-worker-timeout": "60s",  # a process that died starts again; on a busy machine that takes long
 }
 ANSWER = 10.0
 """How long a scheduler may take to answer [s]."""
@@ -67,8 +72,12 @@ def connect(workers: int, scheduler: str | None) -> Any:
 
 
 def crippled(workers: int) -> bool:
-    """Whether a process of the embedded cluster ended for good: Dask does not replace one that was killed while it started."""
-    return any(each.status.name in ("closed", "failed") for each in _embedded[workers].workers.values())
+    """Whether a process of the embedded cluster ended for good.
+
+    Dask does not replace one that was killed while it started, and lets go of one that is late to start again.
+    """
+    there = _embedded[workers].workers
+    return len(there) < workers or any(each.status.name in ("closed", "failed") for each in there.values())
 
 
 def end_embedded(workers: int) -> None:

@@ -3,10 +3,11 @@
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
 from itertools import chain, islice
 from typing import Any, TypeVar
 
-from app.engine.dask_client import PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
+from app.engine.dask_client import ANSWER, PATIENCE, compare, connect, cores, crippled, dashboard, end_embedded
 from app.engine.source import identity
 from app.files.bad_input import ABSENT, BadInput
 
@@ -19,12 +20,19 @@ AHEAD = 3
 LOOK = 3.0
 """How often the processes of this machine are looked at [s]."""
 
+PAUSE = 0.005
+"""How often it is looked for results [s]: one that stays with its worker may go with it."""
+
 LIVES = 1
 """Times that a piece is given out again, alone, after it was lost with all workers that tried it."""
 
 
 class Lost(Exception):
     """A piece of work whose workers died each time."""
+
+
+class Away(Exception):
+    """A result that went with its worker or its scheduler before it came here, or is late."""
 
 
 def spread(
@@ -101,6 +109,12 @@ class _Spreading:
                 continue
             try:
                 result = self._result(future, under_way[place], lost, lives.setdefault(place, LIVES))
+            except Away:
+                # Dask does the piece again, or calls its future cancelled or lost.
+                self._places[future] = place
+                self._ready.add(future)
+                time.sleep(PAUSE)
+                continue
             except Lost:
                 # It, or one that a worker had beside it, ends workers: it is tried again when nothing else is under way.
                 lives[place] -= 1
@@ -119,7 +133,7 @@ class _Spreading:
                     return None
             if self._ready.has_ready():
                 return next(self._ready)
-            time.sleep(0.005)
+            time.sleep(PAUSE)
 
     def _begin(self, under_way: dict[int, Any]) -> None:
         from distributed import as_completed
@@ -144,13 +158,17 @@ class _Spreading:
         from distributed import KilledWorker
 
         try:
-            return future.result(timeout=PATIENCE)
+            return future.result(timeout=ANSWER)  # it is small; meanwhile nobody looks after the processes
         except KilledWorker:
             if lives > 0:
                 raise Lost from None
             if lost is None:
                 raise BadInput("workers", "", ABSENT, "died each time that they did a piece of the work") from None
             return lost(item)
+        except (TimeoutError, CancelledError, OSError):
+            if future.status == "error":  # raised by the work itself
+                raise
+            raise Away from None
 
     def _threads(self) -> int:
         if self._scheduler is None:

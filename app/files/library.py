@@ -39,7 +39,8 @@ def load_tool(name_or_path: str | Path, where: str = "tools") -> ToolModel:
     Raises:
         BadInput: no such tool, or its file does not make sense.
     """
-    return load(_path(name_or_path, "tools", "tool", where), ToolModel)
+    path = _path(name_or_path, "tools", "tool", where)
+    return _tool(path, read(path, path.name))
 
 
 def mesh_path(arm_name: str, link: str) -> Path:
@@ -58,6 +59,12 @@ def mesh_path(arm_name: str, link: str) -> Path:
 def shipped(name: str, folder: str) -> bool:
     """Whether `name` is one of those that the product ships in a folder of its library, "robots" or "tools"."""
     return name in _names(folder)
+
+
+@lru_cache(maxsize=64)
+def _tool(path: Path, _text: str) -> ToolModel:
+    """As `_arm`."""
+    return load(path, ToolModel)
 
 
 @lru_cache(maxsize=16)

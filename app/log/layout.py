@@ -58,6 +58,7 @@ TRUTH = (
     Field("flange", 7, "pose of the flange in W: position [m], quaternion wxyz"),
     Field("touch_force", 3, "sum of all hands' forces, in W [N]"),
     Field("payload_mass", 1, "mass of what is attached [kg]"),
+    Field("touched", 1, "1 while a hand or an object touches the arm or what it carries, else 0"),
 )
 """/truth: what the physics knows and the controller does not."""
 

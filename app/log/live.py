@@ -41,7 +41,7 @@ class LiveRecording:
 
     def __init__(self, loop: Watched, folder: Path) -> None:
         self._loop = loop
-        self._folder = folder
+        self.folder = folder
         self._lock = threading.Lock()  # between the loop's thread and whoever switches; never held while a file is waited for
         self._recorder: Recorder | None = None
         self._scenario: Scenario | None = None  # of the file
@@ -56,6 +56,12 @@ class LiveRecording:
         """Recorded so far [s]."""
         recorder = self._recorder
         return 0.0 if recorder is None else recorder.ticks * TICK
+
+    @property
+    def writing(self) -> str:
+        """Name of the file that is not whole yet, or "" where all are."""
+        busy = self.on or any(helper.is_alive() for helper in self._helpers)
+        return self.path.name if busy and self.path is not None else ""
 
     def start(self) -> None:
         """Record, as soon as the file is open."""
@@ -144,10 +150,10 @@ class LiveRecording:
 
     def _free_path(self) -> Path:
         stem = time.strftime("recording-%Y-%m-%d-%H%M%S")
-        path, number = self._folder / f"{stem}.mcap", 1
+        path, number = self.folder / f"{stem}.mcap", 1
         while path.exists():
             number += 1
-            path = self._folder / f"{stem}-{number}.mcap"
+            path = self.folder / f"{stem}-{number}.mcap"
         return path
 
 

@@ -107,4 +107,5 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         float(log.truth["payload_mass"][row]),
         float(state["configured_mass"][row]),
         touches,
+        truth_touched=bool(log.truth["touched"][row] > 0.0),
     )

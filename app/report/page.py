@@ -63,11 +63,11 @@ def page(summary: Summary, charts: Sequence[tuple[str, str]]) -> str:
             "No stop.",
         ),
         "<h2>Contacts</h2>",
-        "<p>Delays as the detector tells them: since the first tick in which it sees the change. `make bench` measures them from "
-        "the true onset.</p>",
+        "<p>Look-back: since the first tick in which the detector sees the change. True onset: since the arm was truly touched, "
+        "or no more, which the detector does not know.</p>",
         table(
-            ("at [s]", "what", "rule", "delay [ms]", "action"),
-            [_contact(event) for event in summary.contacts],
+            ("at [s]", "what", "rule", "look-back [ms]", "true onset [ms]", "action"),
+            [_contact(*contact) for contact in zip(summary.contacts, summary.onset_delays, strict=True)],
             "No change in contact was detected.",
         ),
         "<h2>Peaks</h2>",
@@ -138,10 +138,11 @@ def _message(event: EventLine) -> tuple[str, str, str]:
     return f"{event.t:.3f}", event.headline, event.guidance
 
 
-def _contact(event: EventLine) -> tuple[str, ...]:
+def _contact(event: EventLine, onset: float | None) -> tuple[str, ...]:
     values = event.values
+    true = "" if onset is None else f"{1000.0 * onset:.0f}"
     delay = f"{2 * float(values['steps']):.0f}" if "steps" in values else ""
-    return f"{event.t:.3f}", event.headline, str(values.get("rule", "")), delay, str(values.get("action", ""))
+    return f"{event.t:.3f}", event.headline, str(values.get("rule", "")), delay, true, str(values.get("action", ""))
 
 
 def _peak(peak: Peak, factor: float = 1.0) -> tuple[str]:

@@ -111,6 +111,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     messages: list[EventLine]  # refusals, leavings and stops, with cause and guidance
     stops: list[StopFigures]
     contacts: list[EventLine]
+    onset_delays: list[float | None]  # of each: from the true touch or parting; None where there was none, or no such thing [s]
     tcp_speed: Peak
     elbow_speed: Peak
     joint_speed: Peak
@@ -132,6 +133,7 @@ def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
     peak, held = _peak(force, t), _held(force, t)
     table = regions()
     last = log.settings[-1][1] if log.settings else {}
+    contacts = [event for event in log.events if event.kind.startswith("contact_")]
     return Summary(
         run=log.run,
         limits=_checksum(last),
@@ -145,7 +147,8 @@ def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
         margins=_margins(log),
         messages=[event for event in log.events if _matters(event)],
         stops=[_stop(log, event) for event in log.events if TABLE[Kind(event.kind)].effect in STOPS],
-        contacts=[event for event in log.events if event.kind.startswith("contact_")],
+        contacts=contacts,
+        onset_delays=[_since_onset(log, event) for event in contacts],
         tcp_speed=_peak(state["v_tcp"], t),
         elbow_speed=_peak(state["v_elbow"], t),
         joint_speed=_peak(np.abs(state["qd"]).max(axis=1, initial=0.0), t),
@@ -166,6 +169,16 @@ def spans(codes: NDArray[Any], t: NDArray[np.float64], words: tuple[str, ...]) -
     edges = [0, *(np.flatnonzero(np.diff(codes)) + 1).tolist(), len(codes)]
     ends = [*t[edges[1:-1]].tolist(), float(t[-1])]
     return [Span(str(words[codes[a]]), round(float(t[a]), 6), round(end, 6)) for a, end in zip(edges[:-1], ends, strict=True)]
+
+
+def _since_onset(log: Log, event: EventLine) -> float | None:
+    """How long before a change in contact the arm was truly touched, or no more (CD-16) [s]."""
+    if event.kind == Kind.CONTACT_RESISTANCE:
+        return None
+    way = -1.0 if event.kind == Kind.CONTACT_LOST else 1.0
+    edges = log.t[1:][np.diff(log.truth["touched"]) == way]
+    before = edges[edges <= event.t]
+    return round(event.t - float(before[-1]), 6) if len(before) else None
 
 
 def _peak(values: NDArray[np.float64], t: NDArray[np.float64]) -> Peak:

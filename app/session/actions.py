@@ -10,7 +10,8 @@ from app.session.triggers import When
 from pendant.equipment.load import Angles
 from pendant.inputs import Button, Command
 from pendant.limits.axis_locks import PRESETS, freeing
-from pendant.settings.bounds import Span, Text
+from pendant.settings.bounds import MOST_WALLS, Span, Text
+from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load, Vector
 from sim.plant.changes import AnyChange
 from sim.plant.touch import ZERO, Push, Triple
@@ -36,6 +37,7 @@ Control = Literal[
     "reduced_on",
     "reduced_off",
     "wizard_measure",
+    "wizard_run",
     "wizard_apply",
     "wizard_clear",
     "zero_sensor",
@@ -44,6 +46,7 @@ Control = Literal[
 Force = Annotated[list[Annotated[float, Meta(ge=-2000, le=2000)]], Meta(min_length=3, max_length=3)]  # [N]
 Torque = Annotated[list[Annotated[float, Meta(ge=-500, le=500)]], Meta(min_length=3, max_length=3)]  # [N·m]
 
+Walls = Annotated[list[AnyBorder], Meta(max_length=MOST_WALLS)]
 Lines = Annotated[list[Text], Meta(max_length=100)]
 HOLDABLE = tuple(button.value for button in Button)
 
@@ -52,26 +55,25 @@ class Action(When, frozen=True, forbid_unknown_fields=True, kw_only=True, tag_fi
     """Base of all actions."""
 
 
-class Press(Action, tag="press", frozen=True, kw_only=True):
+class Holding(Action, frozen=True, kw_only=True):
+    """Base of what is done to a control that is held."""
+
+    control: Control
+
+    def __post_init__(self) -> None:
+        """Check that the control can be held."""
+        super().__post_init__()
+        if self.control not in HOLDABLE:
+            text = f'"{self.control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}'
+            raise ValueError(f"control: {text}")
+
+
+class Press(Holding, tag="press", frozen=True, kw_only=True):
     """A control goes down and stays held, until `release`."""
 
-    control: Control
 
-    def __post_init__(self) -> None:
-        """Check that the control can be held."""
-        super().__post_init__()
-        must_be_holdable(self.control)
-
-
-class Release(Action, tag="release", frozen=True, kw_only=True):
+class Release(Holding, tag="release", frozen=True, kw_only=True):
     """A held control is let go."""
-
-    control: Control
-
-    def __post_init__(self) -> None:
-        """Check that the control can be held."""
-        super().__post_init__()
-        must_be_holdable(self.control)
 
 
 class Tap(Action, tag="tap", frozen=True, kw_only=True):
@@ -136,15 +138,10 @@ class Bump(Wrench, tag="bump", frozen=True, kw_only=True):
         return Push(self.part, triple(self.point), triple(self.force, HalfSine().factor(t, self.length)))
 
 
-class Lean(Wrench, tag="lean", frozen=True, kw_only=True):
+class Lean(Pushing, tag="lean", frozen=True, kw_only=True):
     """Somebody leans on a point: the force comes and goes slowly."""
 
-    force: Force  # in W [N]
     profile: AnyProfile = Ramp(rise=0.5, fall=0.5)
-
-    def push(self, t: float) -> Push:
-        """See `Wrench.push`."""
-        return Push(self.part, triple(self.point), triple(self.force, self.profile.factor(t, self.length)))
 
 
 class Hold(Effort, tag="hold", frozen=True, kw_only=True):
@@ -202,6 +199,12 @@ class Axes(Action, tag="axes", frozen=True, kw_only=True):
         return {**freeing(free), "axes.frame": "tool" if self.frame == "tool" else "base", **turned}
 
 
+class SetWalls(Action, tag="walls", frozen=True, kw_only=True):
+    """Walls and areas, all of them, from now on; what is not named is deleted."""
+
+    walls: Walls
+
+
 class Laboratory(Action, tag="change", frozen=True, kw_only=True):
     """The true arm or world is changed: payload, sensors, friction, temperature, objects."""
 
@@ -256,6 +259,7 @@ AnyAction = (
     | SelectTool
     | SetPayload
     | Axes
+    | SetWalls
     | Laboratory
     | OfClient
 )
@@ -272,9 +276,3 @@ def triple(values: list[float], factor: float = 1.0) -> Triple:
     """Three numbers times `factor`, as a touch wants them."""
     x, y, z = values
     return (x * factor, y * factor, z * factor)
-
-
-def must_be_holdable(control: str) -> None:
-    """Raise ValueError when `control` acts once and cannot be held."""
-    if control not in HOLDABLE:
-        raise ValueError(f'control: "{control}" acts once, so it is used with `do: tap`; held can be {", ".join(HOLDABLE)}')

@@ -88,6 +88,29 @@ _SUMMARY = {
     "HF-1": "patterns of feedback",
 }
 
+_EMBODIMENTS = {
+    "FD-1 teach first": "activation switches to TEACH first",
+    "FD-1 after reset": "from STOP only after a reset",
+    "FD-5 presses": "a pattern of the button, or of an input, as the signal",
+    "FD-5 posture": "a posture, or a series of postures, as the signal",
+    "FD-8 within": "the confirmation is asked for within the activation sequence",
+    "FD-8 gesture": "a chosen second gesture, another than the first, some time after it",
+    "FD-9 current": "motor current as a parameter",
+    "FD-9 motion": "without a force sensor: a wrong payload that moves the arm is refused by its motion alone",
+    "FD-12b vertical": "speed along gravity limited more than across it",
+    "VW-6 payload": "without a force sensor: a wrong payload that moves the arm into a wall is refused by it",
+    "VW-7 push": "a wall pushes back, the harder the nearer, at rest, too",
+    "AF-6 limit": "a current within the motor's limits; what is asked beyond winds nothing up",
+    "CD-2 self-contact": "the arm touches itself",
+    "CD-4 buffers": "how far back differences of force and of acceleration reach, i and j",
+    "CD-8 statistic": "the statistic of the buffered samples",
+    "CD-9 older pairs": "the comparison repeated on older pairs of samples",
+    "CD-11 operating": "thresholds from commanded acceleration, target force, joint torque, current, mode",
+    "CD-15 stop": "stop at once, within a distance, within a time, at a position",
+    "CD-15 trigger": "wait for another trigger",
+    "CD-15 tell": "a step tells the user; an audible sign of a contact",
+}
+
 
 def _claims() -> list[Claim]:
     numbered = [
@@ -111,8 +134,14 @@ def _situations() -> list[Claim]:
     return rows
 
 
+def _embodiments() -> list[Claim]:
+    """What the sources name besides their claims: each by its requirement and a word."""
+    return [Claim(name, text, name.partition(" ")[0]) for name, text in _EMBODIMENTS.items()]
+
+
 CLAIMS: dict[str, Claim] = {
-    claim.name: claim for claim in [*_claims(), *_situations(), *(Claim(ident, text, ident) for ident, text in _SUMMARY.items())]
+    claim.name: claim
+    for claim in [*_claims(), *_situations(), *(Claim(ident, text, ident) for ident, text in _SUMMARY.items()), *_embodiments()]
 }
 """All rows by name, in the order of `pendant claims`: `A 1` .. `A 32`, `B 1` .. `B 22`, `C 1` .. `C 21`, `B fig 3a` ..
-`B fig 4i rising`, and the requirements that stand for the summary."""
+`B fig 4i rising`, the requirements that stand for the summary, and embodiments: `FD-8 within`."""

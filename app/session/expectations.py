@@ -132,7 +132,7 @@ class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
 class Heard(During, tag="tone", frozen=True, kw_only=True):
     """A page with sound lets a tone be heard in the interval, after its first tick, at least `times` times (app/tones.py)."""
 
-    tone: Literal["STOP", "ASK", "FREE", "HELD", "WALL", "COUNT"]
+    tone: Literal["STOP", "ASK", "FREE", "HELD", "SIGN", "WALL", "COUNT"]
     times: Annotated[int, Meta(ge=1)] = 1
 
 

@@ -11,16 +11,14 @@ from app.files.checked import ABSENT, BadInput, load
 from app.files.library import load_arm, load_tool, tools
 from app.session.claims import CLAIMS
 from app.session.session_file import Session, Setup, WorldSection, bundled, folder
-from app.session.timeline_checks import Prepared, applied, check_timeline
+from app.session.timeline_checks import Prepared, applied, check_timeline, check_walls
 from pendant.all_settings import Settings, apply, describe, value_of
 from pendant.freedrive.settings import SequenceDynamic
 from pendant.limits.settings import MaintainLimits, OperationLimits
 from pendant.program.steps import misfit
 from pendant.settings.schema import Limit
-from pendant.walls.containment import PARTS, TETHER
-from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import AnyObject, Scenario, ToolModel
+from sim.arm.scenario import Scenario, ToolModel
 
 MOUNTINGS: dict[str, list[float]] = {
     "floor": [0.0, 0.0, 0.0],
@@ -122,7 +120,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
             raise BadInput(where, "world", world, f"a list of objects, or one of {', '.join(bundled('worlds'))}")
         world = load(folder("worlds") / f"{world}.yaml", WorldSection).objects
     check_world(world, where)
-    _check_walls(setup.walls, world, where)
+    check_walls(setup.walls, world, where)
     check_load(setup.payload_true, arm, where, "payload_true")
     check_load(setup.payload_configured, arm, where, "payload_configured")
     tool = load_tool(setup.tool, where) if isinstance(setup.tool, str) else setup.tool
@@ -136,6 +134,7 @@ def _scenario(setup: Setup, arm: Arm, where: str) -> Scenario:
         world=world,
         walls=setup.walls,
         soft_sensor=setup.soft_sensor,
+        self_contact=setup.self_contact,
         seed=setup.seed,
         mismatch=setup.mismatch,
     )
@@ -148,15 +147,6 @@ def _tools(setup: Setup, tool: ToolModel | None, arm: Arm, where: str) -> list[T
     check_tools(setup.tools, arm, where)
     names = {entry.name for entry in setup.tools}
     return setup.tools + [shipped for shipped in map(load_tool, tools()) if shipped.name not in names]
-
-
-def _check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str) -> None:
-    references = {"base", "world", "flange", "tcp", *(thing.name for thing in world)}
-    if any(wall.name == TETHER for wall in walls):
-        raise BadInput(where, "walls", TETHER, "another name: the tether is set by settings, walls.*")
-    why = problem(tuple(walls), frozenset(PARTS), frozenset(references))
-    if why is not None:
-        raise BadInput(where, "walls", ABSENT, why)
 
 
 def _check_posture(posture: list[float], arm: Arm, where: str) -> None:

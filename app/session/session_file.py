@@ -8,18 +8,16 @@ from msgspec import Meta
 
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import ASSETS, shipped
-from app.session.actions import AnyAction
+from app.session.actions import AnyAction, Walls
 from app.session.expectations import AnyExpectation
 from pendant.equipment.load import Angles
 from pendant.equipment.tools import MOST as MOST_TOOLS
 from pendant.program.steps import Program
-from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, MOST_WALLS, Angle, Text
-from pendant.walls.definitions import AnyBorder
+from pendant.settings.bounds import MOST_JOINTS, MOST_OBJECTS, MOST_STEPS, Angle, Text
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import AnyObject, Load, ToolModel
 
 Posture = Annotated[list[Angle], Meta(max_length=MOST_JOINTS)]
-Walls = Annotated[list[AnyBorder], Meta(max_length=MOST_WALLS)]
 Claims = Annotated[list[Text], Meta(max_length=MOST_STEPS)]
 Tools = Annotated[list[ToolModel], Meta(max_length=MOST_TOOLS)]
 World = Annotated[list[AnyObject], Meta(max_length=MOST_OBJECTS)]
@@ -40,6 +38,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     seed: Annotated[int, Meta(ge=0, le=2**31 - 1)] = 0
     mismatch: Literal["on", "nominal"] = "on"
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
+    self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     world: World | Text = []  # objects, or the name of a bundled world
     walls: Walls = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
 

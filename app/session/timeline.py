@@ -17,6 +17,7 @@ from app.session.actions import (
     Release,
     SelectTool,
     SetPayload,
+    SetWalls,
     Tap,
     Wrench,
     triple,
@@ -27,6 +28,7 @@ from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.program.steps import Program as Steps
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
+from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load
 from sim.exchange.desk import Wishes
 from sim.exchange.scoring import point_of
@@ -69,6 +71,7 @@ class _Tick:
     changes: list[AnyChange] = field(default_factory=list)
     tool: str = ""
     load: Load | None = None
+    borders: tuple[AnyBorder, ...] | None = None
     touches: list[Touch] = field(default_factory=list)
 
 
@@ -121,7 +124,7 @@ class Timeline:
         released, commands = frozenset(now.released), tuple(now.commands)
         held, high = frozenset(self._held), frozenset(self._high)
         self._quiet = Wishes(Inputs(held=held, high=high), (), ())
-        inputs = Inputs(held, released, commands, now.settings, program, high, now.tool, now.load)
+        inputs = Inputs(held, released, commands, now.settings, program, high, now.tool, now.load, borders=now.borders)
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -183,6 +186,8 @@ class Timeline:
                 now.tool = action.tool
             case SetPayload():
                 now.load = action.load
+            case SetWalls():
+                now.borders = tuple(action.walls)
             case Laboratory():
                 now.changes.append(action.change)
             case _:

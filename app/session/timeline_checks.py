@@ -15,14 +15,17 @@ from app.session.actions import (
     OfClient,
     SelectTool,
     SetPayload,
+    SetWalls,
 )
 from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session
 from pendant.all_settings import Settings, apply
 from pendant.program.steps import Program as Steps
 from pendant.settings.schema import SettingError
+from pendant.walls.containment import PARTS, TETHER
+from pendant.walls.definitions import AnyBorder, problem
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Scenario, table
+from sim.arm.scenario import AnyObject, Scenario, table
 from sim.plant.changes import AttachPayload, FrictionChange, MoveObject, SensorFault, Temperature, TrueChange
 
 LONGEST = 3600.0
@@ -86,10 +89,22 @@ def _check_action(action: Action, field: str, *, session: Session, prepared: Pre
         check_load(action.load, prepared.arm, where, f"{field}.load")
     elif isinstance(action, Axes):
         applied(prepared.settings, action.set, where, field)
+    elif isinstance(action, SetWalls):
+        check_walls(action.walls, prepared.scenario.world, where, f"{field}.walls")
     elif isinstance(action, LoadProgram) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
     elif isinstance(action, Laboratory):
         _check_change(action.change, f"{field}.change", prepared, where)
+
+
+def check_walls(walls: list[AnyBorder], world: list[AnyObject], where: str, field: str = "walls") -> None:
+    """Raise BadInput when walls and areas do not fit together, or lie in what is not in the world."""
+    references = {"base", "world", "flange", "tcp", *(thing.name for thing in world)}
+    if any(wall.name == TETHER for wall in walls):
+        raise BadInput(where, field, TETHER, "another name: the tether is set by settings, walls.*")
+    why = problem(tuple(walls), frozenset(PARTS), frozenset(references))
+    if why is not None:
+        raise BadInput(where, field, ABSENT, why)
 
 
 def _check_change(change: TrueChange, field: str, prepared: Prepared, where: str) -> None:

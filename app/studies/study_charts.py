@@ -19,6 +19,12 @@ MARKS = "osD^vP*X"
 SPREAD = 20.0
 """What spans more than this is drawn on a logarithmic scale."""
 
+BANDS = 3
+"""Lines up to which intervals are bands; those of more lines hide each other, and are bars that stand side by side."""
+
+ASIDE = 0.008
+"""From bar to bar at most, as a share of the axis."""
+
 LETTERS_A_ROW, MARK = 110, 9
 """What a row of names above a chart holds, and what of it goes with the mark of each name."""
 
@@ -27,7 +33,7 @@ NAMED = 0.2
 
 
 def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool, by: str = "") -> Figure:
-    """Means over a factor with their bands, a line each.
+    """Means over a factor with their intervals, a line each.
 
     Args:
         lines: by the name of the line; "" for the only one.
@@ -39,15 +45,22 @@ def curves(lines: Mapping[str, Sequence[Point]], x: str, y: str, *, share: bool,
     in_a_row = min(len(lines), max(1, LETTERS_A_ROW // (max(map(len, lines)) + MARK)))
     above = 0.25 + 0.17 * -(-len(lines) // in_a_row) if len(lines) > 1 else 0.0
     figure, axes = empty_axes(2.8 + above, 0.1 + above)
-    places = _places(axes, [point.x for line in lines.values() for point in line])
+    values = [point.x for line in lines.values() for point in line]
+    places = _places(axes, values)
+    aside = _side_by_side([places(value) for value in values], len(lines), log=axes.get_xscale() == "log")
     factor = 100.0 if share else 1.0
     for k, (name, line) in enumerate(lines.items()):
         seen = [point for point in line if point.n]
-        at = [places(point.x) for point in seen]
+        at = np.array([places(point.x) for point in seen], dtype=float)
         mean, low, high = (factor * np.array([getattr(point, each) for point in seen]) for each in ("mean", "low", "high"))
-        colour = COLOURS[k % len(COLOURS)]
-        axes.plot(at, mean, color=colour, marker=MARKS[k % len(MARKS)], markersize=3.5, linewidth=1.2, label=name or None)
-        axes.fill_between(at, low, high, color=colour, alpha=0.16 if len(lines) < 4 else 0.07, linewidth=0)
+        look: dict[str, Any] = {"color": COLOURS[k % len(COLOURS)], "marker": MARKS[k % len(MARKS)]}
+        look |= {"markersize": 3.5, "linewidth": 1.2, "label": name or None}
+        if len(lines) <= BANDS:
+            axes.plot(at, mean, **look)
+            axes.fill_between(at, low, high, color=look["color"], alpha=0.16, linewidth=0)
+        else:
+            error = np.maximum(0.0, [mean - low, high - mean])  # a share's interval ends at the share itself, but for rounding
+            axes.errorbar(aside(at, k), mean, yerr=error, elinewidth=0.8, capsize=1.5, capthick=0.8, **look)
     axes.set_xlabel(x, fontsize=7.5)
     axes.set_ylabel(f"{y} [% of runs]" if share else y, fontsize=7.5)
     if share:
@@ -105,10 +118,11 @@ def roc_chart(points: Sequence[RocPoint], limit: str) -> Figure:
         error = [[[100 * abs(each.mean - each.low)], [100 * abs(each.high - each.mean)]] for each in (point.false, point.true)]
         text = f"{point.limit:g}" if numeric else str(point.limit)
         axes.errorbar([x], [y], xerr=error[0], yerr=error[1], color=shade, marker="o", markersize=5, linewidth=0.7, label=text)
+        axes.annotate(text, (x, y), (5, -9), textcoords="offset points", fontsize=7, color=INK)
     axes.set_xlim(-4, 104)
     axes.set_ylim(-4, 104)
-    axes.set_xlabel("refused that ought not be [% of runs]", fontsize=7.5)
-    axes.set_ylabel("refused that ought to be [% of runs]", fontsize=7.5)
+    axes.set_xlabel("refused, of those that ought not to be [% of runs]", fontsize=7.5)
+    axes.set_ylabel("refused, of those that ought to be [% of runs]", fontsize=7.5)
     under = area(points)
     title = f"{limit}\narea {under:.3f}" if math.isfinite(under) else limit
     axes.legend(title=title, fontsize=6.5, title_fontsize=7, frameon=False, loc="lower right", ncols=2 if len(usable) > 6 else 1)
@@ -146,6 +160,19 @@ def _places(axes: Axes, values: Sequence[float | str]) -> Any:
     if isinstance(low, float) and isinstance(high, float) and low > 0.0 and high / low > SPREAD:
         axes.set_xscale("log")
     return lambda value: value
+
+
+def _side_by_side(places: Sequence[float], count: int, *, log: bool) -> Any:
+    """Gives the function from the places of a line, and its number among `count`, to where its marks stand."""
+    scale = np.log if log else np.asarray
+    levels = np.unique(scale(np.array(places, dtype=float)))
+    step = min(ASIDE * float(np.ptp(levels)), 0.6 * float(np.diff(levels).min()) / count) if len(levels) > 1 else 0.0
+
+    def aside(at: NDArray[np.float64], k: int) -> NDArray[np.float64]:
+        shift = (k - (count - 1) / 2) * step
+        return at * math.exp(shift) if log else at + shift
+
+    return aside
 
 
 def short(value: float | str) -> str:

@@ -10,6 +10,7 @@ from app.web.access.guard import Guard
 from app.web.lab.lab_tab import Lab
 from app.web.panel.journal import Journal
 from app.web.panel.mode_panel import Panel
+from app.web.recordings.recording import RecordingSwitch
 from app.web.running import Running
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.tabs.axes_tab import AxesTab
@@ -17,11 +18,11 @@ from app.web.tabs.contact_log import Contacts
 from app.web.tabs.jog_tab import JogTab
 from app.web.tabs.network_tab import NetworkTab
 from app.web.tabs.plots import Plots
-from app.web.tabs.recording import RecordingSwitch
 from app.web.tabs.script_tab import ScriptTab
 from app.web.tabs.settings_tab import SettingsTab
 from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
+from app.web.walls.walls_tab import WallsTab
 from app.web.widgets import style, svg
 from app.web.widgets.svg import Colour
 from pendant.events.event import Event
@@ -59,13 +60,15 @@ class Docks:
         with self._upper.add_tab("Jog"):
             self.jog = JogTab(gui, loop, arm)
         with self._upper.add_tab("Axes"):
-            self.axes = AxesTab(gui, loop)
+            self.axes = AxesTab(gui, loop, arm)
+        with self._upper.add_tab("Walls"):
+            self.walls = WallsTab(server, guard, loop)
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
         with self._upper.add_tab("Tools"):
             self.tools = ToolsTab(gui, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
-            self.settings = SettingsTab(gui, self.settings_dock, loop)
+            self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
         with self._lower.add_tab("Events"):
             self.journal = Journal(gui)
@@ -75,7 +78,7 @@ class Docks:
             self.plots = Plots(gui, loop, arm)
         self.journal.look_at = self.plots.look_at
         with self._lower.add_tab("Record"):
-            self.recording = RecordingSwitch(gui, recording)
+            self.recording = RecordingSwitch(server, recording, arm)
         self.script: ScriptTab | None = None
         if scripts is not None:
             with self._lower.add_tab("Script"):
@@ -103,10 +106,16 @@ class Docks:
             self.tools.enter,
             self.tools.apply,
             self.tools.clear,
+            self.tools.measure,
             self.tools.editor.save,
             self.tools.editor.load,
+            self.walls.here,
+            self.walls.delete,
+            self.walls.undo,
             self.contacts.export,
             self.recording.export,
+            self.recording.replay.leave,
+            self.recording.replay.download,
             self.teach.save,
             self.teach.load,
             *(() if self.script is None else (self.script.save, self.script.load)),
@@ -130,21 +139,26 @@ class Docks:
             self.teach.show(snapshot),
             self.jog.show(snapshot),
             self.axes.show(snapshot),
+            self.walls.show(snapshot, fresh),
             self.tools.show(snapshot),
             self.settings.show(snapshot, fresh),
             self.contacts.show(snapshot, fresh),
-            self.recording.show(),
+            self.recording.show(snapshot),
             self.script is not None and self.script.show(),
             self.network is not None and self.network.show(),
         ]
         self.keep()
         return any(changed)
 
+    def skip(self) -> None:
+        """What has happened so far is of another arm, and not shown here."""
+        self._read = len(self._loop.events(0))
+
     def keep(self, *, now: float | None = None) -> None:
         """Have what changed kept for the next start; `now` is the clock, which says whether it is time to."""
         keeper = self._keeper
         if keeper is None or keeper.problem:
             return
-        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, now=now)
+        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, walls=self._loop.walls, now=now)
         if keeper.problem:
             self.teach.message.show(svg.note("Not kept for the next start", keeper.problem, Colour.AMBER))

@@ -7,6 +7,7 @@ from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event
+from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
@@ -53,6 +54,11 @@ class Running(Protocol):
     @property
     def tools(self) -> tuple[Tool, ...]:
         """The pendant's table of tools as it is now."""
+        ...
+
+    @property
+    def walls(self) -> tuple[AnyBorder, ...]:
+        """The pendant's walls and areas as they are now."""
         ...
 
     def latest(self) -> Snapshot:

@@ -1,15 +1,17 @@
 """The web app as a whole: the page of a running loop."""
 
+import asyncio
 import functools
 import math
 import time
 import webbrowser
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import viser
 
-from app.files.library import mesh_path
+from app.files.checked import BadInput
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording, must_be_writable
@@ -18,6 +20,7 @@ from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.control import Control
 from app.web.access.listening import Access, access_through, must_be_free
 from app.web.access.site import Site
+from app.web.arm_change import ArmChange, meshes_of
 from app.web.docks import Docks
 from app.web.keys import Keys
 from app.web.panel.preferences import Preferences
@@ -26,11 +29,25 @@ from app.web.scene.arm_picture import TOOL, Scene, frames_of
 from app.web.scene.virtual_hand import VirtualHand
 from app.web.widgets import svg
 from app.web.widgets.html import Html
+from app.web.widgets.svg import Colour
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 
+TOLD = 12.0
+"""What became of the network is seen for so long after another arm was chosen [s]."""
+
 FRAMES_A_PANEL = 4
 """The pendant is brought up to date with every so many pictures."""
+
+
+class Surround(NamedTuple):
+    """What stands around the arm on the page."""
+
+    recording: LiveRecording
+    interfaces: RobotInterfaces | None = None
+    scripts: ScriptRunner | None = None
+    keeper: Keeper | None = None
+    arms: ArmChange | None = None
 
 
 class Served(Site):
@@ -45,29 +62,36 @@ class Served(Site):
         meshes: Mapping[str, bytes],
         access: Access,
         port: int,
-        recording: LiveRecording,
-        interfaces: RobotInterfaces | None,
-        scripts: ScriptRunner | None = None,
-        keeper: Keeper | None = None,
+        around: Surround,
     ) -> None:
         super().__init__(access, port, brand_color=(25, 113, 194))
         self._loop = loop
         self._shown = -1  # tick of the last picture
         self._frame = 0
+        self._changing = self._still_page = False  # another arm is made ready; it runs, and is not shown yet
+        self.recording, self._around = around.recording, around
+        self._furnish(arm, scenario, meshes, around)
+        self.server.on_client_connect(self._welcome)
+        self.server.on_client_disconnect(self._farewell)
+        self.start_drawing()
+
+    def _furnish(self, arm: Arm, scenario: Scenario, meshes: Mapping[str, bytes], around: Surround) -> None:
+        """Make all that the page shows of one arm."""
+        loop = self._loop
+        self._arm, self._around = arm, around
         self.beat = Html(self.server.gui, svg.beat(0))
         self.scene = Scene(self.server, arm, scenario, meshes=meshes, first=loop.latest())
         self.hand = VirtualHand(loop.desk, loop.latest, frames_of(arm))
-        self.recording = recording
         self.docks = Docks(
             self.server,
             self.guard,
             loop,
             hand=self.hand,
             arm=arm,
-            recording=recording,
-            interfaces=interfaces,
-            scripts=scripts,
-            keeper=keeper,
+            recording=around.recording,
+            interfaces=around.interfaces,
+            scripts=around.scripts,
+            keeper=around.keeper,
         )
         self.panel, self.lab = self.docks.panel, self.docks.lab
         self.control = Control(self.server, self.guard, self._let_go)
@@ -75,12 +99,57 @@ class Served(Site):
         self.keys = Keys(self.server, self.guard, loop, docks=self.docks, preferences=self.preferences)
         for part, node in self.scene.draggable.items():
             self._make_draggable(part, node)
-        self.server.on_client_connect(self._welcome)
-        self.server.on_client_disconnect(self._farewell)
         self.scene.on_tool = functools.partial(self._make_draggable, "tool")
+        if around.arms is not None:
+            self.lab.setup.offer_arms(around.arms.names, self._change_arm)
         draggable = frozenset({TOOL, *(node.name for node in self.scene.draggable.values())})
         self.guard.open(self.server, draggable, self._let_go)
-        self.start_drawing()
+
+    async def _change_arm(self, name: str) -> None:
+        """Go over to another arm: the loop first, then the page, for every client at once."""
+        arms = self._around.arms
+        if arms is None or self._changing:
+            return
+        self._changing = True
+        message = self.lab.setup.message
+        message.show(svg.note("Another arm", f"The {name} is made ready.", Colour.BLUE))
+        try:
+            ready = await asyncio.to_thread(arms.ready, name)
+            for client in self.server.get_clients():
+                self._let_go(client)
+            self.docks.keep(now=math.inf)
+            self._still_page = True
+            brought = await asyncio.to_thread(arms.bring, ready)
+        except BadInput as refusal:
+            message.show(svg.note("Refused", str(refusal), Colour.AMBER))
+            self._changing = self._still_page = False
+            return
+        prepared = ready.prepared
+        dark = self.preferences.dark
+        self._clear()
+        around = self._around._replace(interfaces=brought.interfaces, scripts=brought.scripts, keeper=ready.keeper)
+        self._furnish(prepared.arm, prepared.scenario, ready.meshes, around)
+        self.docks.skip()
+        if ready.lesson is not None:
+            self.docks.teach.begin_with(ready.lesson)
+        self._shown, self._still_page, self._changing = -1, False, False
+        for number, client in self.server.get_clients().items():
+            await self._welcome(client)
+            if number in dark:
+                self.preferences.flip_dark(number)
+        headline = f"Now the {prepared.arm.title}"
+        self.lab.setup.message.show(svg.note(headline, brought.said, Colour.GREEN))
+        for client in self.server.get_clients().values():
+            client.add_notification(headline, brought.said or "It begins at its start.", auto_close_seconds=TOLD)
+
+    def _clear(self) -> None:
+        """Take everything off the page, of all clients."""
+        self.control.close()
+        for client in self.server.get_clients().values():
+            client.gui.reset()
+        self.server.gui.reset()
+        self.server.scene.reset()
+        self.guard.forget()
 
     def close(self) -> None:
         """Stop serving; connections are closed, what they held is released, a recording is ended."""
@@ -92,6 +161,8 @@ class Served(Site):
 
     def draw(self) -> bool:
         """Show what is new of the loop; there is always a next picture."""
+        if self._still_page:
+            return True
         snapshot = self._loop.latest()
         if snapshot.tick != self._shown:
             self.scene.show(snapshot)
@@ -124,6 +195,7 @@ class Served(Site):
         self.hand.let_go(client)
         self.panel.let_go(client)
         self.docks.jog.let_go(client)
+        self.docks.walls.let_go(client)
         self.guard.operator.engage(client, False, self.guard.now())
 
     def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:
@@ -157,6 +229,7 @@ def serve(
     scripts: ScriptRunner | None = None,
     keeper: Keeper | None = None,
     lesson: Lesson | None = None,
+    arms: ArmChange | None = None,
 ) -> Served:
     """Serve the web app of a running loop.
 
@@ -169,13 +242,14 @@ def serve(
         scripts: runs programs in URScript; None: the page has no tab for them.
         keeper: keeps set-up, settings and what is taught for the next start; None: nobody does.
         lesson: what was taught before; None: nothing.
+        arms: lets the page go over to another arm; None: it cannot.
 
     Raises:
         BadInput: the host is no address of this machine, the port is taken, or `record` cannot be written.
     """
     access = access_through(host)
     must_be_free(access.host, port)
-    meshes = {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}
+    meshes = meshes_of(arm)
     recording = recording or LiveRecording(loop, record or Path())
     if record is not None:
         must_be_writable(record)
@@ -187,10 +261,7 @@ def serve(
         meshes=meshes,
         access=access,
         port=port,
-        recording=recording,
-        interfaces=interfaces,
-        scripts=scripts,
-        keeper=keeper,
+        around=Surround(recording, interfaces, scripts, keeper, arms),
     )
     if lesson is not None:
         served.docks.teach.begin_with(lesson)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.files.library import load_arm
 from benchmarks.contacts.approaches import ARM, IDLE, START, TOOL
 from benchmarks.contacts.recording import Recording
 from pendant.all_settings import Settings, apply
@@ -24,6 +25,9 @@ class Free(NamedTuple):
     seed: int
     seconds: float
     record: bool  # keep the signals, for the baselines; else only what the detectors found
+    arm: str = "ur5e"
+    mass: float | None = None  # configured payload; None: drawn [kg]
+    soft: bool = False  # the flange sensor's stiffness is the soft one
 
 
 def program(rng: np.random.Generator, q: np.ndarray, count: int) -> Program:
@@ -41,9 +45,10 @@ def program(rng: np.random.Generator, q: np.ndarray, count: int) -> Program:
     return Program(steps=tuple(steps))
 
 
-def payload(rng: np.random.Generator, seed: int) -> tuple[Load, Load]:
-    """0 to 5 kg, the centre up to 100 mm off the axis, the true mass up to 20 % off."""
-    mass = float(rng.uniform(0.0, 5.0)) if seed % 4 else float(rng.choice([0.0, 5.0]))
+def payload(rng: np.random.Generator, seed: int, fixed: float | None = None) -> tuple[Load, Load]:
+    """0 to 5 kg, or what is `fixed`, the centre up to 100 mm off the axis, the true mass up to 20 % off."""
+    drawn = float(rng.uniform(0.0, 5.0)) if seed % 4 else float(rng.choice([0.0, 5.0]))
+    mass = drawn if fixed is None else fixed
     around, far = rng.uniform(0, 2 * np.pi), rng.uniform(0, 0.1)
     com = [float(far * np.cos(around)), float(far * np.sin(around)), float(rng.uniform(0.02, 0.08))]
     return Load(mass=mass, com=com), Load(mass=mass * float(1 + 0.2 * rng.uniform(-1, 1)), com=com)
@@ -52,10 +57,11 @@ def payload(rng: np.random.Generator, seed: int) -> tuple[Load, Load]:
 def free(case: Free) -> Recording:
     """Run one case."""
     rng = np.random.default_rng([case.seed, 77])
-    configured, true = payload(rng, case.seed)
-    home = np.array(ARM.chain.home)
-    scenario = Scenario(tool=TOOL, payload_true=true, payload_configured=configured, seed=case.seed)
-    simulation = Simulation(ARM, scenario, apply(Settings(), {"contact.on": True}))
+    configured, true = payload(rng, case.seed, case.mass)
+    arm = ARM if case.arm == "ur5e" else load_arm(case.arm)
+    home = np.array(arm.chain.home)
+    scenario = Scenario(tool=TOOL, payload_true=true, payload_configured=configured, seed=case.seed, soft_sensor=case.soft)
+    simulation = Simulation(arm, scenario, apply(Settings(), {"contact.on": True}))
     simulation.tick(Wishes(Inputs(program=program(rng, home, int(2 * case.seconds))), (), ()))
     for _ in range(150):
         simulation.tick(IDLE)

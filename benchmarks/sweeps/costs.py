@@ -109,7 +109,7 @@ def plain(duration: float, count: int) -> tuple[float, float]:
 
 def cost(report: Report) -> None:
     """Sessions of 5 s on two workers against two plain loops, in turns; and where the time goes."""
-    rounds, count, duration = (5, 50, 5.0) if report.options.full else (3, 8, 5.0)
+    rounds, count, duration = (5, 50, 5.0) if report.options.full else (3, 20, 5.0)
     base = session(BASE, duration=duration)
     start = time.perf_counter()
     spent = {each.pid: each.processor for _, each in spreading.spread(timed, [(base, 0)] * 6, workers=2)}

@@ -44,20 +44,31 @@ def _differing(a: bytes, b: bytes) -> int:
 
 
 def workers_killed(report: Report, folder: Path, study: Path, wanted: bytes) -> None:
-    """A worker is killed, ten times, while the study runs."""
-    process = command(study, folder / "killed", "--workers", "2")
-    rng, killed, kept = np.random.default_rng(report.options.seed), 0, 0
-    while killed < KILLS and process.poll() is None:
-        time.sleep(float(rng.uniform(0.5, 1.5)))
-        found = _workers_of(process.pid)
-        if found and (now := _kept(folder / "killed")) > kept:  # spread over the study
-            kept = now
-            with suppress(psutil.NoSuchProcess):
-                found[int(rng.integers(len(found)))].kill()
-                killed += 1
+    """A worker is killed at ten moments, drawn over the study: by how many rows there are, and a part of a run after that."""
+    out, n = folder / "killed", read_data_set(folder / "1" / "rows").num_rows
+    rng = np.random.default_rng(report.options.seed)
+    moments = sorted(rng.choice(int(0.9 * n), KILLS, replace=False).tolist())
+    process = command(study, out, "--workers", "2")
+    killed: list[int] = []
+    while len(killed) < KILLS and process.poll() is None:
+        if _kept(out) <= moments[len(killed)] or not (found := _workers_of(process.pid)):
+            time.sleep(0.01)
+            continue
+        time.sleep(float(rng.uniform(0.0, 0.3)))
+        with suppress(psutil.NoSuchProcess):
+            found[int(rng.integers(len(found)))].kill()
+            killed.append(_kept(out))
     finished(process)
-    report.row("workers killed", killed, "", at_least=KILLS)
-    report.row("workers killed: bytes of rows that differ", _differing(wanted, rows_of(folder / "killed")), "B", at_most=0)
+    report.row("workers killed", len(killed), "", at_least=KILLS)
+    report.row("workers killed: numbers of rows at which", len(set(killed)), "", n=n)
+    report.row("workers killed: bytes of rows that differ", _differing(wanted, rows_of(out)), "B", at_most=0)
+    report.row("workers killed: rows lost or twice", _lost_or_twice(out, n), "", at_most=0, n=n)
+
+
+def _lost_or_twice(out: Path, n: int) -> int:
+    """How many numbers of runs are not there exactly once."""
+    numbers = read_data_set(out / "rows")["run"].to_pylist()
+    return sum(numbers.count(k) != 1 for k in range(n)) + sum(not 0 <= number < n for number in numbers)
 
 
 def _kept(out: Path) -> int:
@@ -65,24 +76,20 @@ def _kept(out: Path) -> int:
 
 
 def _workers_of(pid: int) -> list[psutil.Process]:
-    """The processes that do the runs; Dask names them so when they are ready."""
+    """The processes that do the runs, or start up to do them."""
     with suppress(psutil.NoSuchProcess):
-        return [
-            each
-            for each in psutil.Process(pid).children(recursive=True)
-            if each.cmdline()[:1] and "dask worker" in each.cmdline()[0]
-        ]
+        return [each for each in psutil.Process(pid).children() if "spawn_main" in " ".join(each.cmdline())]
     return []
 
 
 def all_killed(report: Report, folder: Path, study: Path, wanted: bytes) -> None:
     """The sweep itself is killed with all its workers, and the same command goes on."""
-    out, lost, before = folder / "gone", 0, -1
-    while before < len(wanted):
+    out, lost, n = folder / "gone", 0, read_data_set(folder / "1" / "rows").num_rows
+    while lost < n:
         process = command(study, out, "--workers", "2")
         until = time.monotonic() + PATIENCE
         start = _kept(out)
-        while process.poll() is None and _kept(out) < start + 8 and time.monotonic() < until:
+        while process.poll() is None and _kept(out) < start + 12 and time.monotonic() < until:
             time.sleep(0.1)
         if process.poll() is not None:
             finished(process)
@@ -90,7 +97,6 @@ def all_killed(report: Report, folder: Path, study: Path, wanted: bytes) -> None
         end(process.pid)
         process.wait()
         lost += 1
-        before = _kept(out)
     report.row("machine gone: times", lost, "", at_least=1)
     report.row("machine gone: bytes of rows that differ", _differing(wanted, rows_of(out)), "B", at_most=0)
 

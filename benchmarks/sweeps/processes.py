@@ -15,7 +15,7 @@ from benchmarks.common import ROOT
 PATIENCE = 300.0  # [s] for one sweep of this bench
 
 
-def command(study: Path, out: Path, *more: str) -> subprocess.Popen[bytes]:
+def command(study: Path | str, out: Path, *more: str) -> subprocess.Popen[bytes]:
     """`pendant sweep` in a process of its own."""
     call = "import sys\nif __name__ == '__main__':\n    from app.cli import main\n    main()"
     arguments = [sys.executable, "-c", call, "sweep", str(study), "--out", str(out), *more]

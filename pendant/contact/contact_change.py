@@ -33,9 +33,9 @@ class Contact(NamedTuple):
     rule: str  # the rule that saw it
     part: str  # the contact part: "tool", a link
     source: str  # of force and acceleration (CD-2)
-    force: Vector  # change of the contact force [N]
-    acceleration: Vector  # change of the part's acceleration [m/s²]
-    ratio: float  # of the changes of force and acceleration; free motion has plus the payload's mass [kg]
+    force: Vector  # change of the contact force when the rule saw it [N]
+    acceleration: Vector  # change of the part's acceleration when the rule saw it [m/s²]
+    ratio: float  # of these two: minus the mass of what the contact brakes; free motion has no contact force, and 0 [kg]
     steps: int  # ticks from the first suspicious sample to the decision (CD-14)
     pose: ArmPose  # at the first suspicious sample
 

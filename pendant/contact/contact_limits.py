@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from pendant.contact.settings import ContactUse
+from pendant.contact.settings import BufferStatistic, ContactUse
 from pendant.tick.modes import Mode
 
 LIGHTEST = 0.3
@@ -35,11 +35,22 @@ class ContactLimits(NamedTuple):
     payload_margin: float  # force that a wrong payload may explain, an acceleration difference [kg]
     clamping: float  # force difference over acceleration difference, beyond which it is clamping [kg]
     mass: float  # configured [kg]
+    force_step: int = 3  # ticks between the samples of a difference of force, i (CD-4)
+    acceleration_step: int = 3  # of one of acceleration, j
+    tested: int = 5  # newest samples that the statistical rule tests (CD-6)
+    window: int = 30  # samples before them
+    newest: int = 10  # of the slow rule, p (CD-7)
+    oldest: int = 20  # of its stored values, q
+    median: bool = False  # stands for them, in place of the mean (CD-8)
 
 
-def limits(
-    use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, speed: float, link: bool = False, lever: float = 0.0
-) -> ContactLimits:
+def scale_of(use: ContactUse, mode: Mode, speed: float) -> float:
+    """Factor on all thresholds (CD-11, CD-12); `speed` is that of the tool centre point [m/s]."""
+    scale = (1.0 + use.speed_share * speed) / use.sensitivity
+    return scale * use.free_drive_factor if mode is Mode.FREE_DRIVE else scale
+
+
+def limits(use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, speed: float, lever: float = 0.0) -> ContactLimits:
     """The thresholds of one source now.
 
     Args:
@@ -48,23 +59,18 @@ def limits(
         mass: configured, that the force carries [kg].
         effective_mass: of the arm behind the part [kg].
         speed: of the tool centre point [m/s].
-        link: the source is the joints and the part a link.
         lever: of the carried mass: the angular acceleration's noise counts with it [m].
     """
-    scale = (1.0 + use.speed_share * speed) / use.sensitivity
-    if mode is Mode.FREE_DRIVE:
-        scale *= use.free_drive_factor
+    scale = scale_of(use, mode, speed)
     # Of the three axes of a turning, each point feels two.
     noise_f, noise_a = use.force_noise, (use.acceleration_noise**2 + 2.0 / 3.0 * (use.turn_noise * lever) ** 2) ** 0.5
     slow_force = use.slow_force + use.slow_payload * mass
-    if link:
-        noise_f, noise_a, slow_force = use.link_force_noise, use.link_acceleration_noise, use.link_force
     pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
     noisy = use.noise_limit * pair
     hard = use.hard_limit * pair * scale
     # The acceleration of a load off the axis comes up to a tick later than its force: in vibration they lie against each other.
     mismatch = scale * use.hard_payload * mass
-    margin = use.link_margin if link else use.payload_error * mass
+    margin = use.payload_error * mass
     return ContactLimits(
         noise_force_sq=(noisy * noise_f) ** 2,
         noise_acceleration_sq=(noisy * noise_a) ** 2,
@@ -85,4 +91,11 @@ def limits(
         payload_margin=margin,
         clamping=use.clamping_ratio + margin,
         mass=mass,
+        force_step=use.force_step,
+        acceleration_step=use.acceleration_step,
+        tested=use.tested,
+        window=use.window,
+        newest=use.newest,
+        oldest=use.oldest,
+        median=use.statistic is BufferStatistic.MEDIAN,
     )

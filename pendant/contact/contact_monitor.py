@@ -1,47 +1,28 @@
-"""All contact detectors side by side, one for each part and source, and the poses that they look back into (CD-2, CD-14)."""
+"""All contact detectors side by side, of the tool and of the links, and the poses that they look back into (CD-2, CD-14)."""
 
 from collections import deque
-from typing import NamedTuple
 
-import msgspec
 import numpy as np
 
 from pendant.contact.contact_change import ArmPose, Contact
-from pendant.contact.contact_limits import ContactLimits, limits
+from pendant.contact.contact_limits import ContactLimits, limits, scale_of
+from pendant.contact.contact_rules import Rule
 from pendant.contact.detector import Detector, Finding
 from pendant.contact.history import SIZE, SUMMED
+from pendant.contact.link_contact import LINKS, Felt, LinkWatch
 from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
 from pendant.tick.pose import flat, turned
 from pendant.tick.source_signal import ContactSignals, Signal
 
-
-class Source(NamedTuple):
-    """Where one detector's force and acceleration come from."""
-
-    part: str  # that touches
-    source: str
-    in_base: bool  # its axes are those of B, not of F
-
-
-SOURCES = (
-    Source("tool", "force and tool-side acceleration", False),
-    Source("tool", "force and arm-side acceleration", False),
-    Source("elbow", "joints", True),
-    Source("forearm", "joints", True),
-)
-"""In the order of `Estimate.signals`."""
-
-
-def for_links(use: ContactUse) -> ContactUse:
-    """The settings of the detectors that live on the joints.
-
-    Force and acceleration of a link come from the same encoders, whose errors look like a contact to every rule that asks for
-    opposite directions; only a force that lasts is told from them.
-    """
-    off = dict.fromkeys(("instant", "difference", "ratio", "ratio_of_values", "statistical"), False)
-    return msgspec.structs.replace(use, **off)
+TOOL = "tool"
+AT_TOOL = ("force and tool-side acceleration", "force and arm-side acceleration")
+"""Sources of the tool's force and acceleration, in the order of `Estimate.signals`; those of the links come after them."""
+JOINTS = "joints"
+"""Source of the links' force and acceleration."""
+STILL = 0.2
+"""Acceleration of a link that is none, for the noise of the encoders [m/s²]."""
 
 
 class Poses:
@@ -70,15 +51,13 @@ class ContactMonitor:
     """
 
     # The last samples of all sources and poses: more than all the rest of a state, and the same again after as many equal ticks.
-    NOT_STATE = ("detectors", "_poses", "_kept", "_limits", "_keys", "_use", "_on_links", "_used")
+    NOT_STATE = ("detectors", "links", "_poses", "_kept", "_limits", "_keys")
 
     def __init__(self) -> None:
-        self.detectors = tuple(Detector() for _ in SOURCES)
-        self._limits: list[ContactLimits | None] = [None] * len(SOURCES)
-        self._keys: list[tuple[object, ...]] = [()] * len(SOURCES)
-        self._use: ContactUse | None = None
-        self._on_links = ContactUse()
-        self._used = (False,) * len(SOURCES)
+        self.detectors = tuple(Detector() for _ in AT_TOOL)
+        self.links = LinkWatch()
+        self._limits: list[ContactLimits | None] = [None] * len(AT_TOOL)
+        self._keys: list[tuple[object, ...]] = [()] * len(AT_TOOL)
         self._poses = Poses()
         self._kept: deque[ContactSignals] = deque(maxlen=SUMMED)  # that the detectors have not got yet
 
@@ -88,11 +67,10 @@ class ContactMonitor:
 
     def restart(self) -> None:
         """The flange sensor is zeroed, which is no contact: what it said before counts no more."""
-        kept = bool(self._kept)  # then none of the detectors has got what the others have
         self._kept.clear()
-        for detector, source in zip(self.detectors, SOURCES, strict=True):
-            if kept or not source.in_base:
-                detector.sense(None)
+        for detector in self.detectors:
+            detector.sense(None)
+        self.links.gap()  # they are told what the sensor feels
 
     def step(self, estimate: Estimate, use: ContactUse, mode: Mode, on: bool) -> tuple[Contact, ...]:
         """One tick: buffers always, rules while `on` (CD-1, CD-4)."""
@@ -102,23 +80,28 @@ class ContactMonitor:
             return ()
         if self._kept:
             self._catch_up()
-        if use is not self._use:
-            self._use, self._on_links = use, for_links(use)
-            self._used = (use.tool, use.flange, use.links, use.links)
         contacts: tuple[Contact, ...] = ()
-        for index, signal in enumerate(estimate.signals.each()):
-            detector = self.detectors[index]
+        used = (use.tool, use.flange)
+        for index, (detector, signal) in enumerate(zip(self.detectors, estimate.signals.each(), strict=False)):
             if signal is None and detector.history.count == 0:
                 continue
             detector.sense(signal)
-            if not self._used[index]:
+            if not used[index]:
                 detector.forget()
             elif signal is not None:
-                rules = self._on_links if SOURCES[index].in_base else use
-                finding = detector.step(rules, self._limit(index, signal, use, mode, speed=estimate.v_tcp))
+                finding = detector.step(use, self._limit(index, signal, use, mode, speed=estimate.v_tcp))
                 if finding is not None:
-                    contacts += (self._contact(finding, SOURCES[index], estimate.tick, use.look_back),)
-        return contacts
+                    contacts += (self._at_tool(finding, AT_TOOL[index], estimate.tick, use.look_back),)
+        felt = self._of_links(estimate, use, mode)
+        return contacts if felt is None else (*contacts, self._at_link(felt, estimate.tick, use.look_back))
+
+    def _of_links(self, estimate: Estimate, use: ContactUse, mode: Mode) -> Felt | None:
+        links, signals = self.links, estimate.signals
+        links.sense(signals)
+        if not use.links or not use.slow:
+            links.forget()
+            return None
+        return links.step(use, signals, scale_of(use, mode, estimate.v_tcp))
 
     def _catch_up(self) -> None:
         """Give the detectors what they missed; if that is more than is kept, what was before it counts no more."""
@@ -126,27 +109,40 @@ class ContactMonitor:
             detector.forget()
             if len(self._kept) == SUMMED:
                 detector.sense(None)
+        self.links.forget()
+        if len(self._kept) == SUMMED:
+            self.links.gap()
         for signals in self._kept:
             for detector, signal in zip(self.detectors, signals.each(), strict=False):
                 detector.sense(signal)
+            self.links.sense(signals)
         self._kept.clear()
 
     def _limit(self, index: int, signal: Signal, use: ContactUse, mode: Mode, *, speed: float) -> ContactLimits:
         key = (use, mode, signal.mass, signal.lever, signal.effective_mass, speed if use.speed_share else 0.0)
         limit = self._limits[index]
         if limit is None or key != self._keys[index]:
-            links = SOURCES[index].in_base
             mass, effective = signal.mass, signal.effective_mass
-            limit = limits(use, mode, mass=mass, effective_mass=effective, speed=speed, link=links, lever=signal.lever)
+            limit = limits(use, mode, mass=mass, effective_mass=effective, speed=speed, lever=signal.lever)
             self._keys[index], self._limits[index] = key, limit
         return limit
 
-    def _contact(self, finding: Finding, source: Source, tick: int, look_back: bool) -> Contact:
-        steps = finding.steps if look_back else 0
-        # A force is the mean of its tick, angles are of its end, when the contact is there: where it began, it was not yet.
-        now, pose = self.now(), self._poses.at(steps + 1 if look_back else 0)
-        force, acceleration = finding.force, finding.acceleration
-        if not source.in_base:
-            force, acceleration = turned(now.R_BF, force), turned(now.R_BF, acceleration)
+    def _at_tool(self, finding: Finding, source: str, tick: int, look_back: bool) -> Contact:
+        R_BF = self.now().R_BF
+        force, acceleration = turned(R_BF, finding.force), turned(R_BF, finding.acceleration)
+        steps, pose = self._begun(finding.steps, look_back)
         change, rule = finding.change, finding.rule.value
-        return Contact(tick, change, rule, source.part, source.source, force, acceleration, finding.ratio, steps, pose)
+        return Contact(tick, change, rule, TOOL, source, force, acceleration, finding.ratio, steps, pose)
+
+    def _at_link(self, felt: Felt, tick: int, look_back: bool) -> Contact:
+        (fx, fy, fz), (ax, ay, az) = felt.force, felt.acceleration
+        ratio = (fx * ax + fy * ay + fz * az) / max(ax * ax + ay * ay + az * az, STILL * STILL)
+        steps, pose = self._begun(felt.steps, look_back)
+        rule, part = Rule.SLOW.value, LINKS[felt.link]
+        return Contact(tick, felt.change, rule, part, JOINTS, felt.force, felt.acceleration, ratio, steps, pose)
+
+    def _begun(self, steps: int, look_back: bool) -> tuple[int, ArmPose]:
+        """Steps back to where a contact began, and the pose there: a force is the mean of its tick, angles are of its end, when
+        the contact is there already.
+        """
+        return (steps, self._poses.at(steps + 1)) if look_back else (0, self._poses.at(0))

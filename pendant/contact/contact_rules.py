@@ -13,7 +13,7 @@ from pendant.tick.pose import Vector
 from pendant.tick.words import Word
 
 STEP = 3
-"""Ticks between the two samples of a difference (CD-4)."""
+"""Ticks between the two samples of a difference, as shipped (CD-4)."""
 LATE = 1.5
 """Ticks by which what a load's turning adds to its acceleration is late at most: half a tick, for it is the difference of two
 mean angular speeds, a third for its filter, and the rest of the tick where it begins suddenly."""
@@ -22,13 +22,13 @@ RESTLESS = 2.0
 HEAVIEST = 5
 """Sightings that one of the slow rule counts for at most."""
 NEW = 5
-"""Newest samples under test in the statistical rule (CD-6)."""
+"""Newest samples under test in the statistical rule, as shipped (CD-6)."""
 OLD = 30
-"""Samples before them, whose mean and variance they are held against."""
+"""Samples before them, whose mean and variance they are held against, as shipped."""
 P = 10
-"""Samples of the slow rule's newest mean (CD-7)."""
+"""Samples of the slow rule's newest mean, as shipped (CD-7)."""
 MEAN = 20
-"""Samples of the stored means that it is held against, q."""
+"""Samples of the stored means that it is held against, as shipped."""
 LAGS = (20, 60, 200)
 """Ages of the stored means that the newest is held against (CD-8): steep changes show early, flat ones in the long run."""
 OBJECT = 1.25
@@ -57,12 +57,15 @@ class Hard(NamedTuple):
 NOTHING = Hard(False, False)
 
 
-def hard(history: History, limit: ContactLimits) -> Hard:
-    """Difference rule (CD-4) and ratio rule (CD-5, eq. 7) on the change of the last `STEP` ticks."""
-    if history.count <= STEP:
+def hard(history: History, limit: ContactLimits, age: int = 0) -> Hard:
+    """Difference rule (CD-4, eq. 5, 6) and ratio rule (CD-5, eq. 7) on a pair of samples, the newer one `age` ticks old."""
+    i, j = limit.force_step, limit.acceleration_step
+    if history.count <= max(i, j) + age:
         return NOTHING
-    new, old = history.sample(0), history.sample(STEP)
+    new, old = history.sample(age), history.sample(age + i)
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
+    if i != j:
+        old = history.sample(age + j)
     ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
     aa = ax * ax + ay * ay + az * az
     if aa < limit.noise_acceleration_sq:
@@ -153,22 +156,23 @@ def values(history: History, limit: ContactLimits) -> tuple[bool, bool]:
 
 
 def statistical(history: History, limit: ContactLimits) -> bool:
-    """The newest `NEW` samples against mean and confidence interval of the `OLD` before them (CD-6, eq. 9, 10).
+    """The newest samples against mean and confidence interval of those before them (CD-6, eq. 9, 10).
 
     While an arm that is moved carries a heavy load, that load's m·A hides which way an object pushes; then the contact force,
     F - m·A, shows it (CD-0).
     """
-    if history.clean < NEW + OLD:
+    tested, window = limit.tested, limit.window
+    if history.clean < tested + window:
         return False
-    nfx, nfy, nfz, nax, nay, naz = history.mean(0, NEW)
-    old = history.mean(NEW, OLD)
+    nfx, nfy, nfz, nax, nay, naz = history.mean(0, tested)
+    old = history.mean(tested, window)
     ofx, ofy, ofz, oax, oay, oaz = old
     ax, ay, az = nax - oax, nay - oay, naz - oaz
     aa = ax * ax + ay * ay + az * az
-    error = limit.confidence_sq * (1.0 / NEW + 1.0 / OLD)
+    error = limit.confidence_sq * (1.0 / tested + 1.0 / window)
     if aa <= error * limit.acceleration_variance:
         return False
-    force, acceleration = history.variances(NEW, OLD, old)
+    force, acceleration = history.variances(tested, window, old)
     force, acceleration = max(force, limit.force_variance), max(acceleration, limit.acceleration_variance)
     if aa <= error * acceleration:
         return False
@@ -192,16 +196,17 @@ UNSEEN = Slow(0, False)
 
 
 def slow(history: History, limit: ContactLimits) -> Slow:
-    """The newest mean against stored means (CD-7, CD-8, eq. 11 to 17)."""
-    count = history.clean
-    if count < LAGS[0] + MEAN:
+    """The newest mean, or median, against stored ones (CD-7, CD-8, eq. 11 to 17)."""
+    count, oldest = history.clean, limit.oldest
+    if count < LAGS[0] + oldest:
         return UNSEEN
-    new = history.mean(0, P)
+    of = history.median if limit.median else history.mean
+    new = of(0, limit.newest)
     mass, threshold = limit.mass, limit.slow_force
     for lag in LAGS:
-        if count < lag + MEAN:
+        if count < lag + oldest:
             break
-        old = history.mean(lag, MEAN)
+        old = of(lag, oldest)
         dfx, dfy, dfz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
         ax, ay, az = new[3] - old[3], new[4] - old[4], new[5] - old[5]
         fx, fy, fz = dfx - mass * ax, dfy - mass * ay, dfz - mass * az

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.contact_limits import ContactLimits
-from pendant.contact.contact_rules import NEW, STEP, Rule, clear, contact_force, hard, slow, statistical, values
+from pendant.contact.contact_rules import NEW, Rule, clear, contact_force, hard, slow, statistical, values
 from pendant.contact.history import History, Six
 from pendant.contact.settings import ContactUse, RulesNeeded
 from pendant.tick.pose import Vector
@@ -23,7 +23,9 @@ SETTLED = 10
 CALM = 6
 """Ticks in a row for which that must hold: a ringing force looks settled now and then."""
 PATIENCE = 40
-"""Ticks after which a change of an existing contact is judged although the force has not settled."""
+"""Ticks after which a change of an existing contact is judged although the force has not settled, if it falls no more."""
+FALLS = 0.95
+"""Share of the force that is left after `SETTLED` ticks, below which it falls: an object that parts slowly takes some time."""
 SILENCE = 250
 """Ticks after which a detector listens again although the force has not settled."""
 GONE = 100
@@ -37,9 +39,9 @@ class Finding(NamedTuple):
 
     change: Change
     rule: Rule
-    force: Vector  # change of the contact force [N]
-    acceleration: Vector  # change of the acceleration [m/s²]
-    ratio: float  # [kg]
+    force: Vector  # change of the contact force, as the rule saw it [N]
+    acceleration: Vector  # change of the acceleration, as the rule saw it [m/s²]
+    ratio: float  # of the two [kg]
     steps: int  # ticks back to the first suspicious sample
 
 
@@ -47,6 +49,9 @@ class _Sighting(NamedTuple):
     rule: Rule
     since: int  # ticks back to the first suspicious sample, when it was seen
     before: Six  # mean force and acceleration before it
+    force: Vector  # change of the contact force [N]
+    acceleration: Vector  # change of the acceleration [m/s²]
+    ratio: float  # of the two [kg]
 
 
 class Detector:
@@ -102,24 +107,27 @@ class Detector:
             self._pending = sighting
             return None
         self.touching, self._rest = True, sighting.before
-        return self._finding(Change.CLAMPING if dead else Change.GAINED, sighting, limit)
+        return self._finding(Change.CLAMPING if dead else Change.GAINED, sighting)
 
     def _rule(self, use: ContactUse, limit: ContactLimits) -> tuple[Rule, int, bool] | None:
         """The rule that saw a change, how far back the change may reach, and whether the acceleration has died out."""
         history, counts, misses, hard_count = self.history, self._counts, use.misses, use.hard_count
         of_values = ratio_of_values = False
-        if use.instant or use.ratio_of_values:
+        # Values show that something is touched. A change of it they cannot show: its force is there before and after, and an
+        # arm that swings against it has an acceleration opposite to it in every other half of the swing.
+        instant = use.instant and not self.touching
+        if instant or (use.ratio_of_values and not self.touching):
             of_values, ratio_of_values = values(history, limit)
         wanted = use.difference + use.ratio
         seen = self._hard(use, limit, ratio_of_values and use.ratio_of_values) if wanted else []
-        if use.instant:
+        if instant:
             wanted += 1
             if counts[Rule.INSTANT].step(of_values, hard_count, misses):
                 seen.append((Rule.INSTANT, NEW, False))
         if use.statistical:
             wanted += 1
             if counts[Rule.STATISTICAL].step(statistical(history, limit), use.soft_count, misses):
-                seen.append((Rule.STATISTICAL, NEW + use.soft_count, False))
+                seen.append((Rule.STATISTICAL, use.tested + use.soft_count, False))
         if use.slow:
             wanted += 1
             sightings, dead = slow(history, limit)
@@ -133,14 +141,19 @@ class Detector:
         """Difference and ratio rule, as `_rule`; `of_values`: the values of now show the ratio, too (CD-4, CD-5)."""
         counts, misses, hard_count = self._counts, use.misses, use.hard_count
         seen: list[tuple[Rule, int, bool]] = []
-        change = hard(self.history, limit)
+        change, step = hard(self.history, limit), max(use.force_step, use.acceleration_step)
         if use.difference:
             confirmed = counts[Rule.DIFFERENCE].step(change.difference, hard_count, misses)
-            if confirmed or (use.retrospective and clear(self.history, limit)):
-                seen.append((Rule.DIFFERENCE, STEP + hard_count, False))
+            if confirmed or (use.retrospective and clear(self.history, limit)) or (change.difference and self._older(use, limit)):
+                seen.append((Rule.DIFFERENCE, step + max(hard_count, use.older_pairs), False))
         if use.ratio and counts[Rule.RATIO].step(change.ratio or of_values, hard_count, misses):
-            seen.append((Rule.RATIO, STEP + hard_count, False))
+            seen.append((Rule.RATIO, step + hard_count, False))
         return seen
+
+    def _older(self, use: ContactUse, limit: ContactLimits) -> bool:
+        """Every older pair of samples shows the difference, too: the buffer confirms it (CD-9)."""
+        ages = range(1, use.older_pairs + 1)
+        return use.older_pairs > 0 and all(hard(self.history, limit, age).difference for age in ages)
 
     def _look_back(self, rule: Rule, length: int, limit: ContactLimits) -> _Sighting:
         """Find the first suspicious sample: the change's direction is known now, so go back while samples lie in it."""
@@ -158,17 +171,15 @@ class Detector:
             if (fx - rest[0]) * ux + (fy - rest[1]) * uy + (fz - rest[2]) * uz < noise * size:
                 break
             first = age
-        return _Sighting(rule, first, before)
+        # How many of the newest samples the rule compared.
+        looked_at = {Rule.STATISTICAL: limit.tested, Rule.SLOW: limit.newest}.get(rule, 1)
+        seen = history.mean(0, min(looked_at, count))
+        return _Sighting(rule, first, before, *_change(before, seen, limit))
 
-    def _finding(self, change: Change, sighting: _Sighting, limit: ContactLimits) -> Finding:
-        """What is reported of a sighting now."""
-        b, n = sighting.before, self.history.sample(0)
-        fx, fy, fz = n[0] - b[0], n[1] - b[1], n[2] - b[2]
-        ax, ay, az = n[3] - b[3], n[4] - b[4], n[5] - b[5]
-        mass = limit.mass
-        ratio = (fx * ax + fy * ay + fz * az) / max(ax * ax + ay * ay + az * az, limit.acceleration_variance)
-        force = (fx - mass * ax, fy - mass * ay, fz - mass * az)
-        return Finding(change, sighting.rule, force, (ax, ay, az), ratio, sighting.since + self._age)
+    def _finding(self, change: Change, sighting: _Sighting) -> Finding:
+        """What is reported of a sighting: the kind is of now, force and acceleration are those that the rule saw (CD-16)."""
+        _, since, _, force, acceleration, ratio = sighting
+        return Finding(change, sighting.rule, force, acceleration, ratio, since + self._age)
 
     def _wait(self, limit: ContactLimits) -> Finding | None:
         """A tick of silence (CD-9a); at its end the change of an existing contact is judged, and statistics start again."""
@@ -176,7 +187,7 @@ class Detector:
         self._calm = self._calm + 1 if self._age >= SETTLED + NEW and self._settled(limit) else 0
         settled = self._calm >= CALM
         finding = None
-        if self._pending is not None and (settled or self._age >= PATIENCE):
+        if self._pending is not None and (settled or (self._age >= PATIENCE and not self._falls(limit))):
             finding, self._pending = self._judge(self._pending, limit), None
         if settled or self._age >= SILENCE:
             self.silent = False
@@ -184,6 +195,13 @@ class Detector:
             if self.touching and self._rest is not None and self._alike(self.history.mean(0, NEW), self._rest, limit):
                 self.touching, self._rest = False, None
         return finding
+
+    def _falls(self, limit: ContactLimits) -> bool:
+        """The force of the contact grows less, and something of it is left."""
+        assert self._rest is not None
+        history = self.history
+        before, now = (self._size(history.mean(age, NEW), self._rest, limit) for age in (SETTLED, 0))
+        return self._age < SILENCE and 0.0 < now < FALLS * before
 
     def _settled(self, limit: ContactLimits) -> bool:
         history = self.history
@@ -206,7 +224,7 @@ class Detector:
         change = Change.RESISTANCE
         if after <= SMALL * before:
             change, self.touching, self._rest = Change.LOST, False, None
-        return self._finding(change, sighting, limit)
+        return self._finding(change, sighting)
 
     def _size(self, sample: Six, rest: Six, limit: ContactLimits) -> float:
         """Contact force against `rest` beyond what noise and a wrong payload may explain [N]."""
@@ -223,3 +241,13 @@ class Detector:
     def _clear(self) -> None:
         for count in self._counts.values():
             count.clear()
+
+
+def _change(before: Six, now: Six, limit: ContactLimits) -> tuple[Vector, Vector, float]:
+    """Change of the contact force [N] and of the acceleration [m/s²] between two samples, and their ratio [kg]."""
+    ax, ay, az = now[3] - before[3], now[4] - before[4], now[5] - before[5]
+    gx, gy, gz = contact_force(before, limit.mass)
+    hx, hy, hz = contact_force(now, limit.mass)
+    fx, fy, fz = hx - gx, hy - gy, hz - gz
+    ratio = (fx * ax + fy * ay + fz * az) / max(ax * ax + ay * ay + az * az, limit.acceleration_variance)
+    return (fx, fy, fz), (ax, ay, az), ratio

@@ -1,5 +1,7 @@
 """Ring buffers of signals, and means and variances over any part of them from running sums (CD-4, CD-6, CD-8)."""
 
+from statistics import median
+
 from pendant.tick.source_signal import Signal
 
 SIZE = 512
@@ -88,6 +90,11 @@ class History:
         u, v, w, x, y, z = sums[(self._at - age - length) & MASK]
         share = 1.0 / length
         return (a - u) * share, (b - v) * share, (c - w) * share, (d - x) * share, (e - y) * share, (f - z) * share
+
+    def median(self, age: int, length: int) -> Six:
+        """Median of each component of force [N] and acceleration [m/s²], of `length` samples, the newest `age` ticks old."""
+        a, b, c, d, e, f = zip(*(self.sample(age + k)[:6] for k in range(length)), strict=True)
+        return median(a), median(b), median(c), median(d), median(e), median(f)
 
     def variances(self, age: int, length: int, mean: Six) -> tuple[float, float]:
         """Of force [N²] and acceleration [m²/s⁴], each the mean of its three axes, about `mean`, that of the same samples."""

@@ -17,12 +17,20 @@ class RulesNeeded(Word):
     ALL = "all"
 
 
+class BufferStatistic(Word):
+    """What stands for several samples in the slow rule (CD-8)."""
+
+    MEAN = "mean"
+    MEDIAN = "median"  # a knock that is shorter than half of the samples does not count
+
+
 class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Detection of a change in contact."""
 
     BASIC = ("on", "links", "sensitivity")
 
     on: Annotated[bool, _switch("CD-1", "a change in contact is detected and logged, in every mode", locked=False)] = False
+    audible: Annotated[bool, _switch("CD-15", "a change in contact is heard on a page with sound", locked=False)] = False
     tool: Annotated[bool, _switch("CD-2", "the tool is watched, by flange force and acceleration on the tool's side")] = True
     flange: Annotated[bool, _switch("CD-2", "the tool is watched, by flange force and acceleration on the arm's side")] = False
     links: Annotated[bool, _switch("CD-2", "elbow and forearm are watched, by the joints and the rigid model")] = True
@@ -63,14 +71,9 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     turn_noise: Annotated[
         float, _number(0.0, 20.0, "rad/s²", "CD-0", text="standard deviation of the angular acceleration, each axis")
     ] = 1.2
-    link_force_noise: Annotated[float, _number(0.1, 50.0, "N", "CD-2", text="standard deviation of the force on a link")] = 3.0
-    link_acceleration_noise: Annotated[
-        float, _number(0.02, 5.0, "m/s²", "CD-2", text="standard deviation of a link's acceleration")
-    ] = 0.2
-    link_force: Annotated[float, _number(1.0, 200.0, "N", "CD-2", text="slow rule: least change of the force on a link")] = 60.0
-    link_margin: Annotated[
-        float, _number(0.0, 100.0, "kg", "CD-11", text="force on a link that a wrong model may explain, per acceleration")
-    ] = 20.0
+    link_limit: Annotated[
+        float, _number(2.0, 20.0, "", "CD-2", text="links: least change of what a joint feels, in standard deviations")
+    ] = 4.5
     noise_limit: Annotated[
         float, _number(1.0, 6.0, "", "CD-0", text="differences within so many standard deviations are noise")
     ] = 3.0
@@ -99,3 +102,28 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     payload_error: Annotated[float, _number(0.0, 1.0, "", "CD-11", text="share of the payload by which it may be wrong")] = 0.25
     speed_share: Annotated[float, _number(0.0, 2.0, "s/m", "CD-11", text="thresholds rise by this share for each m/s")] = 0.0
     free_drive_factor: Annotated[float, _number(1.0, 10.0, "", "CD-11", text="factor on all thresholds in FREE_DRIVE")] = 3.0
+    force_step: Annotated[int, _count(1, 20, "CD-4", text="difference rule: ticks between the samples of force, i")] = 3
+    acceleration_step: Annotated[
+        int, _count(1, 20, "CD-4", text="difference rule: ticks between the samples of acceleration, j")
+    ] = 3
+    older_pairs: Annotated[
+        int, _count(0, 10, "CD-9", text="older pairs of samples that confirm a difference at once, if all show it")
+    ] = 0
+    tested: Annotated[int, _count(2, 20, "CD-6", text="statistical rule: newest samples, which are tested")] = 5
+    window: Annotated[int, _count(10, 200, "CD-6", text="statistical rule: samples before them, in the buffer")] = 30
+    newest: Annotated[int, _count(2, 20, "CD-7", text="slow rule: newest samples, p")] = 10
+    oldest: Annotated[int, _count(5, 50, "CD-7", text="slow rule: samples of the stored values, q")] = 20
+    statistic: Annotated[BufferStatistic, _choice("CD-8", "slow rule: what stands for its samples")] = BufferStatistic.MEAN
+    program_factor: Annotated[float, _number(1.0, 10.0, "", "CD-11", text="factor on all thresholds in RUN")] = 1.0
+    commanded_share: Annotated[
+        float, _number(0.0, 2.0, "s²/m", "CD-11", text="thresholds rise by this share for each m/s² that a program's line has")
+    ] = 0.0
+    target_share: Annotated[
+        float, _number(0.0, 0.5, "1/N", "CD-11", text="thresholds rise by this share for each newton that a program pushes with")
+    ] = 0.0
+    torque_share: Annotated[
+        float, _number(0.0, 0.5, "1/(N·m)", "CD-11", text="thresholds rise by this share for each N·m of the most loaded joint")
+    ] = 0.0
+    current_share: Annotated[
+        float, _number(0.0, 10.0, "", "CD-11", text="thresholds rise by this share at a motor's largest current")
+    ] = 0.0

@@ -72,17 +72,3 @@ def first_problem(tools: Sequence[Tool], most: float) -> tuple[int, Problem] | N
             return place, wrong
         names.add(tool.name)
     return None
-
-
-def difference(before: Sequence[Tool], after: Sequence[Tool]) -> str:
-    """What was done to a table, in words: by name where it is one tool."""
-    old, new = ({tool.name: tool for tool in tools} for tools in (before, after))
-    done = {
-        "added": [name for name in new if name not in old],
-        "changed": [name for name in new if name in old and new[name] != old[name]],
-        "deleted": [name for name in old if name not in new],
-    }
-    count = sum(map(len, done.values()))
-    if count == 0:
-        return "in another order"
-    return ", ".join(f"{names[0] if count == 1 else len(names)} {what}" for what, names in done.items() if names)

@@ -10,6 +10,7 @@ class Effect(StrEnum):
     """What an event does to the mode; all that state machines ask of an event."""
 
     INFO = "INFO"  # nothing
+    TO_TEACH = "TO_TEACH"  # the mode is TEACH; a program is given up
     TRY = "TRY"  # the arm is freed for the activation sequence; a running program pauses
     ENTER = "ENTER"  # free-drive begins
     NO_ENTRY = "NO_ENTRY"  # free-drive is refused, the mode stays

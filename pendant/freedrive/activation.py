@@ -5,16 +5,15 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.freedrive.adaptive_gravity import Balance, Compensation
-from pendant.freedrive.attempt import Attempt, Outcome
+from pendant.freedrive.attempt import Attempt, Outcome, asked, reserved, started
 from pendant.freedrive.gate import Gate
-from pendant.freedrive.origins import may_enter, origins
+from pendant.freedrive.origins import may_enter, origins, teach_first
 from pendant.freedrive.periods import Remaining
 from pendant.freedrive.sequence import SHORTEST, Sequence
 from pendant.freedrive.settings import BeyondLimit
 from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.settings.schema import ticks
-from pendant.signals.sources import BUTTON
 from pendant.signals.stored_baseline import Stored
 from pendant.tick.limit_engine import Monitored
 from pendant.tick.modes import TICK, Mode, Phase
@@ -24,11 +23,12 @@ from pendant.walls.definitions import Start
 
 NAMES = {
     Phase.ACTIVATION: "activation",
+    Phase.DELAY: "delay",
     Phase.FEEDBACK: "feedback",
     Phase.CONFIRM: "confirmation",
     Phase.LET_GO: "let go",
 }
-"""Of the periods before the sequence, for interfaces."""
+"""Of the periods of an attempt, for interfaces."""
 
 FAILED = frozenset({Outcome.UNCONFIRMED, Outcome.STILL_HELD})
 """Outcomes that refuse free-drive."""
@@ -43,6 +43,7 @@ class Activation:
     """
 
     __slots__ = (
+        "_asking",
         "_attempt",
         "_bias",
         "_compensation",
@@ -71,6 +72,7 @@ class Activation:
         self._joints, self._rated = joints, rated
         self._containment, self._bias = containment, bias
         self._attempt: Attempt | None = None
+        self._asking: Attempt | None = None  # that is confirmed within the sequence
         self._sequence: Sequence | None = None
         self._compensation: Compensation | None = None  # after a limit of the sequence was exceeded
         self._left = self._total = 0  # ticks of the sequence
@@ -80,7 +82,7 @@ class Activation:
     @property
     def remaining(self) -> Remaining | None:
         """Of the running period (FD-20)."""
-        attempt = self._attempt
+        attempt = self._attempt or self._asking
         if attempt is not None:
             return Remaining(NAMES[attempt.phase], attempt.left, attempt.total)
         balancing = self._compensation
@@ -116,20 +118,20 @@ class Activation:
     def end(self) -> None:
         """Free-drive is entered or refused, or the attempt is given up."""
         self.phase = Phase.OFF
-        self._attempt = None
+        self._attempt = self._asking = None
         self._sequence = None
         self._compensation = None
 
     def step(self, around: Surroundings, settings: Settings, gate: Gate) -> Happened:
         """One tick with a signal, or of an attempt."""
         if self.phase is Phase.SEQUENCE:
-            return self._check(around, settings)
+            return self._check(around, settings, gate)
         tick, signal, attempt = around.estimate.tick, gate.signal, self._attempt
-        if attempt is None and gate.shut:
-            return Happened([Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.appeared else [])
-        counting = self.phase is Phase.ACTIVATION and not signal.source
         if attempt is None:
+            if gate.shut or reserved(signal, settings):
+                return Happened(_not_yet(gate, tick))
             self._source = signal.source
+        counting = self.phase is Phase.ACTIVATION and not signal.source
         if not counting and not around.guided and not may_enter(around.mode, self._source, settings):
             return _not_from(around.mode, tick, self._source, settings)
         if not around.enabled:
@@ -138,7 +140,7 @@ class Activation:
         if attempt is None:
             attempt = self._attempt = Attempt(signal, settings)
             self._containment.begin(Start.ACTIVATION, settings.walls)
-            events.append(_started(attempt, tick))
+            events.append(started(attempt, tick))
             outcome = attempt.first()
         else:
             static = around.still.count >= ticks(settings.static.time)  # an arm that a hand has left still swings
@@ -152,13 +154,13 @@ class Activation:
             if reading is not None:
                 return becomes(Transition.REFUSED, _behind(reading, tick, settings), events)
         if outcome is Outcome.READY:
-            return self._ready(attempt.confirmed, around, settings).after(events)
+            return self._ready(attempt, around, settings).after(events)
         if outcome is Outcome.GOES_ON:
             return Happened(events)
-        asked = _asked(outcome, attempt, around, settings)
-        return becomes(Transition.REFUSED, asked, events) if outcome in FAILED else Happened([*events, asked])
+        event = asked(outcome, attempt, around, settings)
+        return becomes(Transition.REFUSED, event, events) if outcome in FAILED else Happened([*events, event])
 
-    def _ready(self, confirmed: bool, around: Surroundings, settings: Settings) -> Happened:
+    def _ready(self, attempt: Attempt, around: Surroundings, settings: Settings) -> Happened:
         """The signal was present for long enough: from rest, try the arm, or enter at once where there is no sequence."""
         tick = around.estimate.tick
         if not joints_ok(around.estimate):
@@ -170,25 +172,31 @@ class Activation:
                 Transition.REFUSED, Event(Kind.REFUSED_MOVING, tick, around.still.moves(self._joints, settings.static))
             )
         self.posture = tuple(around.estimate.q.tolist())
+        switches = not around.guided and teach_first(around.mode, settings)
+        first = [Event(Kind.TEACH_FIRST, tick, {"from": around.mode})] if switches else []
         if not settings.sequence.on:
-            return _entered(around, settings)
+            return _entered(around, settings).after(first)
         use, stored = settings.sequence, None
         if use.stored:
             stored = self._stored.of(tick, ticks(use.age), around.wrench_ok)
             if stored is None:
                 return becomes(Transition.REFUSED, Event(Kind.REFUSED_NOT_STORED, tick, {"age": use.age}))
-        elif use.period < SHORTEST and not confirmed:
+        elif use.period < SHORTEST and not attempt.confirmed:
             return becomes(Transition.REFUSED, Event(Kind.REFUSED_SHORT, tick, {"value": use.period, "limit": SHORTEST}))
         self._attempt = None
         self.phase = Phase.SEQUENCE
+        asks = attempt.asks_within and attempt.ask()
+        self._asking = attempt if asks else None
         self._total = self._left = ticks(use.period)
         sequence = self._sequence = Sequence(around, settings, joints=self._joints, rated=self._rated, stored=stored)
         self._bias.begin(around.estimate, around.wrench_ok, around.mean)
         self._containment.begin(Start.SEQUENCE, settings.walls)
-        started = Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK})
-        return self._judge(sequence, around, settings).after([started])
+        first.append(Event(Kind.SEQUENCE_STARTED, tick, {"period": self._total * TICK}))
+        if asks is Outcome.CONFIRM:
+            first.append(asked(asks, attempt, around, settings))
+        return self._judge(sequence, around, settings).after(first)
 
-    def _check(self, around: Surroundings, settings: Settings) -> Happened:
+    def _check(self, around: Surroundings, settings: Settings, gate: Gate) -> Happened:
         """The sequence runs; the button does not matter any more (FD-8a)."""
         sequence, balancing = self._sequence, self._compensation
         if not around.guided and not may_enter(around.mode, self._source, settings):
@@ -196,8 +204,17 @@ class Activation:
         if balancing is not None:
             return self._balance(balancing, around, settings)
         assert sequence is not None
-        self._left -= 1
-        return self._judge(sequence, around, settings)
+        self._left = max(self._left - 1, 0)
+        attempt, events = self._asking, []
+        if attempt is not None:
+            outcome = attempt.step(gate.signal, False, False)
+            if outcome is Outcome.READY:
+                self._asking = None
+            elif outcome is not Outcome.GOES_ON:
+                events.append(asked(outcome, attempt, around, settings))
+                if outcome is Outcome.UNCONFIRMED:
+                    return becomes(Transition.REFUSED, events[0])
+        return self._judge(sequence, around, settings).after(events)
 
     def _judge(self, sequence: Sequence, around: Surroundings, settings: Settings) -> Happened:
         """One tick of the sequence: what refuses free-drive, or entry at its end."""
@@ -208,7 +225,7 @@ class Activation:
         beyond = sequence.check(around)
         reading = self._containment.step(around.estimate, *NOBODY)
         if not beyond and reading is None:
-            return _entered(around, settings) if self._left == 0 else Happened([])
+            return _entered(around, settings) if self._left == 0 and self._asking is None else Happened([])
         reasons = sequence.reasons(beyond, around)
         if beyond:
             refusal = sequence.refusal(beyond, around, settings)
@@ -229,23 +246,9 @@ class Activation:
         return balancing.step(around, settings.static)
 
 
-def _started(attempt: Attempt, tick: int) -> Event:
-    values: Values = {"period": attempt.total * TICK}
-    if attempt.source == BUTTON.source:
-        return Event(Kind.ACTIVATION_STARTED, tick, values)
-    return Event(Kind.SIGNAL_SEEN, tick, {"source": attempt.source, **values})
-
-
-def _asked(outcome: Outcome, attempt: Attempt, around: Surroundings, settings: Settings) -> Event:
-    """A confirmation or hands off is asked for, or was asked for and did not come."""
-    tick, handshake, off = around.estimate.tick, settings.handshake, settings.let_go
-    if outcome is Outcome.CONFIRM:
-        values: Values = {"source": attempt.source, "feedback": handshake.feedback, "window": handshake.window}
-        return Event(Kind.CONFIRM_ASKED, tick, values)
-    if outcome is Outcome.UNCONFIRMED:
-        return Event(Kind.REFUSED_UNCONFIRMED, tick, {"source": attempt.source, "limit": handshake.window})
-    values = {"force": around.felt, "limit": off.force, "within": off.within}
-    return Event(Kind.LET_GO_ASKED if outcome is Outcome.LET_GO else Kind.REFUSED_STILL_HELD, tick, values)
+def _not_yet(gate: Gate, tick: int) -> list[Event]:
+    """A signal appears in the cool-down, or before it has been absent."""
+    return [Event(Kind.NOT_YET, tick, {"remaining": gate.left * TICK})] if gate.shut and gate.appeared else []
 
 
 def _not_from(mode: Mode, tick: int, source: str, settings: Settings) -> Happened:
@@ -265,4 +268,5 @@ def _behind(reading: Reading, tick: int, settings: Settings) -> Event:
 
 def _entered(around: Surroundings, settings: Settings) -> Happened:
     gain = settings.free_drive.gain if around.wrench_ok else 0.0
-    return becomes(Transition.ENTERED, Event(Kind.ENTERED, around.estimate.tick, {"from": around.mode, "gain": gain}))
+    mode = Mode.TEACH if not around.guided and teach_first(around.mode, settings) else around.mode
+    return becomes(Transition.ENTERED, Event(Kind.ENTERED, around.estimate.tick, {"from": mode, "gain": gain}))

@@ -3,8 +3,11 @@
 from enum import StrEnum
 
 from pendant.all_settings import Settings
+from pendant.context import Surroundings
+from pendant.events.event import Event, Kind, Values
 from pendant.settings.schema import ticks
-from pendant.signals.sources import Presence
+from pendant.signals.settings import ConfirmedBy, ConfirmedWhen
+from pendant.signals.sources import BUTTON, POSTURE, PRESSES, SERIES, Presence
 from pendant.tick.modes import TICK, Phase
 
 GAP = ticks(1.0)
@@ -13,8 +16,18 @@ GAP = ticks(1.0)
 ABSENT = ticks(0.2)
 """A signal counts as a new one after an absence of so many ticks (FD-7, FD-8)."""
 
-CONFIRMING = frozenset({"button", "push", "twist", "push felt by joints", "pushes in a row", "turned joint"})
-"""Sources that can confirm: the pendant and FD-5 (c) to (g)."""
+CONFIRMING: dict[ConfirmedBy, frozenset[str]] = {
+    ConfirmedBy.BUTTON: frozenset({BUTTON.source, PRESSES.source}),
+    ConfirmedBy.PUSH: frozenset({"push"}),
+    ConfirmedBy.TWIST: frozenset({"twist"}),
+    ConfirmedBy.JOINTS: frozenset({"push felt by joints"}),
+    ConfirmedBy.PATTERN: frozenset({"pushes in a row"}),
+    ConfirmedBy.TURN: frozenset({"turned joint"}),
+    ConfirmedBy.POSTURE: frozenset({POSTURE.source, SERIES.source}),
+}
+"""Sources that can confirm, by what is chosen: the pendant and FD-5 (c) to (g)."""
+
+ALL_CONFIRMING = frozenset[str]().union(*CONFIRMING.values())
 
 
 class Outcome(StrEnum):
@@ -69,6 +82,11 @@ class Attempt:
         return self._settings.handshake.on
 
     @property
+    def asks_within(self) -> bool:
+        """The robot asks in the activation sequence."""
+        return self._settings.handshake.on and self._settings.handshake.when is ConfirmedWhen.WITHIN
+
+    @property
     def present(self) -> float:
         """How long the signal has been present [s]."""
         return (self.total - self.left + 1) * TICK
@@ -89,6 +107,9 @@ class Attempt:
         self._off = 0 if signal.source or touched else self._off + 1
         if self.phase is Phase.ACTIVATION:
             return self._count(signal)
+        if self.phase is Phase.DELAY:
+            self.left -= 1
+            return self._feed_back() if self.left == 0 else Outcome.GOES_ON
         if self.phase is Phase.FEEDBACK:
             self.left -= 1
             return self._ask() if self.left == 0 else Outcome.GOES_ON
@@ -112,8 +133,18 @@ class Attempt:
 
     def _activated(self) -> Outcome:
         """The activation period has ended."""
-        if not self._settings.handshake.on:
+        if not self._settings.handshake.on or self.asks_within:
             return self._hands_off()
+        return self.ask()
+
+    def ask(self) -> Outcome:
+        """Begin the handshake: the robot asks after its delay."""
+        self.phase = Phase.DELAY
+        self.left = self.total = ticks(self._settings.handshake.delay)
+        return self._feed_back() if self.left == 0 else Outcome.GOES_ON
+
+    def _feed_back(self) -> Outcome:
+        """The robot asks."""
         self.phase = Phase.FEEDBACK
         self.left = self.total = ticks(self._settings.handshake.feedback)
         if self.left == 0:
@@ -132,7 +163,7 @@ class Attempt:
         self._fresh = self._fresh or self._absent >= ABSENT
         # A pull that only weakens for a while, as a cable's does, has not left the arm: it is the first one, still held.
         self._untouched = self._untouched or self._off >= ABSENT
-        if (self._untouched if signal.by_hand else self._fresh) and signal.source in CONFIRMING:
+        if (self._untouched if signal.by_hand else self._fresh) and self._confirms(signal.source):
             self._run += 1
             if signal.whole or self._run > ticks(self._settings.handshake.hold):
                 self._by_hand = signal.by_hand
@@ -142,6 +173,10 @@ class Attempt:
             self._run, self._fresh, self._untouched = 0, False, False
         return Outcome.UNCONFIRMED if self.left == 0 else Outcome.GOES_ON
 
+    def _confirms(self, source: str) -> bool:
+        by = self._settings.handshake.by
+        return source in CONFIRMING.get(by, ALL_CONFIRMING) and not (by is ConfirmedBy.OTHER and source == self.source)
+
     def _hands_off(self) -> Outcome:
         """The signal is complete: a hand that gave it must leave the arm first."""
         if not (self._by_hand and self._settings.let_go.on):
@@ -149,3 +184,29 @@ class Attempt:
         self.phase = Phase.LET_GO
         self.left = self.total = ticks(self._settings.let_go.within)
         return Outcome.LET_GO
+
+
+def reserved(signal: Presence, settings: Settings) -> bool:
+    """A source that is chosen to confirm does not ask for free-drive (FD-8)."""
+    use = settings.handshake
+    return use.on and signal.source in CONFIRMING.get(use.by, ())
+
+
+def started(attempt: Attempt, tick: int) -> Event:
+    """The event of its first tick."""
+    values: Values = {"period": attempt.total * TICK}
+    if attempt.source == BUTTON.source:
+        return Event(Kind.ACTIVATION_STARTED, tick, values)
+    return Event(Kind.SIGNAL_SEEN, tick, {"source": attempt.source, **values})
+
+
+def asked(outcome: Outcome, attempt: Attempt, around: Surroundings, settings: Settings) -> Event:
+    """A confirmation or hands off is asked for, or was asked for and did not come."""
+    tick, handshake, off = around.estimate.tick, settings.handshake, settings.let_go
+    if outcome is Outcome.CONFIRM:
+        values: Values = {"source": attempt.source, "feedback": handshake.feedback, "window": handshake.window}
+        return Event(Kind.CONFIRM_ASKED, tick, values)
+    if outcome is Outcome.UNCONFIRMED:
+        return Event(Kind.REFUSED_UNCONFIRMED, tick, {"source": attempt.source, "limit": handshake.window})
+    values = {"force": around.felt, "limit": off.force, "within": off.within}
+    return Event(Kind.LET_GO_ASKED if outcome is Outcome.LET_GO else Kind.REFUSED_STILL_HELD, tick, values)

@@ -39,6 +39,9 @@ ENTRY: dict[Kind, EventRow] = {
         "Push of {force:.0f} N at the {part}", "({x:.2f}, {y:.2f}, {z:.2f}) in the base's axes.", ("part", "force", "x", "y", "z")
     ),
     # Entry (FD-9)
+    Kind.TEACH_FIRST: EventRow(
+        Effect.TO_TEACH, Severity.INFO, "Mode TEACH", "It was {from}. Free-drive leads back to TEACH.", ("from",)
+    ),
     Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),
@@ -134,11 +137,11 @@ ENTRY: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.WARNING,
         "The force stays: check the payload",
-        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Correct the payload, with hands off.",
+        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Measure the payload, or correct it, with hands off.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
-            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or correct the payload.",
+            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or measure the payload.",
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)

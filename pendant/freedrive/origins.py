@@ -10,9 +10,14 @@ def may_enter(mode: Mode, source: str, settings: Settings) -> bool:
     if mode is Mode.REMOTE or source == REMOTE_CONTROLLER.source:
         return mode is Mode.REMOTE and source == REMOTE_CONTROLLER.source
     allowed = settings.free_drive.allowed_from
-    return (
-        (mode is Mode.TEACH and allowed.teach) or (mode is Mode.NORMAL and allowed.normal) or (mode is Mode.RUN and allowed.run)
-    )
+    normal = allowed.normal or (allowed.teach and allowed.teach_first)
+    return (mode is Mode.TEACH and allowed.teach) or (mode is Mode.NORMAL and normal) or (mode is Mode.RUN and allowed.run)
+
+
+def teach_first(mode: Mode, settings: Settings) -> bool:
+    """Free-drive that begins in `mode` begins with a switch to TEACH."""
+    allowed = settings.free_drive.allowed_from
+    return allowed.teach and allowed.teach_first and mode in (Mode.NORMAL, Mode.RUN)
 
 
 def origins(source: str, settings: Settings) -> str:

@@ -95,7 +95,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         ("mass", "force"),
     ),
     # The way back (FD-22)
-    Kind.WAY_BACK: info("Back to the posture at activation", "{joints}.", ("joints", "posture")),
+    Kind.WAY_BACK: info("Way back to the posture at activation", "{joints}.", ("joints", "posture")),
     # A wall or area (VW-6, VW-9)
     Kind.LEFT_WALL: left(
         "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING

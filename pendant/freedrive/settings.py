@@ -74,6 +74,7 @@ class Origins(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     normal: Annotated[bool, _switch("FD-1", "free-drive can be entered from NORMAL")] = False
     teach: Annotated[bool, _switch("FD-1", "free-drive can be entered from TEACH")] = True
     run: Annotated[bool, _switch("FD-1", "free-drive can be entered from RUN, which it pauses")] = False
+    teach_first: Annotated[bool, _switch("FD-1", "activation in NORMAL or RUN switches to TEACH, where it leads back to")] = False
 
 
 class FreeDriveSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

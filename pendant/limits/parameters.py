@@ -118,6 +118,12 @@ def _motor_torque(view: Observed, base: float) -> Read:
     return abs(torques[joint]), part, base * view.scale[joint]
 
 
+def _motor_current(view: Observed, base: float) -> Read:
+    """The motor whose current comes nearest to the largest that it may have; a share of that."""
+    size, part = _largest(view.estimate.current.tolist(), view)
+    return size, part, base
+
+
 def _joint_torque(view: Observed, base: float) -> Read:
     """The joint that comes nearest to its limit; its limit is the parameter's, in N·m."""
     share, felt = view.share, view.estimate
@@ -173,6 +179,7 @@ PARAMETERS: dict[str, Parameter] = {
     "joint_speed": Parameter("joint speed", "rad/s", _joint_speed),
     "joint_acceleration": Parameter("joint acceleration", "rad/s²", _joint_acceleration),
     "motor_torque": Parameter("motor torque", "N·m", _motor_torque),
+    "motor_current": Parameter("motor current", "of largest", _motor_current),
     "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
     "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
     "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),

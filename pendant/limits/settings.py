@@ -46,6 +46,9 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
         max=5.0, on=False
     )
     motor_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", text="torque of a motor")] = Limit(max=0.9, on=False)
+    motor_current: Annotated[Limit, _limit(0.01, 1.0, "of largest", "FD-9", text="current of a motor, as measured")] = Limit(
+        max=0.9, on=False
+    )
     joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", text="external torque of a joint")] = Limit(max=0.04)
     payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", text="force as a wrong payload would cause it")] = Limit(
         max=5.8
@@ -178,6 +181,26 @@ class AxisSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     too_near: Annotated[
         float, _number(0.001, 0.01, "m", "FD-4", text="smallest singular value below which the resistance is full")
     ] = 0.01
+
+
+class JointSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Freedom of the joints in free-drive, one by one. An arm with fewer joints has no use for the others."""
+
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-4", "joints can be locked in free-drive", locked=False)] = True
+    j1: Annotated[bool, _switch("FD-4", "joint 1, counted from the base, is free", locked=False)] = True
+    j2: Annotated[bool, _switch("FD-4", "joint 2, counted from the base, is free", locked=False)] = True
+    j3: Annotated[bool, _switch("FD-4", "joint 3, counted from the base, is free", locked=False)] = True
+    j4: Annotated[bool, _switch("FD-4", "joint 4, counted from the base, is free", locked=False)] = True
+    j5: Annotated[bool, _switch("FD-4", "joint 5, counted from the base, is free", locked=False)] = True
+    j6: Annotated[bool, _switch("FD-4", "joint 6, counted from the base, is free", locked=False)] = True
+    j7: Annotated[bool, _switch("FD-4", "joint 7, counted from the base, is free", locked=False)] = True
+    j8: Annotated[bool, _switch("FD-4", "joint 8, counted from the base, is free", locked=False)] = True
+    j9: Annotated[bool, _switch("FD-4", "joint 9, counted from the base, is free", locked=False)] = True
+    j10: Annotated[bool, _switch("FD-4", "joint 10, counted from the base, is free", locked=False)] = True
+    j11: Annotated[bool, _switch("FD-4", "joint 11, counted from the base, is free", locked=False)] = True
+    j12: Annotated[bool, _switch("FD-4", "joint 12, counted from the base, is free", locked=False)] = True
 
 
 class JointLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):

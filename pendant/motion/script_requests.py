@@ -9,7 +9,7 @@ from typing import Literal
 
 import msgspec
 
-from pendant.program.steps import MOST_FORCE, HandGuide, LinearMove, Move
+from pendant.program.steps import MOST_FORCE, GentleStop, HandGuide, LinearMove, Move
 from pendant.tick.pose import UNTURNED, Rotation, Vector
 
 LOOKAHEAD = (0.03, 0.2)
@@ -52,6 +52,12 @@ class ScriptedArc(LinearMove, tag="movec", frozen=True, forbid_unknown_fields=Tr
     fixed: bool = False  # the tool keeps its orientation to the tangent; else it turns evenly to that of the end
     time: float = 0.0  # as of ScriptedJoints [s]
     blend: float = 0.0  # [m]
+
+
+class ScriptedProcess(LinearMove, tag="movep", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """The tool centre point along a straight line to a pose, from the line before on a circle, at one speed."""
+
+    blend: float = 0.0  # so far from its end, and from the begin of the next such line, a circle joins them [m]
 
 
 class ServoJoints(Move, tag="servoj", frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -98,13 +104,6 @@ class SpeedTool(Move, tag="speedl", frozen=True, forbid_unknown_fields=True, kw_
         _finite(*self.speed, *self.turning, self.acceleration, self.turning_acceleration, self.time)
 
 
-class ScriptedStop(Move, tag="stop", frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Come to rest on the way that the arm is on."""
-
-    of: Literal["joints", "tool"] = "joints"  # whose deceleration it is: of the fastest joint, or of the tool centre point
-    deceleration: float = math.inf  # [rad/s²] or [m/s²]; not more than the arm can
-
-
 class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The arm is guided by hand, after the activation sequence, along and about the free axes of a frame."""
 
@@ -113,7 +112,16 @@ class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields
 
 
 ScriptedMove = (
-    ScriptedJoints | ScriptedLine | ScriptedArc | ServoJoints | ServoTool | SpeedJoints | SpeedTool | ScriptedStop | Guided
+    ScriptedJoints
+    | ScriptedLine
+    | ScriptedArc
+    | ScriptedProcess
+    | ServoJoints
+    | ServoTool
+    | SpeedJoints
+    | SpeedTool
+    | GentleStop
+    | Guided
 )
 
 
@@ -130,6 +138,7 @@ class ForceMode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     R_BU: Rotation  # its orientation
     turns: Literal["not", "to_origin", "with_motion"] = "not"  # its y points from the tool to its origin; its x goes as the tool
     gain: float = 1.0  # of what the missing force changes
+    damping: float | None = None  # share of its speed that it loses in a tick; None: it has no inertia
 
     def __post_init__(self) -> None:
         _finite(*self.wrench, *self.limits, *self.origin, self.gain)

@@ -7,6 +7,7 @@ import msgspec
 from msgspec import Meta
 
 from pendant.contact.contact_change import ArmPose, Change, Contact
+from pendant.settings.bounds import Coordinate
 from pendant.tick.pose import UNTURNED, Rotation, Vector, product, quaternion
 
 REACTION_SPEED = 0.05  # of straight reactions, slow enough to end where they should [m/s]
@@ -17,9 +18,26 @@ class Until(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
     change: Literal["any", "gained", "lost", "resistance", "clamping"] = "any"
     part: str | None = None  # of the contact; None: any
-    then: Literal["stop", "contact_pose", "retract", "reverse", "turn"] = "stop"
+    within: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.0  # way of the tool in which the arm stops; 0: at once [m]
+    time: Annotated[float, Meta(ge=0.0, le=5.0)] = 0.0  # in which the arm stops; 0: at once [s]
+    then: Literal["stop", "contact_pose", "retract", "reverse", "turn", "position"] = "stop"
+    position: tuple[Coordinate, Coordinate, Coordinate] | None = None  # `position`: p_BT, straight there [m]
     distance: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.05  # `retract`: from the contact pose, back where it came from [m]
     angle: Annotated[float, Meta(ge=-math.pi, le=math.pi)] = 0.5  # `turn`: about the tool's z axis [rad]
+
+    def __post_init__(self) -> None:
+        if (self.then == "position") != (self.position is not None):
+            raise ValueError("position: it goes with `then: position`, and only with that")
+        if self.within > 0.0 and self.time > 0.0:
+            raise ValueError("within, time: one of them says how the arm stops")
+
+    def deceleration(self, speed: float) -> float:
+        """Of the tool at its hardest, for a stop from this speed [m/s]; infinite for one at once [m/s²].
+
+        A stop's speed falls as half a cosine: it takes twice the time of its way at full speed, and brakes by pi/2 of the mean.
+        """
+        time = 2.0 * self.within / speed if self.within > 0.0 and speed > 0.0 else self.time
+        return 0.5 * math.pi * speed / time if time > 0.0 else math.inf
 
     def meets(self, contact: Contact) -> bool:
         """Whether `contact` is what the move waits for."""
@@ -54,6 +72,8 @@ def goal(until: Until, contact: Contact, *, begun: ArmPose, now: ArmPose, R_FT: 
         return Goal(q=there.q)
     if until.then == "reverse":
         return Goal(q=begun.q)
+    if until.then == "position":
+        return Goal(position=until.position, quaternion=quaternion(product(now.R_BF, R_FT)))
     if until.then == "turn":
         c, s = math.cos(until.angle), math.sin(until.angle)
         R = product(product(now.R_BF, R_FT), (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0))

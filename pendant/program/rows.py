@@ -30,7 +30,7 @@ def _touched(headline: str) -> EventRow:
         Effect.INFO,
         Severity.NOTICE,
         headline,
-        "Change of {force:.1f} N; rule {rule}, {steps} ticks after it began. Action: {action}.",
+        "Force change {force:.1f} N, seen within {steps} ticks of 2 ms by rule {rule}. Action: {action}.",
         keys,
     )
 
@@ -46,7 +46,8 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_RESUMED: info("Program {name} resumed", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_STOPPED: info("Program {name} stopped", "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: info("Program {name} finished", "", ("name",)),
-    Kind.PROGRAM_FAILED: denied("Program {name} cannot go on", "Step {step}: {reason}.", ("name", "step", "reason")),
+    Kind.PROGRAM_FAILED: denied("Program {name} stopped at step {step}", "{reason}.", ("name", "step", "reason")),
+    Kind.PROGRAM_TELLS: EventRow(Effect.INFO, Severity.NOTICE, "{text}", "Program {name}.", ("name", "text", "tone")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
@@ -65,6 +66,8 @@ PROGRAM: dict[Kind, EventRow] = {
     ),
     Kind.TOOLS_CHANGED: info("Table of tools: {change}", "{count} tools.", ("change", "count")),
     Kind.TOOL_REFUSED: denied("Not changed: {what}", "{reason}.", ("what", "reason")),
+    Kind.WALLS_CHANGED: info("Walls: {change}", "{count} walls and areas.", ("change", "count")),
+    Kind.WALLS_REFUSED: denied("Walls not changed", "{reason}.", ("reason",)),
     Kind.PAYLOAD_CHANGED: info(
         "Payload {mass:.2f} kg",
         "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} mm; with tool {tool} {total:.2f} kg.",
@@ -83,6 +86,10 @@ PROGRAM: dict[Kind, EventRow] = {
         "Centre {x:z.0f}, {y:z.0f}, {z:z.0f} ± {centre_deviation:.1f} mm; {postures} postures, fit {fit:.2f} N.",
         ("mass", "mass_deviation", "x", "y", "z", "centre_deviation", "fit", "postures"),
     ),
+    Kind.WIZARD_STARTED: info("Measuring the payload", "The arm turns its wrist by itself, slowly. Hands off the arm.", ()),
+    Kind.WIZARD_FINISHED: info("Payload measured", "{postures} postures; the arm is back where it began.", ("postures",)),
+    Kind.WIZARD_STOPPED: denied("Measuring the payload stopped", "{reason}.", ("reason",)),
+    Kind.WIZARD_REFUSED: denied("The payload is not measured", "{reason}.", ("reason",)),
     # The flange sensor's zero
     Kind.SENSOR_ZEROED: info(
         "Force sensor zeroed", "{force:.1f} N and {torque:.2f} N·m subtracted.", ("force", "torque", "x", "y", "z")

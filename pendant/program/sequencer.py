@@ -1,5 +1,6 @@
 """The sequencer: runs the steps of a program in mode RUN, one after the other."""
 
+import math
 from collections.abc import Callable
 
 from msgspec.structs import replace
@@ -10,6 +11,7 @@ from pendant.program.steps import (
     UNFELT,
     ApplyForce,
     ContactMove,
+    GentleStop,
     HandGuide,
     JointMove,
     LinearMove,
@@ -19,6 +21,7 @@ from pendant.program.steps import (
     RunScript,
     SetOutput,
     SwitchTool,
+    Tell,
     Wait,
     WaitForContact,
     WaitForInput,
@@ -50,6 +53,7 @@ class Sequencer:
         "outputs",
         "program",
         "state",
+        "telling",
         "tool_on",
     )
 
@@ -67,6 +71,7 @@ class Sequencer:
         self._untouched: Vector = UNFELT  # F_user when the arm last began to move [N]
         self._runs = 0  # of the steps from first to last, done since the start
         self.tool_on = False
+        self.telling: Tell | None = None  # what this tick's step says
         self.high: frozenset[int] = frozenset()  # digital inputs that are high now
         self.outputs: frozenset[int] = frozenset()  # digital outputs that are on
         self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
@@ -118,12 +123,15 @@ class Sequencer:
             else "it ended without a contact"
         )
 
-    def touch(self, contact: Contact) -> bool:
-        """A contact changes while a step runs: True when it ends the step, so that the arm has to come to rest."""
+    def touch(self, contact: Contact, speed: float = 0.0) -> bool:
+        """A contact changes while a step runs, the tool at this speed [m/s]: True when it ends the step, and the arm brakes."""
         until = self.until
         if until is None or not until.meets(contact):
             return False
         self.contact, self.move = contact, None
+        if (deceleration := until.deceleration(speed)) < math.inf:
+            self._begun += 1
+            self.move = GentleStop(id=self._begun, of="tool", deceleration=deceleration)
         return True
 
     @property
@@ -221,6 +229,8 @@ class Sequencer:
             return move.level.holds(self.high)
         if isinstance(move, SwitchTool):
             self.tool_on = move.on
+        elif isinstance(move, Tell):
+            self.telling = move
         elif isinstance(move, SetOutput):
             self.outputs = self.outputs | {move.output} if move.on else self.outputs - {move.output}
         elif isinstance(move, Wait):

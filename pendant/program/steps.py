@@ -36,6 +36,13 @@ class Move(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     id: int = 0
 
 
+class GentleStop(Move, tag="stop", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Come to rest on the way that the arm is on."""
+
+    of: Literal["joints", "tool"] = "joints"  # whose deceleration it is: of the fastest joint, or of the tool centre point
+    deceleration: float = math.inf  # [rad/s²] or [m/s²]; not more than the arm can
+
+
 class InputLevel(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A digital input, and the level that it should have."""
 
@@ -158,6 +165,13 @@ class ApplyForce(ProgramStep, tag="force", frozen=True, forbid_unknown_fields=Tr
             raise ValueError(f"force: its size is {math.hypot(*self.force):.4g}, allowed: {allowed}")
 
 
+class Tell(ProgramStep, tag="tell", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Say a text to the user, and let a tone be heard (CD-15)."""
+
+    text: Text
+    tone: bool = True
+
+
 class HandGuide(ProgramStep, tag="hand_guide", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The arm is guided by hand, as in free-drive and with its activation; the program goes on when that ends (CD-15)."""
 
@@ -180,11 +194,12 @@ AnyStep = (
     | SetOutput
     | SwitchTool
     | ApplyForce
+    | Tell
     | HandGuide
     | ZeroSensor
 )
 
-INSTANT = (SwitchTool, SetOutput, WaitForInput)
+INSTANT = (SwitchTool, SetOutput, Tell, WaitForInput)
 """Steps that may take a single tick."""
 
 

@@ -19,14 +19,13 @@ JOGGED_IN = frozenset({Mode.NORMAL, Mode.TEACH})
 class Jogging:
     """One press of a jog button at a time: what ends it needs a new press."""
 
-    __slots__ = ("_asked", "_begun", "_held", "_n", "_robot", "_spent")
+    __slots__ = ("_asked", "_held", "_n", "_robot", "_spent")
 
     def __init__(self, robot: Robot, n_joints: int) -> None:
         self._robot, self._n = robot, n_joints
         self._held = KeepAlive()
         self._asked: JogMove | None = None  # of the press that lasts
         self._spent = False  # this press has ended, and has to be let go first
-        self._begun = 0  # jogs so far; their ids are negative, those of a program's steps positive
 
     def step(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event], *, changing: bool) -> None:
         """One tick.
@@ -70,8 +69,7 @@ class Jogging:
 
     def _begin(self, tick: int, events: list[Event]) -> None:
         assert self._asked is not None
-        self._begun += 1
-        self._robot.jog = replace(self._asked, id=-self._begun)
+        self._robot.jog = replace(self._asked, id=self._robot.number())
         events.append(Event(Kind.JOG_STARTED, tick, {"what": self._asked.what}))
 
     def _end(self, reason: str, tick: int, events: list[Event]) -> None:

@@ -7,19 +7,21 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import joints_ok
 from pendant.program.steps import ProgramState
-from pendant.signals.settings import PushSettings
-from pendant.signals.sources import BUTTON, DIGITAL, NONE, REMOTE_CONTROLLER, Sources
+from pendant.signals.gestures import PatternSignal
+from pendant.signals.settings import PressedControl, PushSettings
+from pendant.signals.sources import BUTTON, DIGITAL, NONE, PRESSES, REMOTE_CONTROLLER, Sources
 from pendant.tick.estimate import Estimate
 
 
 class Calls:
     """One tick at a time; nothing is computed for sources that are off."""
 
-    __slots__ = ("_leaving", "_sources", "commands", "feeling", "force", "hand_off", "signal", "touched")
+    __slots__ = ("_leaving", "_presses", "_sources", "commands", "feeling", "force", "hand_off", "signal", "touched")
 
     def __init__(self, n: int) -> None:
         """`n` joints."""
         self._sources = Sources(n)
+        self._presses = PatternSignal()  # of the button, or of the input
         self._leaving = False  # the digital input that leaves was high in the last tick
         self.feeling = False  # a source by hand is on
         self.signal = NONE
@@ -31,8 +33,10 @@ class Calls:
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""
         use = settings.signals
-        by_hand = (use.push.on, use.push.reported, use.twist.on, use.joints.on, use.pattern.on, use.turn.on)
+        by_hand = (use.push.on, use.push.reported, use.twist.on, use.joints.on, use.pattern.on, use.turn.on, use.posture.on)
         self.feeling = any((*by_hand, use.force_step.on, use.tap.on))
+        if not use.presses.on:
+            self._presses = PatternSignal()
         self._sources.refresh(use)
         if not self.feeling:
             self.hand_off, self.touched, self.force = True, False, 0.0
@@ -83,6 +87,10 @@ class Calls:
             self.signal = DIGITAL
         elif inputs.remote_signal:
             self.signal = REMOTE_CONTROLLER
+        if use.presses.on:
+            pressed = button if use.presses.of is PressedControl.BUTTON else use.digital_input in inputs.high
+            if self._presses.step(pressed, use.presses):
+                self.signal = PRESSES
         return events
 
     def relearn(self) -> None:

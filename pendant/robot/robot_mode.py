@@ -9,7 +9,7 @@ from pendant.inputs import Command
 from pendant.limits.validity import Stillness
 from pendant.program.jog_move import JogMove
 from pendant.program.sequencer import Sequencer
-from pendant.program.steps import Move, ProgramState
+from pendant.program.steps import JointMove, Move, ProgramState
 from pendant.robot.stopping import Stopping
 from pendant.signals.enabling_device import Grip, enables
 from pendant.tick.estimate import Estimate
@@ -40,10 +40,12 @@ class Robot:
         static: the arm stands, in this tick.
         grip: of the enabling device in this tick, None where none is needed.
         jog: the motion that is jogged, None for none.
+        turn: the motion of the wrist that the payload wizard wants, None for none.
     """
 
     __slots__ = (
         "_freed",
+        "_moves",
         "_remembered",
         "braking",
         "free",
@@ -55,6 +57,7 @@ class Robot:
         "static",
         "still",
         "stopping",
+        "turn",
     )
 
     def __init__(self, free: FreeDrive, sequencer: Sequencer) -> None:
@@ -68,8 +71,10 @@ class Robot:
         self.static = False
         self.grip: Grip | None = None
         self.jog: JogMove | None = None
+        self.turn: JointMove | None = None
         self._remembered = Mode.TEACH  # where free-drive was entered from
         self._freed = False  # the law was FREE in the last tick
+        self._moves = 0  # jogged, or turns of the wrist, so far
 
     @property
     def enabled(self) -> bool:
@@ -78,8 +83,13 @@ class Robot:
 
     @property
     def move(self) -> Move | None:
-        """That the arm follows: of the program, or jogged."""
-        return self.sequencer.move or self.jog
+        """That the arm follows: of the program, jogged, or of the payload wizard."""
+        return self.sequencer.move or self.jog or self.turn
+
+    def number(self) -> int:
+        """Id of the next motion that no program asks for: negative, for those of a program's steps are positive."""
+        self._moves += 1
+        return -self._moves
 
     @property
     def program_name(self) -> str:
@@ -102,10 +112,21 @@ class Robot:
                 self.pause_program(event.tick, events)
             if effect is Effect.ENTER:
                 self._remembered, self.mode = self.mode, Mode.FREE_DRIVE
+        elif effect is Effect.TO_TEACH:
+            self._to_teach(event.tick, events)
         elif effect is Effect.LEAVE:
             self._leave(event, events)
         elif effect in STOPPING:
             self._stop(event.kind, STOPPING[effect])
+
+    def _to_teach(self, tick: int, events: list[Event]) -> None:
+        """TEACH, before free-drive begins; a program that was begun is stopped (FD-1)."""
+        sequencer = self.sequencer
+        if sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED):
+            values: Values = {"name": self.program_name, "step": sequencer.index + 1}
+            events.append(Event(Kind.PROGRAM_STOPPED, tick, values))
+            sequencer.stop()
+        self.mode = Mode.TEACH
 
     def _leave(self, event: Event, events: list[Event]) -> None:
         """Free-drive is left, back to the mode that it was entered from."""

@@ -22,5 +22,9 @@ RENAMED = {
     "signals.push.flange_axes": "signals.push.frame",
     "signals.push.told": "signals.push.reported",
     "contact.all_rules": "contact.rules_needed",
+    "contact.link_force_noise": "contact.link_limit",
+    "contact.link_acceleration_noise": "contact.link_limit",
+    "contact.link_force": "contact.link_limit",
+    "contact.link_margin": "contact.link_limit",
 }
 """Old name -> name of now."""

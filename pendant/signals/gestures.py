@@ -1,7 +1,9 @@
-"""Signals told by their course in time: pushes in a row, a force step, a tap, a joint turned by hand (FD-5f to FD-5i)."""
+"""Signals known by their course in time: pushes or presses in a row, a force step, a tap, turned joints (FD-5f to FD-5i)."""
+
+from collections.abc import Sequence
 
 from pendant.settings.schema import ticks
-from pendant.signals.settings import ForceStep, PushPattern, TapSettings, Turn
+from pendant.signals.settings import ForceStep, PostureSignalUse, PressPattern, PushPattern, TapSettings, Turn
 
 
 class PatternSignal:
@@ -14,7 +16,7 @@ class PatternSignal:
         self._length = 0  # ticks since the last change
         self._present = False
 
-    def step(self, present: bool, use: PushPattern) -> bool:
+    def step(self, present: bool, use: PushPattern | PressPattern) -> bool:
         """One tick of the push that it is made of. True in the tick in which it is whole."""
         longest = ticks(use.longest)
         if present is self._present:
@@ -106,3 +108,58 @@ class TurnSignal:
             self._held, self._joint = angle, use.joint
         self.present = abs(angle - self._held) > use.angle
         return self.present
+
+
+AT_REST = 0.5
+"""A joint is back where it is less than this share of its angle away."""
+
+
+class PostureSignal:
+    """Joints turned by hand against their hold: at once, or one after the other.
+
+    Attributes:
+        touched: a joint that is asked is turned.
+    """
+
+    __slots__ = ("_age", "_done", "_held", "_ready", "touched")
+
+    def __init__(self) -> None:
+        self._held: tuple[float, ...] = ()  # angles in which the arm is held [rad]
+        self._done = 0  # joints of the series that have been turned
+        self._age = 0  # ticks since the last of them was
+        self._ready = False  # every joint has been back since the last series
+        self.touched = False
+
+    def step(self, angles: Sequence[float], holding: bool, use: PostureSignalUse) -> bool:
+        """One tick; `angles` of all joints [rad]. True while a posture is held, or in the tick that ends a series.
+
+        An arm that has not all of the joints never gives it.
+        """
+        if not holding or not self._held:
+            self._held, self._done, self._ready = tuple(angles), 0, False
+        asked = use.asked
+        if any(joint >= len(angles) for joint, _ in asked):
+            return False
+        shares = [_share(angles[joint] - self._held[joint], angle) for joint, angle in asked]
+        self.touched = any(share > 1.0 for share in shares)
+        if use.together:
+            return all(share > 1.0 for share in shares)
+        if all(share < AT_REST for share in shares):
+            self._ready = True
+        self._age += 1
+        if self._done > 0 and self._age > ticks(use.within):
+            self._done, self._ready = 0, False
+        if any(share > 1.0 for share in shares[self._done + 1 :]):  # out of its turn
+            self._done, self._ready = 0, False
+        if not self._ready or shares[self._done] <= 1.0:
+            return False
+        self._done, self._age = self._done + 1, 0
+        if self._done < len(asked):
+            return False
+        self._done, self._ready = 0, False
+        return True
+
+
+def _share(turned: float, angle: float) -> float:
+    """How far a joint is turned [rad], as a share of the angle that it is asked for, to its side; of 0 rad: not at all."""
+    return turned / angle if angle != 0.0 else 0.0

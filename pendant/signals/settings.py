@@ -105,6 +105,29 @@ class PushPattern(Section, frozen=True, forbid_unknown_fields=True, kw_only=True
     ] = 0.28
 
 
+class PressedControl(Word):
+    """What is pressed in a pattern (FD-5f)."""
+
+    BUTTON = "button"
+    INPUT = "input"  # the digital input that is an activation signal
+
+
+class PressPattern(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """(f) Short presses of the button, or pulses of the digital input, in a row."""
+
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "short presses in a row are an activation signal")] = False
+    of: Annotated[PressedControl, _choice("FD-5", "what is pressed in a row")] = PressedControl.BUTTON
+    count: Annotated[int, _count(2, 5, "FD-5", text="number of presses in a row")] = 3
+    shortest: Annotated[
+        float, _number(0.02, 1.0, "s", "FD-5", text="shortest duration of a press in a row, and of the gap between two")
+    ] = 0.06
+    longest: Annotated[
+        float, _number(0.05, 2.0, "s", "FD-5", text="longest duration of a press in a row, and of the gap between two")
+    ] = 0.4
+
+
 class Turn(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """(g) A joint is turned by hand against its hold."""
 
@@ -113,6 +136,37 @@ class Turn(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     on: Annotated[bool, _switch("FD-5", "a joint turned against its hold is an activation signal")] = False
     joint: Annotated[int, _count(1, 12, "FD-5", text="number of the joint that is turned, counted from the base")] = 6
     angle: Annotated[float, _number(0.0005, 0.5, "rad", "FD-5", text="the joint is turned by more than this")] = 0.005
+
+
+class PostureSignalUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """(g) Joints are turned by hand against their hold: all at once, a posture; or one after the other, a series of them."""
+
+    BASIC = ("on",)
+
+    on: Annotated[bool, _switch("FD-5", "a posture, or a series of them, reached by hand is an activation signal")] = False
+    together: Annotated[bool, _switch("FD-5", "the joints are turned at once: a posture; otherwise in a row: a series")] = False
+    count: Annotated[int, _count(1, 3, "FD-5", text="number of joints that are turned")] = 2
+    joint_1: Annotated[int, _count(1, 12, "FD-5", text="number of the first joint that is turned")] = 6
+    angle_1: Annotated[float, _number(-0.5, 0.5, "rad", "FD-5", text="the first joint is turned beyond this, to its side")] = (
+        0.005
+    )
+    joint_2: Annotated[int, _count(1, 12, "FD-5", text="number of the second joint that is turned")] = 5
+    angle_2: Annotated[float, _number(-0.5, 0.5, "rad", "FD-5", text="the second joint is turned beyond this, to its side")] = (
+        0.005
+    )
+    joint_3: Annotated[int, _count(1, 12, "FD-5", text="number of the third joint that is turned")] = 6
+    angle_3: Annotated[float, _number(-0.5, 0.5, "rad", "FD-5", text="the third joint is turned beyond this, to its side")] = (
+        0.005
+    )
+    within: Annotated[float, _number(0.1, 10.0, "s", "FD-5", text="each joint is turned within this time of the one before")] = (
+        3.0
+    )
+
+    @property
+    def asked(self) -> tuple[tuple[int, float], ...]:
+        """Joints, counted from 0, and the angles that they are turned beyond [rad]."""
+        every = ((self.joint_1, self.angle_1), (self.joint_2, self.angle_2), (self.joint_3, self.angle_3))
+        return tuple((joint - 1, angle) for joint, angle in every[: self.count])
 
 
 class ForceStep(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -154,7 +208,9 @@ class SignalSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=T
     twist: Twist = Twist()
     joints: JointPush = JointPush()
     pattern: PushPattern = PushPattern()
+    presses: PressPattern = PressPattern()
     turn: Turn = Turn()
+    posture: PostureSignalUse = PostureSignalUse()
     force_step: ForceStep = ForceStep()
     tap: TapSettings = TapSettings()
 
@@ -174,12 +230,40 @@ class LetGo(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     ] = 2.0
 
 
+class ConfirmedBy(Word):
+    """What confirms the signal (FD-8)."""
+
+    ANY = "any"
+    OTHER = "other"  # another source than the signal's
+    BUTTON = "button"
+    PUSH = "push"
+    TWIST = "twist"
+    JOINTS = "joints"  # a push that the joints feel
+    PATTERN = "pattern"
+    TURN = "turn"
+    POSTURE = "posture"
+
+
+class ConfirmedWhen(Word):
+    """When the confirmation is asked for (FD-8)."""
+
+    BEFORE = "before"  # the activation sequence
+    WITHIN = "within"  # it: the arm is free already, so that the button or an input confirms
+
+
 class Handshake(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A second signal that confirms the first."""
 
-    BASIC = ("on", "window")
+    BASIC = ("on", "by", "window")
 
     on: Annotated[bool, _switch("FD-8", "a second signal must confirm the first")] = False
+    by: Annotated[ConfirmedBy, _choice("FD-8", "what confirms; one that is chosen here does no more ask for free-drive")] = (
+        ConfirmedBy.ANY
+    )
+    when: Annotated[ConfirmedWhen, _choice("FD-8", "whether the robot asks before the activation sequence, or within it")] = (
+        ConfirmedWhen.BEFORE
+    )
+    delay: Annotated[float, _number(0.0, 5.0, "s", "FD-8", text="time from the signal until the robot asks")] = 0.0
     feedback: Annotated[
         float, _number(0.0, 5.0, "s", "FD-8", text="time for which the robot asks to confirm; signals do not count in it")
     ] = 0.5

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from pendant.limits.parameters import beyond_gravity
 from pendant.settings.schema import ticks
 from pendant.signals.contact_free_baseline import Untouched
-from pendant.signals.gestures import PatternSignal, StepSignal, TapSignal, TurnSignal
+from pendant.signals.gestures import PatternSignal, PostureSignal, StepSignal, TapSignal, TurnSignal
 from pendant.signals.joint_push import JointPushSignal
 from pendant.signals.push_signal import PushSignal, TwistSignal
 from pendant.signals.settings import LetGo, SignalSettings
@@ -35,6 +35,9 @@ class Presence(NamedTuple):
 NONE = Presence()
 BUTTON = Presence("button")
 DIGITAL = Presence("digital input")
+PRESSES = Presence("presses in a row", whole=True)
+POSTURE = Presence("posture", by_hand=True)
+SERIES = Presence("series of postures", by_hand=True, whole=True)
 REMOTE_CONTROLLER = Presence("remote controller")
 """The program on the other side of the network asks for free-drive."""
 
@@ -51,6 +54,7 @@ class Sources:
         "_moved",
         "_off",
         "_pattern",
+        "_posture",
         "_push",
         "_quiet",
         "_step",
@@ -71,6 +75,7 @@ class Sources:
         self._step = StepSignal()
         self._tap = TapSignal()
         self._turn = TurnSignal()
+        self._posture = PostureSignal()
         self._held_at: list[float] = []  # joint angles when the arm was last held [rad]
         self._moved = False  # since then a program has moved the arm, or it has been in another posture
         self._quiet = 0  # ticks for which it has been held
@@ -94,9 +99,11 @@ class Sources:
             self._joints.restart()
         if not use.turn.on:
             self._turn = TurnSignal()
+        if not use.posture.on:
+            self._posture = PostureSignal()
         if not use.tap.on:
             self._tap = TapSignal()
-        if not (by_wrench or use.joints.on or use.turn.on or use.tap.on):
+        if not (by_wrench or use.joints.on or use.turn.on or use.posture.on or use.tap.on):
             self._held_at, self._quiet = [], 0  # nobody looks at postures and motions meanwhile
 
     def step(
@@ -129,10 +136,9 @@ class Sources:
                 self._joints.restart()
             elif self._joints.step(estimate.tau_ext.tolist(), use.joints) and not found.source:
                 found = Presence("push felt by joints", by_hand=True)
-        if use.turn.on and joints_ok and use.turn.joint <= len(self._held_at):
-            angle = float(estimate.q[use.turn.joint - 1])
-            if self._turn.step(angle, holding, use.turn) and not found.source:
-                found = Presence("turned joint", by_hand=True)
+        if joints_ok:
+            turned = self._by_angles(estimate, use, holding)
+            found = found if found.source else turned
         if use.tap.on and estimate.acceleration_valid:
             acceleration = beyond_gravity(estimate)
             if math.isfinite(acceleration) and self._tap.step(acceleration, use.tap) and not found.source:
@@ -148,7 +154,7 @@ class Sources:
 
     def hand_off(self, use: LetGo, wrench_ok: bool) -> bool:
         """No hand has been felt for as long as it takes (FD-8a). One tick, while that is asked."""
-        touched = self._joints.touched or self._turn.present
+        touched = self._joints.touched or self._turn.present or self._posture.touched
         if wrench_ok and not touched:
             x, y, z, tx, ty, tz = self._wrench.change
             torque = math.sqrt(tx * tx + ty * ty + tz * tz)
@@ -192,6 +198,17 @@ class Sources:
         """What was felt at the flange is over: its sensor is not valid, or the load is another."""
         self._wrench.restart()
         self._push.present = self._twist.present = self._step.present = False
+
+    def _by_angles(self, estimate: Estimate, use: SignalSettings, holding: bool) -> Presence:
+        """What joints say that are turned against their hold."""
+        found = NONE
+        if use.posture.on and self._posture.step(estimate.q.tolist(), holding, use.posture):
+            found = POSTURE if use.posture.together else SERIES
+        if use.turn.on and use.turn.joint <= len(self._held_at):
+            angle = float(estimate.q[use.turn.joint - 1])
+            if self._turn.step(angle, holding, use.turn):
+                found = Presence("turned joint", by_hand=True)
+        return found
 
     def _by_wrench(self, estimate: Estimate, pushing: bool, use: SignalSettings) -> Presence:
         change = self._wrench.step(estimate.F_user.tolist())

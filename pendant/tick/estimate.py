@@ -59,6 +59,7 @@ class Estimate:
     friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
     tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
     tau_ext_deviation: Array = field(default_factory=_no_joints)  # (n,) standard deviation of tau_ext at rest [N·m]
+    tau_ext_doubt: Array = field(default_factory=_no_joints)  # (n,) deviation of its changes within tenths of a second [N·m]
     degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
     lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned
@@ -69,6 +70,7 @@ class Estimate:
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
+    current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
     energy: float = 0.0  # kinetic, of links and rotors [J]
     lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed; in free-drive only [nats]

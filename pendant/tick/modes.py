@@ -45,6 +45,7 @@ class Phase(Word):
     FEEDBACK = "FEEDBACK"  # the robot asks for a confirmation (FD-8)
     CONFIRM = "CONFIRM"  # a confirmation counts (FD-8)
     LET_GO = "LET_GO"  # the hand that gave the signal is to leave the arm (FD-8a)
+    DELAY = "DELAY"  # the signal is complete; the robot asks for a confirmation in a while (FD-8)
 
 
 class Law(Word):

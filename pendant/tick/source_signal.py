@@ -38,6 +38,9 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
 
     rows: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, len(Signal._fields))))  # fields of `Signal`
     valid: tuple[bool, ...] = ()  # of each source
+    behind: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) torques of contacts behind the sensor
+    doubt: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) deviation of their changes [N·m]
+    elbow: int = 2  # which joint the elbow is
 
     def each(self) -> tuple[Signal | None, ...]:
         """The signal of each source, None where it is not valid."""

@@ -1,1 +1,1 @@
-"""Tool and payload in use: chosen, ramped, measured by the wizard. Uses equipment/, limits/."""
+"""Tool and payload in use: chosen, ramped, measured by the wizard. Uses equipment/, limits/, walls/."""

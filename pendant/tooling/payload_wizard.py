@@ -25,6 +25,7 @@ class Progress(NamedTuple):
     share: float = 0.0  # of the measurement that runs, 0 where none does
     finding: FittedPayload | None = None
     reason: str = ""  # why there is none, once there are postures enough
+    doing: str = ""  # what the arm does for it by itself, "" where it does nothing
 
 
 IDLE = Progress()
@@ -52,6 +53,15 @@ class PayloadWizard:
         self._postures = ()
         self.left = 0
         self.progress = IDLE
+
+    @property
+    def measured(self) -> tuple[Vector, ...]:
+        """Specific force in F in each posture that is measured [m/s²]."""
+        return tuple([posture.a for posture in self._postures])
+
+    def say(self, doing: str) -> None:
+        """What the arm does by itself, for interfaces."""
+        self.progress = self.progress._replace(doing=doing)
 
     def shift(self, gone: Wrench) -> None:
         """The sensor was zeroed: it says more by so much from now on, axes of F [N, N·m]; no measurement runs."""
@@ -124,9 +134,9 @@ class PayloadWizard:
     def _find(self, estimate: Estimate, known: tuple[Load, ...]) -> Event:
         found = solve(self._postures, known)
         if isinstance(found, str):
-            self.progress = Progress(len(self._postures), 0.0, None, found)
+            self.progress = self.progress._replace(finding=None, reason=found)
             return _refused(estimate, found)
-        self.progress = Progress(len(self._postures), 0.0, found)
+        self.progress = self.progress._replace(finding=found, reason="")
         x, y, z = found.centre
         values: Values = {
             "mass": found.mass,

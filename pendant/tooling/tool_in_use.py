@@ -4,13 +4,14 @@ import math
 from typing import NamedTuple
 
 from pendant.equipment.load import NOTHING, Load, problem
-from pendant.equipment.tools import Equipment, Tool, difference, first_problem
+from pendant.equipment.tools import Equipment, Tool, first_problem
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import WINDOW, wrench_ok
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
+from pendant.tick.words import difference
 from pendant.tooling.payload_wizard import PayloadWizard
 from pendant.tooling.settings import ToolUse
 
@@ -30,13 +31,14 @@ class Fitting(NamedTuple):
 class Tooling:
     """One tick at a time. The estimates' reaction to a change is no push: `changing` says how long it lasts."""
 
-    __slots__ = ("_age", "_from", "_most", "_plate", "_ramp", "changing", "fitting", "tools", "wizard")
+    __slots__ = ("_age", "_from", "_most", "_plate", "_ramp", "busy", "changing", "fitting", "tools", "wizard")
 
     def __init__(self, equipment: Equipment) -> None:
         self.tools = equipment.tools  # the table
         self.fitting = Fitting(0, equipment.tool, equipment.load, 1.0, equipment.load.mass)
         self.wizard = PayloadWizard()
         self.changing = False
+        self.busy = False  # the wizard turns the wrist by itself: nothing is changed meanwhile
         self._most = equipment.most
         self._plate = equipment.fixed
         self._ramp = 0  # ticks of the change
@@ -61,6 +63,8 @@ class Tooling:
         why_not = "" if phase is Phase.OFF else "free-drive is being tried"
         if mode in (Mode.RUN, Mode.FREE_DRIVE):
             why_not = way_out(mode)
+        elif self.busy:
+            why_not = "the wizard measures the payload: stop it first"
         if inputs.tools:
             events += self._tabulate(inputs.tools, why_not, estimate.tick, use)
         if inputs.tool:
@@ -89,7 +93,7 @@ class Tooling:
             self.wizard.clear()
             return []
         if Command.WIZARD_MEASURE in commands:
-            return self.wizard.begin(estimate, ticks(use.measure), obstacle)
+            return self.wizard.begin(estimate, ticks(use.measure), "the wizard measures by itself" if self.busy else obstacle)
         found = self.wizard.progress.finding
         if found is None:
             return [_refused("payload of the wizard", "there is none yet", estimate.tick)]

@@ -212,11 +212,12 @@ class Barrier:
 
     def _resist(self, exceeded: bool, beyond: float, near: float, speed: float) -> float:
         """Size of the resisting force [N]."""
-        border = self._border
+        border, guard = self._border, self._guard
+        assert guard is not None
+        push = 0.0 if guard.started_outside else near * border.push  # who starts outside is not kicked (VW-10)
         if not exceeded:
-            return min(resisting(near, speed, border.damping), border.force)
-        assert self._guard is not None
-        return min(self._guard.resisting(beyond, speed, border.stiffness, border.damping), border.force)
+            return min(push + resisting(near, speed, border.damping), border.force)
+        return min(push + guard.resisting(beyond, speed, border.stiffness, border.damping), border.force)
 
     def _consequence(self, beyond: float, push: float) -> Consequence:
         """Of a part outside. `push`: the user's force outwards [N]."""

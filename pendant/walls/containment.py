@@ -6,11 +6,12 @@ from collections.abc import Mapping
 import msgspec
 from msgspec.structs import replace
 
-from pendant.events.event import Values
+from pendant.events.event import Event, Kind, Values
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
+from pendant.tick.words import difference
 from pendant.walls.barrier import Around, Consequence, Place, Reading, WatchedPart, placed
-from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Start, Wall
+from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Start, Wall, problem
 from pendant.walls.enclosure import Enclosure, worst
 from pendant.walls.settings import WallSettings
 from pendant.walls.shapes import Sphere
@@ -35,6 +36,7 @@ def tether(walls: WallSettings) -> Wall:
         safety_period=walls.safety_period,
         band=min(walls.band, 0.8 * walls.operation_radius),
         activation_size=max(walls.activation_radius / walls.operation_radius, 0.05),
+        push=walls.push,
         push_back=walls.push_back,
         reaction=walls.tether_reaction,
     )
@@ -56,7 +58,7 @@ class WallState(msgspec.Struct, frozen=True, gc=False):
 class Containment:
     """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
 
-    __slots__ = ("R_FT", "_borders", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned")
+    __slots__ = ("R_FT", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned", "borders")
 
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
@@ -65,7 +67,7 @@ class Containment:
             frames: poses X_BR of the frames and objects that they can lie in and that do not move in B.
         """
         self.R_FT = UNTURNED  # orientation of the tool centre point in the flange
-        self._borders = borders
+        self.borders = borders
         self._frames = {"base": HERE, **frames}
         self._enclosure: Enclosure | None = None  # walls hold, or will
         self._reading: tuple[Reading, ...] = ()
@@ -73,6 +75,25 @@ class Containment:
         self._points: dict[str, WatchedPart] = {}  # where they were in the last step
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
+
+    def change(self, borders: tuple[AnyBorder, ...], where: str, tick: int) -> list[Event]:
+        """Take another list of borders, whole or not at all; what was holds on where it is refused.
+
+        Args:
+            borders: the list from now on.
+            where: in which state no list is taken, if in this one; else "".
+            tick: for the event.
+        """
+        if borders == self.borders:
+            return []
+        why_not = f"no change of a wall in {where}" if where else ""
+        if not why_not and any(border.name == TETHER for border in borders):
+            why_not = f"name: {TETHER!r} is the name of the wall that the settings make, allowed: another"
+        why_not = why_not or problem(borders, frozenset(PARTS), frozenset({*self._frames, "flange", "tcp"})) or ""
+        if why_not:
+            return [Event(Kind.WALLS_REFUSED, tick, {"reason": why_not})]
+        done, self.borders = difference(self.borders, borders), borders
+        return [Event(Kind.WALLS_CHANGED, tick, {"change": done, "count": len(borders)})]
 
     def begin(self, start: Start, walls: WallSettings) -> None:
         """The activation period or the sequence begins."""
@@ -132,7 +153,7 @@ class Containment:
         return tuple([(border, place) for border, place in pairs if place is not None])
 
     def every_place(self, walls: WallSettings) -> tuple[tuple[AnyBorder, Place], ...]:
-        """What holds, and every area that will in free-drive, each with where its shape lies.
+        """What holds, and every area of the list besides, each with where its shape lies.
 
         Areas that do not hold yet and lie in a part of the arm are left out; one whose size follows the posture has its smallest.
         """
@@ -140,13 +161,13 @@ class Containment:
         if not walls.on:
             return hold
         names = {border.name for border, _ in hold}
-        areas = [border for border in self._borders if isinstance(border, Area) and border.reference in self._frames]
+        areas = [border for border in self.borders if isinstance(border, Area) and border.reference in self._frames]
         rest = [area for area in areas if area.name not in names]
         return hold + tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in rest])
 
     def _build(self, walls: WallSettings) -> Enclosure | None:
-        borders = self._borders if not walls.tether else (tether(walls), *self._borders)
-        borders = tuple([_switched(border, walls) for border in borders])
+        borders = self.borders if not walls.tether else (tether(walls), *self.borders)
+        borders = tuple([_switched(border, walls) for border in borders if border.on])
         if not walls.on or not borders:
             return None
         self._parts = tuple(sorted({border.part for border in borders}))

@@ -8,6 +8,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from pendant.settings.bounds import MOST_WALLS
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Quaternion, Vector, rotation, turned_back
 from pendant.tick.words import Word
@@ -88,8 +89,10 @@ class Border(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     stiffness: Annotated[float, Meta(ge=0.0, le=20000.0)] = 4000.0  # beyond the border, against motion further out [N/m]
     damping: Annotated[float, Meta(ge=0.0, le=1000.0)] = 200.0  # at the border, against motion outwards [N·s/m]
     force: Annotated[float, Meta(ge=1.0, le=500.0)] = 150.0  # most that it resists with [N]
+    push: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0  # back inwards at the border, at rest too; it grows through the band [N]
     push_back: Annotated[float, Meta(ge=1.0, le=50.0)] = 8.0  # smallest force that counts as the user's [N]
     reaction: Reaction = Reaction.STAY
+    on: bool = True  # it holds in free-drive; one that is off is only remembered
 
     def __post_init__(self) -> None:
         if not 0.999 < math.hypot(*self.orientation) < 1.001:
@@ -156,6 +159,8 @@ def problem(borders: tuple[AnyBorder, ...], parts: frozenset[str], references: f
         parts: names of the parts that can be watched.
         references: names of the frames and objects that they can lie in.
     """
+    if len(borders) > MOST_WALLS:
+        return f"walls: {len(borders)} are too many, allowed: {MOST_WALLS}"
     seen: set[str] = set()
     for border in borders:
         if border.name in seen:

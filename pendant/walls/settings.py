@@ -36,6 +36,9 @@ class WallSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     band: Annotated[
         float, _number(0.0, 0.5, "m", "VW-7", text="width of the band before the tether in which the arm is resisted")
     ] = 0.005
+    push: Annotated[
+        float, _number(0.0, 100.0, "N", "VW-7", text="push of the tether back inwards, at rest, too; it grows through the band")
+    ] = 0.0
     averaging: Annotated[float, _number(0.02, 10.0, "s", "VW-4", text="time over which the tether's centre is averaged")] = 0.02
     safety_period: Annotated[
         float, _number(0.1, 10.0, "s", "VW-3", text="time after a felt hand in which the tether still follows")

@@ -1,12 +1,15 @@
 """The rigid bodies of an arm: where each joint sits and what each link weighs. Both models are built from this one value."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 import pendant.equipment.tools
+from pendant.tick.pose import Pose, Rotation, Vector, flat
+from pendant.tooling.arm_shape import ArmShape, Rod
 from sim.arm.arm_file import Arm
 from sim.arm.frames import com_in_joint_frame, inertia_matrix, link_transform, skew
 from sim.arm.scenario import Load, ToolModel
@@ -74,6 +77,25 @@ def chain(arm: Arm) -> Chain:
     plate = plate_body(arm)
     links[-1] -= Body(plate.mass, p_flange + R_flange @ plate.com, R_flange @ plate.inertia @ R_flange.T)
     return Chain(p, R, tuple(links), p_flange, R_flange)
+
+
+def arm_shape(arm: Arm) -> ArmShape:
+    """What the pendant knows of the arm's shape: the same joints and hulls."""
+    rigid = chain(arm)
+    joints = [Pose(*_plain(p, R)) for p, R in zip(rigid.p, rigid.R, strict=True)]
+    rods = tuple([Rod(hull.link, _vector(hull.start), _vector(hull.end), hull.radius) for hull in arm.shapes])
+    flange = Pose(*_plain(rigid.p_flange, rigid.R_flange))
+    ranges = tuple(arm.limits.position)
+    return ArmShape(tuple(arm.chain.joints), joints, flange, rods=rods, ranges=ranges, elbow=arm.chain.elbow)
+
+
+def _plain(p: Array, R: Array) -> tuple[Vector, Rotation]:
+    return _vector(p.tolist()), flat(R)
+
+
+def _vector(values: Sequence[float]) -> Vector:
+    x, y, z = values
+    return x, y, z
 
 
 def load_body(load: Load) -> Body:

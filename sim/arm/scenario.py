@@ -92,6 +92,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     world: list[AnyObject] = []
     walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
+    self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     seed: int = 0
     mismatch: Literal["on", "nominal"] = "on"  # calibration error of the controller's constants (issue: honest mismatch)
 

@@ -1,9 +1,10 @@
-"""Locked axes of free-drive: a stiff, damped constraint that holds the tool in them and leaves the other axes alone (FD-4).
+"""Locked axes and joints of free-drive: a stiff, damped constraint that holds them and leaves all others alone (FD-4).
 
-What is locked is a function c(q) of the pose that is to stay 0: a way along an axis, a tilt of the only free axis, a turn about
-an axis. With its Jacobian G and the mobility A = G W G' of the rotors, W = diag(1 / inertia), the constraint force is
-A^-1 (w² c + 2 z w c'): in every posture the stiffness that holding still has, with the same margins. A little is added to A:
-where the arm can hardly move along an axis, near a singularity, the force ends instead of growing without bound.
+What is locked is a function c(q) that is to stay 0: of the pose a way along an axis, a tilt of the only free axis, a turn about
+an axis; of the joints the turn of one since it was locked. With its Jacobian G and the mobility A = G W G' of the rotors, W =
+diag(1 / inertia), the constraint force is A^-1 (w² c + 2 z w c'): in every posture the stiffness that holding still has, with the
+same margins. A little is added to A: where the arm can hardly move along an axis, near a singularity, the force ends instead of
+growing without bound.
 
 What else the law asks of the motors is projected, so that it moves the rotors along no locked axis.
 """
@@ -31,7 +32,8 @@ HEAVIEST = 50.0
 """Inertia of the rotors beyond which an axis is held no stiffer [kg]; turns as ways."""
 
 FURTHEST = 0.02
-"""A tool forced further along a locked axis takes the lock along [m]; turns as ways."""
+"""A tool forced further along a locked axis takes the lock along [m]; turns as ways. A joint that is locked does so at as many
+radians, where holding it takes about `MOST`: its spring has the rotor's inertia times w²."""
 
 MOST = 0.5
 """Torque of the constraint at most, of the rated one."""
@@ -69,16 +71,18 @@ class AxisConstraint:
             rotor=(n,),
             most=(n,),  # torque
             locked="6i8",
+            joints=(n,),  # not 0 for one that is locked
+            start=(n,),  # angles of the joints when they were locked [rad]
             frame=(3, 3),  # axes of the tool at the beginning, in B
             turn=(3, 3),  # its orientation then
             place=(3,),  # and place [m]
             bent=(n,),  # motors ahead of the joints, unexplained [rad]
-            slipped=(6,),  # the lock has been taken along so far [m]
-            m="i8",  # locked axes
-            rows=(6, n),  # the constraint's Jacobian
-            values=(6,),
-            speed=(6,),  # of the values
-            mobility=(6, 6),  # its factor
+            slipped=(6 + n,),  # the lock has been taken along so far [m]
+            m="i8",  # locked axes and joints
+            rows=(6 + n, n),  # the constraint's Jacobian
+            values=(6 + n,),
+            speed=(6 + n,),  # of the values
+            mobility=(6 + n, 6 + n),  # its factor
             energy=(),  # in the spring [J]
         )
         own = self._own = self._record[0]
@@ -122,6 +126,8 @@ class AxisConstraint:
         self._locks = locks
         own, R = self._own, estimate.R_BF
         own["locked"] = locks.locked
+        own["joints"] = locks.joints[: estimate.q.size] or 0.0
+        own["start"] = estimate.q
         own["frame"] = R @ self._R_FT if locks.tool else np.reshape(locks.R_BU, (3, 3))
         own["turn"] = R
         own["place"] = estimate.p_BF + R @ self._tcp
@@ -138,6 +144,12 @@ def _prepare(held, pose, bending) -> None:
     n = q.size
     values, speed, mobility = own.values, own.speed, own.mobility
     own.m = constraint(own, pose)
+    for i in range(n):
+        if own.joints[i] != 0.0:
+            G[own.m, :] = 0.0
+            G[own.m, i] = 1.0
+            values[own.m] = q[i] - own.start[i]
+            own.m += 1
     m = own.m
     for r in range(m):
         speed[r] = 0.0
@@ -160,7 +172,7 @@ def _prepare(held, pose, bending) -> None:
 def _project(held, asked, gain, torque) -> None:
     own = held[0]
     m, G, rotor = own.m, own.rows, own.rotor
-    force = np.zeros(6)
+    force = np.zeros(own.values.size)
     for r in range(m):
         for i in range(asked.size):
             force[r] += G[r, i] * asked[i] / rotor[i]
@@ -175,7 +187,7 @@ def _project(held, asked, gain, torque) -> None:
 def _hold(held, torque) -> None:
     own = held[0]
     m, G, most = own.m, own.rows, own.most
-    spring, damper = np.zeros(6), np.zeros(6)
+    spring, damper = np.zeros(own.values.size), np.zeros(own.values.size)
     for r in range(m):
         spring[r] = (2.0 * math.pi * BANDWIDTH) ** 2 * own.values[r]
         damper[r] = 4.0 * math.pi * BANDWIDTH * DAMPING_RATIO * own.speed[r]

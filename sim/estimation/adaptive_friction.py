@@ -1,6 +1,7 @@
 """Adaptive friction module: friction of each joint, learned while the arm works, with its uncertainty (AF-2)."""
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +38,15 @@ class Turning(NamedTuple):
     tau_J: Array  # transmission torque (n,) [N·m], for the load term
 
 
+@lru_cache(maxsize=16)
+def _fitted(speeds: tuple[float, ...], torques: tuple[tuple[float, ...], ...], scale: float) -> Array:
+    """Constant, saturating and viscous term of each joint (n, 3) [N·m], nearest to its filed curve; the same for all its arms."""
+    speed = np.linspace(0.02, max(speeds), 200)
+    basis = np.stack([np.ones_like(speed), speed / (speed + KNEE), speed], axis=1)
+    curves = [np.interp(np.sqrt(speed), np.sqrt(speeds), torque) for torque in torques]
+    return np.array([np.linalg.lstsq(basis, scale * curve, rcond=None)[0] for curve in curves], dtype=np.float64)
+
+
 class AdaptiveFriction:
     """A Kalman filter a joint over the terms of its friction, n joints.
 
@@ -55,8 +65,6 @@ class AdaptiveFriction:
             scale: factor on the prior, for an arm whose friction is not what its file says.
         """
         n, filed = arm.n, arm.frictions
-        speed = np.linspace(0.02, max(filed.speed), 200)
-        basis = np.stack([np.ones_like(speed), speed / (speed + KNEE), speed], axis=1)
         self.record = record(
             terms=(n, TERMS),
             covariance=(n, TERMS, TERMS),
@@ -73,9 +81,7 @@ class AdaptiveFriction:
         own = self.record[0]
         self.terms, self.covariance = own["terms"], own["covariance"]
         self.total, self.deviation, self.warmth = own["total"], own["deviation"], own["warmth"]
-        for i in range(n):
-            curve = np.interp(np.sqrt(speed), np.sqrt(filed.speed), filed.torque[i])
-            self.terms[i, :3] = np.linalg.lstsq(basis, scale * curve, rcond=None)[0]
+        self.terms[:, :3] = _fitted(tuple(filed.speed), tuple(map(tuple, filed.torque)), scale)
         self.terms[:, 3] = scale * np.array(filed.load)
         limit = np.array(arm.limits.torque)
         size = np.abs(self.terms[:, :4])

@@ -27,6 +27,8 @@ MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever"))
+SENSOR_FORCE, SENSOR_TORQUE = 1.0, 0.1
+"""Deviation of what a flange sensor that was not zeroed tells while the flange turns: a part of its offset of 4 N [N, N·m]."""
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -36,6 +38,8 @@ class Feeling(NamedTuple):
 
     values: Array  # all measurements (3n + 18,)
     tau_ext: Array  # (n,) [N·m]
+    doubt: Array  # standard deviation of its changes (n,) [N·m]
+    F_user: Array  # (6,) in B at the flange origin; zeros without the sensor [N, N·m]
     qd: Array  # (n,) [rad/s]
     qdd: Array  # (n,) [rad/s²]
 
@@ -70,6 +74,8 @@ class ContactSources:
             gravity=(3,),
             reach=(),
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
+            doubt=(n,),  # standard deviation of its changes
+            behind=(n,),  # what the joints feel and the flange sensor does not
             joints="2i8",  # whose origins are elbow and end of the forearm
             signals=(4, len(Signal._fields)),
         )
@@ -79,6 +85,8 @@ class ContactSources:
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
         self._out, self._started = own["signals"], False
+        self._with_sensor: bool | None = None  # in the last tick
+        self._elbow = elbow
         self._out[:, EFFECTIVE_MASS] = 1.4  # until the arm has been weighed
         self.set_load(dynamics.load)
 
@@ -104,13 +112,20 @@ class ContactSources:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
-        links = use.links and sample.joints_valid
+        # Torques with the sensor's share and without it are no continuation of each other.
+        links = use.links and sample.joints_valid and self._with_sensor in (sample.wrench_valid, None)
+        self._with_sensor = sample.wrench_valid
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
-        felt = (sample.values, estimate.tau_ext, estimate.qd, estimate.qdd)
+        felt = (sample.values, estimate.tau_ext, estimate.tau_ext_doubt, estimate.F_user, estimate.qd, estimate.qdd)
         _read(self._record, self._dynamics.recursion.record, felt, watched)
         self._started = links
-        estimate.signals = ContactSignals(self._out.copy(), (pair, flange, links, links))
+        valid = (pair, flange, links, links)
+        if not links:
+            estimate.signals = ContactSignals(self._out.copy(), valid)
+            return
+        behind, doubt = self._own["behind"].copy(), self._own["doubt"].copy()
+        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, self._elbow)
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
@@ -142,7 +157,10 @@ def _read(sources, model, felt, watched) -> None:
     else:
         own.turn[:] = np.nan
     if watched.links:
+        beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach
+        _feel_behind(own, rigid.jacobian, felt)
         for which in range(2):
+            own.signals[2 + which, 11] = 1.0 if beyond else 0.0
             _derive(own, rigid, felt, (which, watched.went_on))
 
 
@@ -186,16 +204,31 @@ def _transfer(own, R, felt, out) -> None:
 
 
 @kernel
+def _feel_behind(own, jacobian, felt) -> None:
+    """The joints' external torques without those of what the flange sensor feels (n,) [N·m].
+
+    A contact beyond the sensor, and what a wrong payload seems to be, are felt by both; what is left acts on a link.
+    """
+    for i in range(own.behind.size):
+        left = felt.tau_ext[i]
+        for k in range(6):
+            left -= jacobian[k, i] * felt.F_user[k]
+        own.behind[i] = left
+        lever = np.sqrt(jacobian[0, i] ** 2 + jacobian[1, i] ** 2 + jacobian[2, i] ** 2)
+        own.doubt[i] = np.sqrt(felt.doubt[i] ** 2 + (SENSOR_FORCE * lever) ** 2 + SENSOR_TORQUE**2)
+
+
+@kernel
 def _derive(own, rigid, felt, which) -> None:
     """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of `signals`.
 
-    The force is the smallest one that explains the external torques of the joints that can move the point: with
+    The force is the smallest one that explains what the joints that can move the point feel of contacts behind the sensor: with
     J^T F = tau, F = (J J^T + d²)^-1 J tau.
     """
     link, went_on = which
     joint, before, out = own.joints[link], own.before[link], own.signals[2 + link]
     origins, flange, gravity = rigid.origins, rigid.jacobian, own.gravity
-    qd, qdd, tau_ext = felt.qd, felt.qdd, felt.tau_ext
+    qd, qdd, behind = felt.qd, felt.qdd, own.behind
     n = qd.size
     jacobian = np.empty((3, n))
     square = np.empty((3, 3))
@@ -213,7 +246,7 @@ def _derive(own, rigid, felt, which) -> None:
         acceleration, push = 0.0, 0.0
         for i in range(n):
             acceleration += jacobian[r, i] * qdd[i] + (jacobian[r, i] - before[r, i]) / TICK * qd[i]
-            push += jacobian[r, i] * tau_ext[i]
+            push += jacobian[r, i] * behind[i]
             before[r, i] = jacobian[r, i]
         for c in range(3):
             total = SINGULAR * SINGULAR if r == c else 0.0

@@ -56,6 +56,7 @@ class Estimator:
         stiffening = np.array(spring.stiffening) * calibration.stiffness
         self._record = joint_record(n)
         own = self._own = self._record[0]
+        own["most"] = motors.current
         own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
         own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
         own["rotor"] = self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
@@ -66,7 +67,7 @@ class Estimator:
         self._surplus, self._stiction, self._deflection = own["surplus"], own["stiction"], own["deflection"]
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
-        self._theta, self._q, self.tau_m = own["theta"], own["q"], own["tau_m"]
+        self._theta, self._q, self.tau_m, self._current = own["theta"], own["q"], own["tau_m"], own["current"]
         self._compliance = 1.0 / (stiffness + slip_stiffness)
         self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
         self._lost: tuple[tuple[str, int], ...] = ()
@@ -183,9 +184,11 @@ class Estimator:
             friction_deviation=friction.deviation,
             tau_ways=transmission.ways,
             tau_ext_deviation=transmission.external_deviation,
+            tau_ext_doubt=transmission.external_doubt,
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
+            current=self._current,
         )
 
     def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> None:

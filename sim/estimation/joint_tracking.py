@@ -50,6 +50,8 @@ def joint_record(n: int) -> Record:
         theta=(3, n),  # position, speed, acceleration
         q=(3, n),
         rest=(n,),  # deflection at which the hysteresis spring is relaxed
+        most=(n,),  # current that a motor may have [A]
+        current=(n,),  # measured, as a share of it
         tau_m=(n,),
         deflection=(n,),  # torque that the deflection bears
         surplus=(n,),
@@ -123,6 +125,7 @@ def follow(joints, angles) -> None:
         _track(angles.theta[i], own.gains[0], theta, i)
         _track(angles.q[i], own.gains[1], q, i)
         own.tau_m[i] = own.torque_constant[i] * angles.current[i]
+        own.current[i] = angles.current[i] / own.most[i]
         x = angles.theta[i] - angles.q[i]
         rest[i] = min(max(rest[i], x - own.slip_yield[i]), x + own.slip_yield[i])
         slip = own.slip_stiffness[i] * (x - rest[i])

@@ -9,6 +9,7 @@ from pendant.equipment.tools import Tool
 from pendant.inputs import Button, Command, Inputs
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program
+from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load
 from sim.plant.changes import AnyChange
 from sim.plant.touch import Touch
@@ -38,6 +39,7 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             theirs.jog or ours.jog,
             ours.jog_released or theirs.jog_released,
             theirs.script or ours.script,
+            ours.borders if theirs.borders is None else theirs.borders,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 
@@ -58,6 +60,7 @@ class Desk:
     _tool: str = ""
     _load: Load | None = None
     _tools: tuple[Tool, ...] = ()
+    _borders: tuple[AnyBorder, ...] | None = None
     _jog: JogMove | None = None
     _jog_released: bool = False
 
@@ -123,6 +126,11 @@ class Desk:
         with self._lock:
             self._tools = tools
 
+    def fence(self, borders: tuple[AnyBorder, ...]) -> None:
+        """Say what walls and areas there are to be, all of them."""
+        with self._lock:
+            self._borders = borders
+
     def configure(self, load: Load) -> None:
         """Say what payload the controller is to believe in, beyond the tool."""
         with self._lock:
@@ -153,6 +161,7 @@ class Desk:
                 tools=self._tools,
                 jog=self._jog,
                 jog_released=self._jog_released,
+                borders=self._borders,
             )
             wishes = Wishes(inputs, tuple(self._touches.values()), tuple(self._changes))
             self._held = set()
@@ -161,7 +170,7 @@ class Desk:
             self._settings = {}
             self._program = None
             self._changes = []
-            self._tool, self._load, self._tools = "", None, ()
+            self._tool, self._load, self._tools, self._borders = "", None, (), None
             self._jog, self._jog_released = None, False
             return wishes
 
@@ -170,7 +179,7 @@ class Desk:
         with self._lock:
             self._held, self._released = set(), set()
             self._commands, self._settings, self._changes = [], {}, []
-            self._program = self._load = None
+            self._program = self._load = self._borders = None
             self._tool, self._tools, self._high = "", (), frozenset()
             self._jog, self._jog_released = None, False
             self._touches.clear()

@@ -47,24 +47,25 @@ class RecordedPlace(NamedTuple):
 
 
 def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, known: Array, truth: Array, k: int) -> None:
-    """Write an estimate into row k of `known` (m, 9 n + 28 or more), the true state into row k of `truth` (m, 6 n + 11).
+    """Write an estimate into row k of `known` (m, 9 n + 28 or more), the true state into row k of `truth` (m, 6 n + 12).
 
     Known, in this order: q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction (n each); w_sensor, F_user (6 each); a_F,
     p_BF (3 each); v_F (6); speeds of tcp and elbow, `gain` on the user's force, mass `configured`.
 
     Truth: q, qd, theta, tau_J, friction of both sides, temperature (n each); pose of the flange in W (7); sum of the hands'
-    forces in W (3); mass of what is attached.
+    forces in W (3); mass of what is attached; 1 while anything is touched.
     """
     joints = (e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
     flange = (e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
     _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured), known[k])
     place = (*plant.frames, plant.flange_body, plant.payload.load.mass)
     _truth(plant.record, plant.friction.record, place, truth[k])
+    row = truth[k]
+    row[-1] = plant.touched
     for _, _, (x, y, z), _ in plant.hands.touched:
-        row = truth[k]
-        row[-4] += x
-        row[-3] += y
-        row[-2] += z
+        row[-5] += x
+        row[-4] += y
+        row[-3] += z
 
 
 @kernel

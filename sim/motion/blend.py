@@ -5,22 +5,64 @@ import copy
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.motion.script_requests import ScriptedJoints, ScriptedProcess
+from pendant.program.steps import LinearMove
 from sim.motion.moves import Reference, Stop
 from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.process import ProcessTrajectory
 
 Array = NDArray[np.float64]
 
-Planned = JointTrajectory | LinearTrajectory
+Planned = JointTrajectory | LinearTrajectory | ProcessTrajectory
 
 LOOKS = 20
 """Places at which the speeds of both together are looked at."""
+
+
+def leaves(motion: "Planned | Blended", blend: float, left: float) -> bool:
+    """Whether a script's motion has come to where the next one is asked for.
+
+    Args:
+        motion: of the script.
+        blend: its blend radius, more than 0 [m].
+        left: from the tool to the motion's end [m].
+    """
+    last = _last(motion)
+    if isinstance(last, ProcessTrajectory):
+        return last.nearing(blend)
+    return motion.slowing and left <= blend
+
+
+def lengthened(
+    motion: "Planned | Stop | Blended", move: LinearMove | ScriptedJoints, radius: float
+) -> "Planned | Blended | None":
+    """A motion with a script's next one put at its end, both at one speed; None: it ends where it would have.
+
+    Args:
+        motion: that goes on.
+        move: the next one.
+        radius: of the circle between, at most [m].
+
+    Raises:
+        MoveRefused: the next one leads out of reach or range.
+    """
+    last = _last(motion)
+    if isinstance(motion, Stop) or not (isinstance(last, ProcessTrajectory) and isinstance(move, ScriptedProcess)):
+        return None
+    return motion if last.goes_on(move, radius) else None
+
+
+def _last(motion: "Planned | Stop | Blended") -> "Planned | Stop | Blended":
+    """The only part of a motion that has not come to its end."""
+    return motion.second if isinstance(motion, Blended) and motion.first.done else motion
 
 
 class Blended:
     """The sum of two motions in joint angles: what the first has still to go is taken off the second's way.
 
     Where the first one only slows down and the second only speeds up, no joint gets faster than in one of them at equal
-    accelerations. Where it would get faster than it may, the second waits for the end of the first.
+    accelerations. Where it would get faster than it may, the second waits for the end of the first; and always until that slows
+    down.
 
     Args:
         first: on its way to its end, or to a stop.
@@ -32,11 +74,14 @@ class Blended:
         goal: where the second ends (n,) [rad].
         done: both are.
         slowing: the second comes to its end.
+        moving: it begins while the arm moves.
     """
+
+    moving = True
 
     def __init__(self, first: "Planned | Stop | Blended", second: Planned, corner: Array, most: Array) -> None:
         self.first, self.second, self._corner = first, second, corner
-        self.done = self._waits = False
+        self.done = self._begun = self._waits = False
         self._waits = self._fastest(most) > 1.0
 
     def __copy__(self) -> "Blended":
@@ -63,7 +108,8 @@ class Blended:
     def step(self, rate: float = 1.0) -> Reference:
         """The reference of the next tick; `rate`: how fast the motion's own time passes."""
         first = self.first.step(rate)
-        if self._waits and not self.first.done:
+        self._begun = self.first.done or (not self._waits and (self._begun or self.first.slowing))
+        if not self._begun:
             return first
         second = self.second.step(rate)
         self.done = self.first.done and self.second.done

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from pendant.motion.script_requests import SIX_WAYS, ForceMode
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
+from sim.motion.curves import LEVER
 from sim.motion.line import LINE_GAIN, Line, rotation_vector
 from sim.motion.moves import Reference
 from sim.motion.pace import Pace
-from sim.motion.planned import LEVER
 from sim.motion.streams import LineStream
 
 Array = NDArray[np.float64]
@@ -39,6 +39,9 @@ LEAST_WAY = 1e-4
 OWN = 2e4
 """Stiffness of the arm itself: with whatever it touches in series there is no more [N/m]."""
 
+USUAL_DAMPING = 0.025
+"""With it a script's damping leads to the speed that the arm has without one: a UR's own (ROS driver, SetForceMode)."""
+
 FORGETTING = 0.5
 """Time in which a stiffness that is felt no more fades [s]."""
 
@@ -50,18 +53,19 @@ class Admittance:
 
     Whatever is touched has, with the arm's own give in series, a stiffness K = df/dx against the reference; so the force goes to
     what is wanted at the rate w, on what is hard and what is soft. K is measured all the time. In units of one axis: N, m or
-    N·m, rad.
+    N·m, rad. Where a script sets a damping d, the speed has inertia: in a tick it loses the share d of itself, and gains d_0 v,
+    so that without a force it is kept with 0 and gone at once with 1 (URScript manual, force_mode_set_damping).
 
     Args:
         lever: that makes an axis' way a tool's [m]; 1 along an axis.
     """
 
-    __slots__ = ("_damping", "_felt", "_least", "_own", "_past", "_stiffness", "_way")
+    __slots__ = ("_damping", "_felt", "_least", "_own", "_past", "_speed", "_stiffness", "_way")
 
     def __init__(self, lever: float) -> None:
         self._damping, self._own, self._least = DAMPING * lever**2, OWN * lever**2, LEAST_WAY / lever
         self._felt: float | None = None
-        self._way, self._stiffness = 0.0, 0.0
+        self._way = self._speed = self._stiffness = 0.0
         self._past: deque[tuple[float, float]] = deque(maxlen=SPAN)  # of force and way
 
     def feel(self, force: float) -> None:
@@ -80,9 +84,11 @@ class Admittance:
         most = mode.limits[k]
         damping = max(self._damping, self._stiffness / BANDWIDTH)
         speed = mode.gain * (mode.wrench[k] - (self._felt or 0.0)) / damping
-        speed = min(max(speed, -most), most)
-        self._way += speed * TICK
-        return speed
+        if mode.damping is not None:
+            speed = (1.0 - mode.damping) * self._speed + USUAL_DAMPING * speed
+        self._speed = min(max(speed, -most), most)
+        self._way += self._speed * TICK
+        return self._speed
 
 
 SMOOTHING = 1.0 - math.exp(-2.0 * math.pi * FILTER * TICK)

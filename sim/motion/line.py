@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.frames import quaternion_from_matrix
+from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix
 from sim.compiled.kernel import kernel
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
@@ -79,7 +79,7 @@ class Line:
         """Joint speeds (n,) at q for a speed of the tool centre point (3,) and about it (3,), in B; the line is no matter."""
         place = self._dynamics.update(q)
         p, R, _ = place
-        course = (self._tcp, p + R @ self._tcp, R, v, R.T @ w)
+        course = (self._tcp, p + R @ self._tcp, R.copy(), v, R.T @ w)  # a copy has the layout that the kernel is compiled for
         return np.asarray(_solve(place, course, 0.0, 1.0), dtype=np.float64)
 
     def torque(self, q: Array, force: Array) -> Array:
@@ -97,6 +97,13 @@ def rotation_vector(R: Array) -> Array:
     w, *v = quaternion_from_matrix(R)
     size = math.sqrt(sum(float(x) ** 2 for x in v))
     return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
+
+
+def rotation_by(vector: Array) -> Array:
+    """Rotation matrix (3, 3) of axis times angle (3,) [rad]."""
+    angle = float(np.linalg.norm(vector))
+    half = 0.5 * math.sin(0.5 * angle) / (0.5 * angle) if angle > 1e-12 else 0.5
+    return matrix_from_quaternion((math.cos(0.5 * angle), *(half * vector)))
 
 
 # Loops over scalars, and a solver of our own: the compiled products and solvers of numpy cost a fresh installation ten seconds.

@@ -10,7 +10,7 @@ from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, Scripted
 from pendant.program.steps import JointMove, LinearMove
 from pendant.tick.modes import TICK
 from sim.arm.frames import matrix_from_quaternion
-from sim.motion.arc import Arc
+from sim.motion.curves import LEVER, SPACING, Arc
 from sim.motion.line import LINE_GAIN, Line, rotation_vector
 from sim.motion.moves import MoveRefused, Reference, Strength, check_range
 from sim.rigid_body.dynamics import Dynamics
@@ -20,10 +20,8 @@ Array = NDArray[np.float64]
 EASINGS = 5  # times that a move is planned with less acceleration
 LEAST_EASED = 0.3  # of it, each time
 JERK_TIME = 0.1  # a joint reaches its acceleration in this time [s]
-SPACING = 0.01  # between the places along a line that are looked at beforehand [m]
 SAMPLES = (24, 200)  # fewest and most of them
 ARRIVALS = 6  # steps of Newton's method to the joint angles at the end of a line
-LEVER = 0.3  # a pure turn counts as an arc of this radius [m]
 FASTEST_LINE = (3.0, 50.0)  # speed and acceleration that a line with a time of its own is planned with [m/s, m/s²]
 
 

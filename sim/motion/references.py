@@ -9,10 +9,11 @@ from pendant.decision import Decision
 from pendant.haptics import Shake
 from pendant.motion.script_requests import (
     ForceMode,
+    GentleStop,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
-    ScriptedStop,
+    ScriptedProcess,
     ServoJoints,
     ServoTool,
     SpeedJoints,
@@ -23,7 +24,7 @@ from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunSc
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
-from sim.motion.blend import Blended, Planned
+from sim.motion.blend import Blended, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory
@@ -31,6 +32,7 @@ from sim.motion.line import Line
 from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, stop_time
 from sim.motion.pace import Pace
 from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.process import ProcessTrajectory
 from sim.motion.streams import JointStream, ServoStream, SpeedStream, ToolStream
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -43,6 +45,10 @@ SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
 GONE = 0.01  # [N·m]
 ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
+
+
+Joined = ScriptedJoints | ScriptedLine | ScriptedArc | ScriptedProcess
+"""Motions of a script that may go over into the next."""
 
 
 class References:
@@ -132,9 +138,10 @@ class References:
 
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
-        if isinstance(motion, JointTrajectory | LinearTrajectory | Blended):
+        if isinstance(motion, Planned | Blended):
             if begins:
-                self._pace.begin(motion, decision.speed_limits, decision.speed, moving=isinstance(motion, Blended))
+                moving = isinstance(motion, Blended | ProcessTrajectory) and motion.moving
+                self._pace.begin(motion, decision.speed_limits, decision.speed, moving=moving)
             return motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
         if isinstance(motion, JogTrajectory | JointStream):
             reference = motion.step(decision.speed, decision.speed_limits)
@@ -171,12 +178,10 @@ class References:
         return reference
 
     def _near_its_end(self, motion: Motion, move: Move, now: Reference) -> bool:
-        """The tool is within the blend radius of the end of a script's motion, which slows down there."""
-        if not (isinstance(move, BLENDED) and isinstance(motion, JointTrajectory | LinearTrajectory | Blended)):
+        """The tool comes to the blend at the end of a script's motion."""
+        if not (isinstance(move, Joined) and isinstance(motion, Planned | Blended)) or move.blend == 0.0:
             return False
-        if move.blend == 0.0 or not motion.slowing:
-            return False
-        return float(np.linalg.norm(self._tool(now.q) - self._tool(motion.goal))) <= move.blend
+        return leaves(motion, move.blend, float(np.linalg.norm(self._tool(now.q) - self._tool(motion.goal))))
 
     def _tool(self, q: Array) -> Array:
         """Tool centre point (3,) in B [m]."""
@@ -204,7 +209,7 @@ class References:
         try:
             if isinstance(move, JointMove):
                 self._motion = JointTrajectory(q, move, self._limits, self._strength)
-            elif isinstance(move, BLENDED):
+            elif isinstance(move, Joined):
                 self._motion = self._after(move, now)
             elif isinstance(move, ServoJoints | SpeedJoints | SpeedTool | ServoTool):
                 self._motion = self._stream(move, now)
@@ -214,7 +219,7 @@ class References:
                 self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
             elif isinstance(move, ApplyForce):
                 self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
-            elif isinstance(move, ScriptedStop | RunScript):
+            elif isinstance(move, GentleStop | RunScript):
                 self._motion = self._slowed(now, move)
             else:
                 self._motion = Stop(q, self._standing)
@@ -225,20 +230,25 @@ class References:
     def _slowed(self, now: Reference, move: Move | None = None) -> Stop:
         """To rest on the way that the arm is on, as hard as it can or as a script says."""
         length = stop_time(self._dynamics, now.q, now.qd, rotor=self._rotor, torque=self._torque)
-        if isinstance(move, ScriptedStop):
+        if isinstance(move, GentleStop):
             speed = np.abs(now.qd).max()
             if move.of == "tool":
                 speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
             length = max(length, 0.5 * np.pi * float(speed) / move.deceleration)
         return Stop(now.q, now.qd, length)
 
-    def _line(self, q: Array, move: LinearMove) -> LinearTrajectory:
+    def _line(self, q: Array, move: LinearMove) -> LinearTrajectory | ProcessTrajectory:
+        if isinstance(move, ScriptedProcess):
+            return ProcessTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
         return LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
 
-    def _after(self, move: ScriptedJoints | ScriptedLine | ScriptedArc, now: Reference) -> Planned | Blended:
+    def _after(self, move: Joined, now: Reference) -> Planned | Blended:
         """A script's motion from where the one before ends, or from where the arm comes to rest on its way."""
         before = self._motion if self._leaving else self._slowed(now)
-        assert isinstance(before, JointTrajectory | LinearTrajectory | Blended | Stop)
+        assert isinstance(before, Planned | Blended | Stop)
+        longer = lengthened(before, move, self._move.blend) if isinstance(self._move, Joined) else None
+        if longer is not None:
+            return longer
         moving = not before.done and float(np.abs(now.qd).max()) > STANDING
         begin = before.goal if moving else now.q
         planned = (
@@ -258,10 +268,6 @@ class References:
         if isinstance(before, ToolStream):
             return before.renew(move)
         return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=limits, pace=pace)
-
-
-BLENDED = ScriptedJoints | ScriptedLine | ScriptedArc
-"""Motions of a script that may go over into the next."""
 
 
 def _shaken(reference: Reference, shake: Shake) -> Reference:

@@ -10,10 +10,10 @@ from pendant.motion.script_requests import ServoJoints, ServoTool, SpeedJoints, 
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import matrix_from_quaternion
+from sim.motion.curves import LEVER
 from sim.motion.line import Line, rotation_vector
 from sim.motion.moves import DELAY, MoveRefused, Reference, check_range
 from sim.motion.pace import RAMP, SHARE, Pace
-from sim.motion.planned import LEVER
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -216,7 +216,8 @@ class ToolStream(LineStream):
 
     def _wanted(self) -> Array:
         v, w = self._course()
-        self._v, near = _towards(self._v, self._share * v, self._change[0])
+        follow = _towards if isinstance(self._move, SpeedTool) else _steered
+        self._v, near = follow(self._v, self._share * v, self._change[0])
         self._w, upright = _towards(self._w, self._share * w, self._change[1])
         self.done = self.done or (near and upright)
         self._look()
@@ -233,13 +234,33 @@ class ToolStream(LineStream):
         left = max(float(np.linalg.norm(way)), LEVER * float(np.linalg.norm(turn)))
         if left < 1e-9:
             return way, turn
-        pace = min(move.speed, math.sqrt(2.0 * BRAKING_SHARE * move.acceleration * left), left / (2.0 * TICK)) / left
+        # The tool comes there on a circle that its way touches: the smaller that is, the slower it goes.
+        sine = float(np.linalg.norm(np.cross(self._v, way))) / max(float(np.linalg.norm(self._v) * np.linalg.norm(way)), 1e-12)
+        round_it = math.sqrt(0.5 * move.acceleration * left / max(sine, 1e-9))
+        pace = min(move.speed, round_it, math.sqrt(2.0 * BRAKING_SHARE * move.acceleration * left), left / (2.0 * TICK)) / left
         return pace * way, pace * turn
 
     def _braked(self) -> Array:
         qd = super()._braked()
         self._v, self._w = self._line.twist(self._q, qd)
         return qd
+
+
+def _steered(now: Array, wanted: Array, most: float) -> tuple[Array, bool]:
+    """As `_towards`, but the direction turns on a circle, and the size changes apart from that."""
+    size, goal = float(np.linalg.norm(now)), float(np.linalg.norm(wanted))
+    if min(size, goal) <= most:
+        return _towards(now, wanted, most)
+    along = now / size
+    across = wanted / goal - float(along @ wanted) / goal * along
+    sine = float(np.linalg.norm(across))
+    angle = math.atan2(sine, float(along @ wanted) / goal)
+    turn = min(angle, most / size)
+    if sine < 1e-9:  # straight on, or straight back
+        return _towards(now, wanted, most)
+    next_ = size + min(max(goal - size, -most), most)
+    direction = math.cos(turn) * along + math.sin(turn) / sine * across
+    return next_ * direction, turn == angle and next_ == goal
 
 
 def _towards(now: Array, wanted: Array, most: float) -> tuple[Array, bool]:

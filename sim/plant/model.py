@@ -1,17 +1,19 @@
 """The MuJoCo model of an arm in its world, built from the arm's file and the scenario."""
 
+import copy
 import logging
 from dataclasses import dataclass
 
+import msgspec
 import mujoco
 import numpy as np
 
 from sim.arm.arm_file import Arm, ForceTorque
 from sim.arm.chain import Body, chain, load_body, plate_body, tool_body
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
-from sim.arm.scenario import Scenario
+from sim.arm.scenario import Load, Scenario
 from sim.plant.joint_friction import Friction
-from sim.plant.objects import add_object, pair_geoms
+from sim.plant.objects import WRIST, add_object, pair_geoms, pair_own
 
 SUBSTEPS = 8
 """Physics steps a control tick: 0.25 ms. An explicit integrator needs less than 2 / w for the fastest series spring, w being its
@@ -24,6 +26,11 @@ BRISTLE_RATIO = 0.7
 """Damping of a stuck rotor on its bristles: without any, a stuck joint rings for seconds and creeps."""
 SENSORS = ("force", "torque", "accelerometer_flange", "gyro_flange", "accelerometer_tool", "gyro_tool")
 """What MuJoCo measures at the flange, three values each. Forces: what the flange exerts on what it carries, in F."""
+
+KEPT = 8
+"""Compiled models that a process keeps: many sessions differ only in their seed."""
+
+_compiled: dict[bytes, mujoco.MjModel] = {}
 
 _TYPES = {
     "force": mujoco.mjtSensor.mjSENS_FORCE,
@@ -52,6 +59,22 @@ def _log(text: str) -> None:
 
 
 mujoco.set_mju_user_warning(_log)
+
+
+def model_of(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjModel:
+    """The model that `build` describes, compiled; one that may be changed. The last `KEPT` are compiled once in a process.
+
+    Raises:
+        ValueError: MuJoCo cannot compile it.
+    """
+    # What the model does not depend on is left out of its name, and nothing else: a new field makes other models.
+    alike = msgspec.structs.replace(scenario, seed=0, posture=None, payload_configured=Load(mass=0.0), tools=[], walls=[])
+    name = msgspec.msgpack.encode((arm, alike, step), enc_hook=float)  # numbers of numpy are floats, too
+    model = _compiled.pop(name, None) or build(arm, scenario, step).compile()
+    _compiled[name] = model
+    if len(_compiled) > KEPT:
+        del _compiled[next(iter(_compiled))]  # the one that was not asked for the longest
+    return copy.copy(model)
 
 
 def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
@@ -108,11 +131,13 @@ def build(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjSpec:
     for kind in ("force", "torque"):
         _add_sensor(spec, kind, _TYPES[kind], site="tool", step=step)
 
-    if scenario.world:
+    if scenario.world or scenario.self_contact:
         _add_shapes(spec, arm, scenario)
     for item in scenario.world:
         add_object(spec, item)
     pair_geoms(spec, arm.chain.joints[0], scenario.world)
+    if scenario.self_contact:
+        pair_own(spec, ("foot", *arm.chain.joints[:-WRIST]))
     return spec
 
 

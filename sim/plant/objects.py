@@ -13,9 +13,16 @@ DEPTH = 0.02
 a transient, measured from 1e3 to 2e5 N/m; d = 0.9 is right statically and far too soft in an impact."""
 
 DAMPING_RATIO = 0.03  # of a contact against 1 kg: real surfaces ring little, and a perfect spring would ring for ever
+RUB = 500.0
+"""Friction of a contact per speed of sliding, up to Coulomb's [N·s/m]: from some cm/s on the whole of it is there. Without this
+it has the normal damping, 4 N·s/m on a soft plate, and at the speeds of an arm hardly any friction."""
 SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]
 SNAP_REST = 0.2  # share of its force that a snap-fit still resists with while it gives way
 SNAP_MASS = 0.2  # of the part that gives way [kg]
+SKIN = 1e5  # stiffness of the arm's housings, where the tool touches them [N/m]
+SKIN_FRICTION = 0.3
+WRIST = 3
+"""Joints before the flange whose links the tool never touches: it is mounted on them."""
 HEAVY = 1e6  # mass of a moving object, that no arm pushes aside [kg]
 
 
@@ -55,10 +62,20 @@ def pair_geoms(spec: mujoco.MjSpec, first_link: str, world: Sequence[AnyObject])
     shapes = [geom for geom in spec.geoms if geom.name.startswith("shape/") and geom.parent.name not in fixed]
     for item in world:
         for shape in shapes:
-            pair = spec.add_pair(name=f"{shape.name} {item.name}", geomname1=shape.name, geomname2=f"object/{item.name}")
-            pair.condim = 3
-            pair.friction = [item.friction, item.friction, 0.0, 0.0, 0.0]
-            pair.solimp = [DEPTH, DEPTH, 1e-3, 0.5, 2]
+            _add_pair(spec, f"{shape.name} {item.name}", (shape.name, f"object/{item.name}"), item.friction)
+
+
+def pair_own(spec: mujoco.MjSpec, links: Sequence[str]) -> None:
+    """Pair the tool with the shapes of these links: the arm may touch itself (CD-2)."""
+    for geom in [geom for geom in spec.geoms if geom.name.startswith("shape/") and geom.parent.name in links]:
+        _add_pair(spec, f"itself {geom.name}", ("shape/tool", geom.name), SKIN_FRICTION)
+
+
+def _add_pair(spec: mujoco.MjSpec, name: str, names: tuple[str, str], friction: float) -> None:
+    pair = spec.add_pair(name=name, geomname1=names[0], geomname2=names[1])
+    pair.condim = 3
+    pair.friction = [friction, friction, 0.0, 0.0, 0.0]
+    pair.solimp = [DEPTH, DEPTH, 1e-3, 0.5, 2]
 
 
 def set_contact_stiffness(model: mujoco.MjModel, world: Sequence[AnyObject]) -> None:
@@ -68,14 +85,17 @@ def set_contact_stiffness(model: mujoco.MjModel, world: Sequence[AnyObject]) -> 
     [N·s/m]: MuJoCo regularises by R = A(1-d)/d and aims at -(c·v + K·r)·R. To be called again when a payload changes A.
     """
     for k in range(model.npair):
-        item = world[_object_index(model, k, world)]
+        item = _object(model, k, world)
+        stiffness = SKIN if item is None else item.stiffness
         bodies = model.geom_bodyid[[model.pair_geom1[k], model.pair_geom2[k]]]
         weight = model.body_invweight0[bodies, 0].sum()
-        damping = 2.0 * DAMPING_RATIO * item.stiffness**0.5
-        model.pair_solref[k] = -item.stiffness * weight * (1 - DEPTH), -damping * weight * (1 - DEPTH)
+        damping = 2.0 * DAMPING_RATIO * stiffness**0.5
+        model.pair_solref[k] = -stiffness * weight * (1 - DEPTH), -damping * weight * (1 - DEPTH)
+        model.pair_solreffriction[k] = 0.0, -RUB * weight * (1 - DEPTH)
 
 
-def _object_index(model: mujoco.MjModel, pair: int, world: Sequence[AnyObject]) -> int:
+def _object(model: mujoco.MjModel, pair: int, world: Sequence[AnyObject]) -> AnyObject | None:
+    """The object of a pair; None for one of the arm with itself."""
     geoms = (int(model.pair_geom1[pair]), int(model.pair_geom2[pair]))  # the compiler orders them by type
     names = {model.geom(geom).name for geom in geoms}
-    return next(i for i, item in enumerate(world) if f"object/{item.name}" in names)
+    return next((item for item in world if f"object/{item.name}" in names), None)

@@ -13,7 +13,7 @@ from sim.plant.applied_touches import Hands
 from sim.plant.attached_payload import Payload
 from sim.plant.joint_friction import Friction
 from sim.plant.joint_state import drive, finish, gather, plant_record, poses, sliding
-from sim.plant.model import SENSORS, Step, build
+from sim.plant.model import SENSORS, Step, model_of
 from sim.plant.objects import set_contact_stiffness
 from sim.plant.touch import Touch
 from sim.plant.world import World
@@ -38,7 +38,7 @@ class Plant:
 
     def __init__(self, arm: Arm, scenario: Scenario, step: Step | None = None) -> None:
         self.arm, self.scenario, self.step = arm, scenario, step or Step()
-        self.model = build(arm, scenario, self.step).compile()
+        self.model = model_of(arm, scenario, self.step)
         self.data = mujoco.MjData(self.model)
         self.friction = Friction(arm)
         model, data, joints = self.model, self.data, arm.chain.joints

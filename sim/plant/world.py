@@ -63,8 +63,8 @@ class World:
         for contact in self._data.contact:
             if contact.dist < -INSIDE:
                 geoms = {self._model.geom(int(geom)).name for geom in contact.geom}
-                item = next(item.name for item, name in zip(self._items, names, strict=True) if name in geoms)
-                return f"the arm begins {-1000.0 * contact.dist:.0f} mm inside {item!r}"
+                found = (repr(item.name) for item, name in zip(self._items, names, strict=True) if name in geoms)
+                return f"the arm begins {-1000.0 * contact.dist:.0f} mm inside {next(found, 'itself')}"
         return ""
 
     def place(self, name: str, position: Sequence[float]) -> None:

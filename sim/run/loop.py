@@ -16,6 +16,7 @@ from pendant.decision import Decision
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind
 from pendant.tick.modes import TICK, TICK_RATE
+from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Desk, Wishes
 from sim.exchange.snapshot import Snapshot
@@ -104,6 +105,11 @@ class Loop:
         """The pendant's table of tools as it is now."""
         return self.simulation.tools
 
+    @property
+    def walls(self) -> tuple[AnyBorder, ...]:
+        """The pendant's walls and areas as they are now."""
+        return self.simulation.walls
+
     def start(self) -> None:
         """Start the thread; returns once the first tick is done."""
         sys.setswitchinterval(SWITCH_INTERVAL)
@@ -138,7 +144,10 @@ class Loop:
             self._steps.release()
 
     def reset(self) -> None:
-        """Go back to the scenario's start at the next tick; after a failure to that of the last simulation that began."""
+        """Go back to the scenario's start at the next tick; after a failure to that of the last simulation that began.
+
+        Walls and areas stay as they are: a reset takes no protection away.
+        """
         self._next = (self._make, self._write)
 
     def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
@@ -152,12 +161,15 @@ class Loop:
 
     def _start_over(self, make: Callable[[], Simulation], write: Callable[[], Script] | None) -> None:
         self._next = None
+        walls = self.simulation.walls if make is self._make else None  # what was made meanwhile stays through a reset
         self.simulation = make()
         self._make, self._write = make, write
         self.failure = ""
         gc.collect()  # the one before holds megabytes that are not Python's, and would wait long to be found
         self._script = write() if write is not None else None
         self.desk.clear()
+        if walls is not None and walls != self.simulation.walls:
+            self.desk.fence(walls)
         self._do_tick()
 
     def _do_tick(self) -> None:

@@ -5,7 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.arm_file import Drift
+from pendant.sensor.sensor_spec import SensorSpec
+from sim.arm.arm_file import Arm, Drift
 from sim.sensing.calibration import FORCE_OFFSET, TORQUE_OFFSET, Calibration
 
 Array = NDArray[np.float64]
@@ -102,3 +103,14 @@ def lasting(drift: Drift | None) -> tuple[float, float]:
     if drift is None:
         return 0.0, 0.0
     return (FORCE_OFFSET + drift.force) / drift.warm_up, (TORQUE_OFFSET + drift.torque) / drift.warm_up
+
+
+def sensor_spec(arm: Arm) -> SensorSpec:
+    """What is known of the arm's flange sensor."""
+    force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
+    if force_torque is None:
+        return SensorSpec()
+    drift, offset = lasting(force_torque.drift), most(force_torque.drift)
+    noise = (force_torque.force.noise, force_torque.torque.noise)
+    shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
+    return SensorSpec(*drift, *offset, *noise, shaken)

@@ -13,15 +13,18 @@ from app.kept_setup import OFTEN, Keeper, handed_in, keeper_for, setup_of, text_
 from app.session.prepare import prepare
 from app.session.session_file import Session, Setup, bundled, find, opened
 from pendant.all_settings import Settings, apply
+from pendant.walls.definitions import Area
+from pendant.walls.shapes import Box
 
 ARM = load_arm("ur5e")
 PREPARED = prepare(Setup(world="table", tool="gripper", mounting="wall", seed=4), "test")
 SETTINGS = apply(Settings(), {"free_drive.period": 7.0, "contact.on": True})
+WALL = Area(name="box 1", shape=Box(size=(0.4, 0.4, 0.4)), on=False)
 LESSON = Lesson(steps=[TaughtStep(do="wait", seconds=2.0)], repeat=0)
 
 
 def test_a_set_up_comes_back_from_its_file_as_it_was() -> None:
-    setup = setup_of(ARM, PREPARED.scenario, SETTINGS)
+    setup = setup_of(ARM, PREPARED.scenario, SETTINGS, tuple(PREPARED.scenario.walls))
     assert setup.settings == {"free_drive.period": 7.0, "contact.on": True}
     again = handed_in("setup.yaml", text_of(setup).encode(), ARM)
     assert (again.scenario, again.settings) == (PREPARED.scenario, SETTINGS)
@@ -32,7 +35,7 @@ def test_every_bundled_session_has_a_set_up_that_comes_back(name: str) -> None:
     prepared = prepare(opened(find(name), Session), name)
     if not prepared.arm.name.startswith("ur5e"):
         return
-    setup = setup_of(prepared.arm, prepared.scenario, prepared.settings)
+    setup = setup_of(prepared.arm, prepared.scenario, prepared.settings, tuple(prepared.scenario.walls))
     again = prepare(parse(text_of(setup), Setup, name), name)
     assert (again.scenario, again.settings) == (prepared.scenario, prepared.settings)
 
@@ -59,26 +62,30 @@ def test_a_file_that_makes_no_sense_is_refused_in_a_line(content: bytes, said: s
 
 def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_path: Path) -> None:
     keeper, scenario, settings, lesson = Keeper(tmp_path / "new", "ur5e"), PREPARED.scenario, Settings(), Lesson()
-    keeper.see(lesson, ARM, scenario, settings, now=0.0)
-    keeper.see(lesson, ARM, scenario, settings, now=10.0)
+    keeper.see(lesson, ARM, scenario, settings, walls=(), now=0.0)
+    keeper.see(lesson, ARM, scenario, settings, walls=(), now=10.0)
     assert keeper.read() is None
-    keeper.see(LESSON, ARM, scenario, settings, now=20.0)
-    keeper.see(LESSON, ARM, scenario, SETTINGS, now=20.0 + 0.9 * OFTEN)
+    keeper.see(LESSON, ARM, scenario, settings, walls=(), now=20.0)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), now=20.0 + 0.9 * OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert (kept.taught, kept.setup.settings) == (LESSON, {})
-    keeper.see(LESSON, ARM, scenario, SETTINGS, now=20.0 + OFTEN)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), now=20.0 + OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert prepare(kept.setup, "kept").settings == SETTINGS
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(WALL,), now=30.0)
+    kept = keeper.read()
+    assert kept is not None
+    assert prepare(kept.setup, "kept").scenario.walls == [WALL]
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["ur5e.yaml"]
 
 
 def test_what_cannot_be_written_is_said_and_not_tried_again(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     keeper = Keeper(tmp_path / "file", "ur5e")
-    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, now=0.0)
-    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, now=5.0)
+    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, walls=(), now=0.0)
+    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, walls=(), now=5.0)
     assert "cannot be written" in keeper.problem
 
 
@@ -87,8 +94,8 @@ def test_the_next_start_begins_with_what_was_kept(tmp_path: Path, capsys: pytest
     before, keeper, lesson = as_kept(shipped, tmp_path)
     assert (before, lesson) == (shipped, None)
     assert keeper is not None
-    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, now=0.0)
-    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, now=5.0)
+    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, walls=(), now=0.0)
+    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, walls=(), now=5.0)
     after, _, lesson = as_kept(shipped, tmp_path)
     assert (lesson, after.settings) == (LESSON, SETTINGS)
     assert after.scenario.tool == load_tool("sphere")

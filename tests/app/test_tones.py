@@ -23,11 +23,12 @@ class At:
     left: float | None = None  # of a free-drive period [s]
     near: float | None = None  # to a wall
     period: str = "free-drive"
+    signs: int = 0
 
     @property
     def decision(self) -> Decision:
         periods = () if self.left is None else (Remaining(self.period, round(500 * self.left), 1500),)
-        decision = fakes.decision(self.mode, self.phase, periods=periods)
+        decision = msgspec.structs.replace(fakes.decision(self.mode, self.phase, periods=periods), signs=self.signs)
         if self.near is None:
             return decision
         wall = WallState("wall", "flange", (0.0,) * 3, 0.1, (1.0, 0.0, 0.0), self.near, False, (0.0,) * 3)
@@ -44,6 +45,12 @@ class At:
         (At(Mode.STOP), At(), None),
         (At(), At(phase=Phase.FEEDBACK), Tone.ASK),
         (At(phase=Phase.FEEDBACK), At(phase=Phase.FEEDBACK), None),
+        (At(), At(phase=Phase.SEQUENCE, left=0.5, period="feedback"), Tone.ASK),  # within the sequence
+        (At(left=0.6, period="feedback"), At(left=0.5, period="feedback"), None),
+        (At(signs=2), At(signs=3), Tone.SIGN),
+        (At(signs=2), At(Mode.FREE_DRIVE, signs=3), Tone.SIGN),
+        (At(signs=2), At(signs=2), None),
+        (At(signs=2), At(Mode.STOP, signs=3), Tone.STOP),
         (At(), At(Mode.FREE_DRIVE), Tone.FREE),
         (At(Mode.FREE_DRIVE), At(), Tone.HELD),
         (At(Mode.FREE_DRIVE, near=0.0), At(Mode.FREE_DRIVE, near=0.1), Tone.WALL),

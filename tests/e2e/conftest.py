@@ -2,11 +2,14 @@
 
 import shutil
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.files.library import load_arm
+from app.log.live import LiveRecording
+from app.serving import ServedArms
 from app.web.server import Served, serve
 from sim.arm.scenario import Scenario
 from sim.run.loop import Loop
@@ -26,6 +29,11 @@ COARSE = "?fixedDpr=0.3"
 """Draws the scene with a tenth of the pixels, in software ten times as fast; controls stay sharp, the pointer where it is."""
 
 
+def chromium_path() -> str | None:
+    """Where Chromium is on this machine."""
+    return next((found for name in BROWSERS if (found := shutil.which(name))), None)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "e2e: drives a real browser")
     config.addinivalue_line("markers", "every_size: a further size of the window, for `make e2e-full` alone")
@@ -34,7 +42,7 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """Chromium of this machine, drawing in software."""
-    path = next((found for name in BROWSERS if (found := shutil.which(name))), None)
+    path = chromium_path()
     if path is None:
         pytest.fail("no Chromium found: install it, on Debian or Ubuntu with `apt-get install chromium`", pytrace=False)
     with sync_playwright() as playwright:
@@ -56,7 +64,9 @@ def loop() -> Iterator[Loop]:
 @pytest.fixture
 def served(loop: Loop) -> Iterator[Served]:
     """The web app of `loop`."""
-    app = serve(loop, loop.simulation.arm, loop.simulation.scenario)
+    recording = LiveRecording(loop, Path())
+    arms = ServedArms(loop, recording)
+    app = serve(loop, loop.simulation.arm, loop.simulation.scenario, recording=recording, arms=arms)
     yield app
     app.close()
 

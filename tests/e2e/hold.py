@@ -26,7 +26,7 @@ def hold_until(page: Page, cell: Cell, true: Callable[[], bool], what: str) -> N
     def vain() -> int:
         return sum(event.kind in IN_VAIN for event in cell.loop.events(0))
 
-    box = page.get_by_role("button", name="Hold for free-drive").bounding_box()
+    box = page.locator(f'[id="{cell.served.panel.free_drive._impl.uuid}"]').bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     for _ in range(4):

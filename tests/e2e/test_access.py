@@ -12,7 +12,7 @@ from tests.e2e.cell import Cell
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
 
-TABS = ("Teach", "Axes", "Lab", "Tools", "Settings", "Contacts", "Plots", "Record", "Events")
+TABS = ("Teach", "Jog", "Axes", "Walls", "Lab", "Tools", "Settings", "Contacts", "Plots", "Record", "Events")
 FURTHER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1440, 900), (1920, 1080))]
 SIZES = [(1024, 768), (820, 1180), *FURTHER]
 GRAVE = ("serious", "critical")

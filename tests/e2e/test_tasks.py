@@ -92,7 +92,7 @@ def test_teach_three_waypoints_and_loop_them(visit: Visit, cell: Cell, width: in
     page = visit(width, height)
     teach = cell.served.docks.teach
     teach_three(page, cell)
-    fill(page, "Times", "0")
+    fill(page, "Times (0: loop)", "0")
     cell.wait(lambda: teach.lesson.repeat == 0, "it loops")
     click(page, "Run")
     seen: list[int] = []

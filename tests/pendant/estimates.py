@@ -74,6 +74,7 @@ def estimate(
         tcp=np.array(tcp or [0.0] * 6),
         elbow=np.array(elbow or [0.0] * 6),
         F_joints=np.array(vector(felt, 3)),
+        current=np.zeros(n),
         load_mass=load_mass,
         friction=np.array(vector(friction, n)),
         energy=energy,

@@ -53,6 +53,10 @@ TOOLING = frozenset(
         Kind.POSTURE_MEASURED,
         Kind.POSTURE_REFUSED,
         Kind.PAYLOAD_FOUND,
+        Kind.WIZARD_STARTED,
+        Kind.WIZARD_FINISHED,
+        Kind.WIZARD_STOPPED,
+        Kind.WIZARD_REFUSED,
         Kind.SENSOR_ZEROED,
         Kind.ZERO_REFUSED,
         Kind.ZERO_DUE,
@@ -430,7 +434,8 @@ def _free(
     w: World, t: int, i: Step, s: Settings, present: bool, pressed: bool, let_go: bool, static: bool, kinds: list[Kind]
 ) -> None:
     allowed = s.free_drive.allowed_from
-    may = {Mode.TEACH: allowed.teach, Mode.NORMAL: allowed.normal, Mode.RUN: allowed.run}.get(w.mode, False)
+    by_teach = allowed.teach and allowed.teach_first
+    may = {Mode.TEACH: allowed.teach, Mode.NORMAL: allowed.normal or by_teach, Mode.RUN: allowed.run}.get(w.mode, False)
     cooling = t - w.cool_from < _n(s.free_drive.cool_down)
     if s.sequence.stored:
         _keep(w, t, i)
@@ -489,6 +494,7 @@ def _begin_entry(w: World, t: int, i: Step, s: Settings, static: bool, kinds: li
         kinds.append(Kind.REFUSED_NOT_STORED if s.sequence.stored else Kind.REFUSED_SHORT)
         _end(w, t, True, cool=True)
     elif s.sequence.on:
+        _teach(w, s, kinds)
         kinds.append(Kind.SEQUENCE_STARTED)
         w.phase, w.since, w.tried = Phase.SEQUENCE, t, i.wrench
         if w.program is ProgramState.RUNNING:
@@ -497,7 +503,20 @@ def _begin_entry(w: World, t: int, i: Step, s: Settings, static: bool, kinds: li
         if _stays(w, t, i, s, True, kinds) and s.sequence.period == 0.0:
             _enter(w, t, i, True, kinds)
     else:
+        _teach(w, s, kinds)
         _enter(w, t, i, True, kinds)
+
+
+def _teach(w: World, s: Settings, kinds: list[Kind]) -> None:
+    """To TEACH first, if that is asked for: a program is given up."""
+    allowed = s.free_drive.allowed_from
+    if w.mode is Mode.TEACH or not (allowed.teach and allowed.teach_first):
+        return
+    kinds.append(Kind.TEACH_FIRST)
+    if w.mode is Mode.RUN:
+        kinds.append(Kind.PROGRAM_STOPPED)
+        w.program, w.brake = ProgramState.STOPPED, False
+    w.mode = Mode.TEACH
 
 
 def _stays(w: World, t: int, i: Step, s: Settings, present: bool, kinds: list[Kind]) -> bool:

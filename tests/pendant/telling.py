@@ -29,7 +29,7 @@ def whole_transition(happened: Happened, tick: int) -> list[Event]:
         assert last is not None
         assert happened.cause is last.kind
         assert TRANSITIONS[happened.transition](last.kind)
-    assert {TABLE[event.kind].effect for event in noticed} <= {Effect.INFO, Effect.TRY}
+    assert {TABLE[event.kind].effect for event in noticed} <= {Effect.INFO, Effect.TO_TEACH, Effect.TRY}
     assert Kind.ACTIVATION_CANCELLED not in {event.kind for event in noticed}
     return whole(happened.events, tick)
 

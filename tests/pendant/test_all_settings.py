@@ -26,6 +26,7 @@ EXPECTED = {
     "free_drive.allowed_from.normal": (False, None, None, "", "FD-1", True),
     "free_drive.allowed_from.teach": (True, None, None, "", "FD-1", True),
     "free_drive.allowed_from.run": (False, None, None, "", "FD-1", True),
+    "free_drive.allowed_from.teach_first": (False, None, None, "", "FD-1", True),
     "free_drive.period": (3.0, 0.5, 30.0, "s", "FD-14", False),
     "free_drive.restart_period": (3.0, 0.5, 30.0, "s", "FD-15", False),
     "unexplained.sensor": (True, None, None, "", "FD-19", True),
@@ -66,6 +67,7 @@ EXPECTED = {
     "axes.rx": (True, None, None, "", "FD-4", False),
     "axes.ry": (True, None, None, "", "FD-4", False),
     "axes.rz": (True, None, None, "", "FD-4", False),
+    **{f"joints.{name}": (True, None, None, "", "FD-4", False) for name in ("on", *(f"j{k}" for k in range(1, 13)))},
     "axes.frame": ("base", None, None, "", "FD-4", False),
     "axes.roll": (0.0, -3.15, 3.15, "rad", "FD-4", False),
     "axes.pitch": (0.0, -3.15, 3.15, "rad", "FD-4", False),
@@ -96,6 +98,7 @@ EXPECTED = {
     "walls.activation_radius": (0.005, 0.001, 0.1, "m", "VW-6", True),
     "walls.operation_radius": (0.03, 0.005, 1.0, "m", "VW-6", True),
     "walls.band": (0.005, 0.0, 0.5, "m", "VW-7", True),
+    "walls.push": (0.0, 0.0, 100.0, "N", "VW-7", True),
     "walls.averaging": (0.02, 0.02, 10.0, "s", "VW-4", True),
     "walls.safety_period": (1.0, 0.1, 10.0, "s", "VW-3", True),
     "walls.push_back": (1.0, 1.0, 50.0, "N", "VW-5", True),
@@ -111,6 +114,8 @@ EXPECTED = {
     "program.speed": (1.0, 0.0, 1.0, "", "CD-15", False),
     "tools.ramp": (1.0, 0.0, 10.0, "s", "tools", False),
     "tools.measure": (0.5, 0.1, 5.0, "s", "tools", False),
+    "tools.room": (0.1, 0.02, 0.5, "m", "tools", False),
+    "tools.clearance": (0.03, 0.005, 0.2, "m", "tools", False),
 }
 SIGNALS = {
     "signals.button": (True, None, None, "", "FD-5", True),
@@ -149,6 +154,20 @@ SIGNALS = {
     "signals.pattern.count": (2.0, 2.0, 5.0, "", "FD-5", True),
     "signals.pattern.shortest": (0.08, 0.02, 1.0, "s", "FD-5", True),
     "signals.pattern.longest": (0.28, 0.05, 2.0, "s", "FD-5", True),
+    "signals.presses.on": (False, None, None, "", "FD-5", True),
+    "signals.presses.of": ("button", None, None, "", "FD-5", True),
+    "signals.presses.count": (3.0, 2.0, 5.0, "", "FD-5", True),
+    "signals.presses.shortest": (0.06, 0.02, 1.0, "s", "FD-5", True),
+    "signals.presses.longest": (0.4, 0.05, 2.0, "s", "FD-5", True),
+    "signals.posture.on": (False, None, None, "", "FD-5", True),
+    "signals.posture.together": (False, None, None, "", "FD-5", True),
+    "signals.posture.count": (2.0, 1.0, 3.0, "", "FD-5", True),
+    **{
+        f"signals.posture.joint_{number}": (joint, 1.0, 12.0, "", "FD-5", True)
+        for number, joint in ((1, 6.0), (2, 5.0), (3, 6.0))
+    },
+    **{f"signals.posture.angle_{number}": (0.005, -0.5, 0.5, "rad", "FD-5", True) for number in (1, 2, 3)},
+    "signals.posture.within": (3.0, 0.1, 10.0, "s", "FD-5", True),
     "signals.turn.on": (False, None, None, "", "FD-5", True),
     "signals.turn.joint": (6.0, 1.0, 12.0, "", "FD-5", True),
     "signals.turn.angle": (0.005, 0.0005, 0.5, "rad", "FD-5", True),
@@ -161,6 +180,9 @@ SIGNALS = {
     "signals.tap.longest": (0.1, 0.01, 0.5, "s", "FD-5", True),
     "activation.sum_presences": (False, None, None, "", "FD-7", True),
     "handshake.on": (False, None, None, "", "FD-8", True),
+    "handshake.by": ("any", None, None, "", "FD-8", True),
+    "handshake.when": ("before", None, None, "", "FD-8", True),
+    "handshake.delay": (0.0, 0.0, 5.0, "s", "FD-8", True),
     "handshake.feedback": (0.5, 0.0, 5.0, "s", "FD-8", True),
     "handshake.window": (3.0, 1.0, 10.0, "s", "FD-8", True),
     "handshake.hold": (0.2, 0.0, 1.0, "s", "FD-8", True),
@@ -179,6 +201,7 @@ LIMITS = {
         "joint_speed": (0.05, 0.01, 0.5, "rad/s", "FD-9"),
         "joint_acceleration": (5.0, 0.5, 50.0, "rad/s²", "FD-9"),
         "motor_torque": (0.9, 0.01, 1.0, "of rated", "FD-9"),
+        "motor_current": (0.9, 0.01, 1.0, "of largest", "FD-9"),
         "joint_torque": (0.04, 0.01, 1.0, "of rated", "FD-9"),
         "payload_force": (5.8, 1.0, 50.0, "N", "FD-9"),
         "payload_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
@@ -211,6 +234,7 @@ OFF = {
     "activation.joint_displacement",
     "activation.joint_acceleration",
     "activation.motor_torque",
+    "activation.motor_current",
     "operation.flange_displacement",
 }
 STOPS = {"operation.flange_acceleration", "operation.joint_torque"}
@@ -247,6 +271,7 @@ EXPECTED["limits.activation.load_share"] = (0.25, 0.0, 1.0, "", "FD-9", True)
 
 CONTACT_SWITCHES = {
     "on": (False, "CD-1", False),
+    "audible": (False, "CD-15", False),
     "tool": (True, "CD-2", True),
     "flange": (False, "CD-2", True),
     "links": (True, "CD-2", True),
@@ -258,6 +283,7 @@ CONTACT_SWITCHES = {
     "statistical": (True, "CD-6", True),
     "slow": (True, "CD-7", True),
     "rules_needed": ("any", "CD-10", True),
+    "statistic": ("mean", "CD-8", True),
     "look_back": (True, "CD-14", True),
     "retrospective": (True, "CD-9", True),
 }
@@ -273,10 +299,7 @@ CONTACT_NUMBERS = {
     "force_noise": (0.15, 0.02, 2.0, "N", "CD-0", True),
     "acceleration_noise": (0.1, 0.01, 2.0, "m/s²", "CD-0", True),
     "turn_noise": (1.2, 0.0, 20.0, "rad/s²", "CD-0", True),
-    "link_force_noise": (3.0, 0.1, 50.0, "N", "CD-2", True),
-    "link_acceleration_noise": (0.2, 0.02, 5.0, "m/s²", "CD-2", True),
-    "link_force": (60.0, 1.0, 200.0, "N", "CD-2", True),
-    "link_margin": (20.0, 0.0, 100.0, "kg", "CD-11", True),
+    "link_limit": (4.5, 2.0, 20.0, "", "CD-2", True),
     "noise_limit": (3.0, 1.0, 6.0, "", "CD-0", True),
     "hard_limit": (4.0, 2.0, 20.0, "", "CD-4", True),
     "hard_payload": (0.4, 0.0, 5.0, "N/kg", "CD-11", True),
@@ -291,6 +314,18 @@ CONTACT_NUMBERS = {
     "payload_error": (0.25, 0.0, 1.0, "", "CD-11", True),
     "speed_share": (0.0, 0.0, 2.0, "s/m", "CD-11", True),
     "free_drive_factor": (3.0, 1.0, 10.0, "", "CD-11", True),
+    "force_step": (3.0, 1.0, 20.0, "", "CD-4", True),
+    "acceleration_step": (3.0, 1.0, 20.0, "", "CD-4", True),
+    "older_pairs": (0.0, 0.0, 10.0, "", "CD-9", True),
+    "tested": (5.0, 2.0, 20.0, "", "CD-6", True),
+    "window": (30.0, 10.0, 200.0, "", "CD-6", True),
+    "newest": (10.0, 2.0, 20.0, "", "CD-7", True),
+    "oldest": (20.0, 5.0, 50.0, "", "CD-7", True),
+    "program_factor": (1.0, 1.0, 10.0, "", "CD-11", True),
+    "commanded_share": (0.0, 0.0, 2.0, "s²/m", "CD-11", True),
+    "target_share": (0.0, 0.0, 0.5, "1/N", "CD-11", True),
+    "torque_share": (0.0, 0.0, 0.5, "1/(N·m)", "CD-11", True),
+    "current_share": (0.0, 0.0, 10.0, "", "CD-11", True),
 }
 EXPECTED |= {f"contact.{name}": (on, None, None, "", ident, locked) for name, (on, ident, locked) in CONTACT_SWITCHES.items()}
 EXPECTED |= {f"contact.{name}": cell for name, cell in CONTACT_NUMBERS.items()}
@@ -307,6 +342,9 @@ def test_every_setting_is_a_number_a_count_a_switch_or_a_choice() -> None:
     assert {row.name for row in COUNTS} == {
         "contact.hard_count", "contact.soft_count", "contact.slow_count", "contact.misses", "signals.digital_input",
         "signals.leaving_input", "signals.joints.first", "signals.joints.last", "signals.pattern.count", "signals.turn.joint",
+        "signals.presses.count", "signals.posture.count", "signals.posture.joint_1", "signals.posture.joint_2",
+        "signals.posture.joint_3", "contact.force_step", "contact.acceleration_step", "contact.older_pairs", "contact.tested",
+        "contact.window", "contact.newest", "contact.oldest",
     }  # fmt: skip
 
 

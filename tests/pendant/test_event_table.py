@@ -74,6 +74,8 @@ EXAMPLE: Values = {
     "missing": 3,
     "number": 4,
     "postures": 12,
+    "text": "Put the next part into the holder",
+    "tone": True,
     "tool": "two-finger gripper",
     "total": 2.925,
     "what": "payload of the wizard",
@@ -81,6 +83,7 @@ EXAMPLE: Values = {
 }
 
 EFFECTS = {
+    Kind.TEACH_FIRST: Effect.TO_TEACH,
     Kind.SEQUENCE_STARTED: Effect.TRY,
     Kind.ENTERED: Effect.ENTER,
     Kind.REFUSED_LIMIT: Effect.NO_ENTRY,
@@ -133,7 +136,9 @@ def test_effects_are_as_the_spec_says() -> None:
 def test_refusals_and_leavings_start_the_cool_down_except_the_deactivation_signal() -> None:
     """FD-12c."""
     starting = {kind for kind, row in TABLE.items() if row.cool_down}
-    assert starting == {kind for kind, effect in EFFECTS.items() if effect not in (Effect.TRY, Effect.ENTER)} - {Kind.DEACTIVATED}
+    assert starting == {kind for kind, effect in EFFECTS.items() if effect not in (Effect.TO_TEACH, Effect.TRY, Effect.ENTER)} - {
+        Kind.DEACTIVATED
+    }
 
 
 def test_what_stops_is_cleared_by_a_reset_alone_and_overridden_by_nobody() -> None:
@@ -174,7 +179,7 @@ def test_a_contact_is_told_with_force_rule_and_action() -> None:
     values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
     assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
         "Contact gained: tool",
-        "Change of 17.6 N; rule slow, 20 ticks after it began. Action: none.",
+        "Force change 17.6 N, seen within 20 ticks of 2 ms by rule slow. Action: none.",
     )
 
 
@@ -183,7 +188,25 @@ def test_severities_are_ordered() -> None:
     assert sorted(Severity) == list(Severity)
 
 
-LOGGED = {"source", "acceleration", "ratio", "fx", "fy", "fz", "ax", "ay", "az", "x", "y", "z", "px", "py", "pz", "posture"}
+LOGGED = {
+    "tone",
+    "source",
+    "acceleration",
+    "ratio",
+    "fx",
+    "fy",
+    "fz",
+    "ax",
+    "ay",
+    "az",
+    "x",
+    "y",
+    "z",
+    "px",
+    "py",
+    "pz",
+    "posture",
+}
 """Of a contact: for the log and the page, too many to read (CD-16)."""
 
 

@@ -88,7 +88,7 @@ class Parts:
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
-            "force": "force", "script_done": 7,
+            "force": "force", "script_done": 7, "signs": 0,
         } | changes  # fmt: skip
 
 
@@ -197,3 +197,15 @@ def test_new_settings_are_told_from_the_next_decision_on() -> None:
 def test_a_force_is_amplified_by_any_gain_above_none(gain: float, amplified: bool) -> None:
     told = Decision(Mode.FREE_DRIVE, Safety.NORMAL, Phase.HELD, Law.FREE, None, gain, 50.0, (0.0,) * 6, (), ())
     assert told.amplified is amplified
+
+
+@pytest.mark.parametrize("audible", [True, False])
+@pytest.mark.parametrize("tone", [True, False])
+def test_what_is_to_be_heard_is_counted(tone: bool, audible: bool) -> None:
+    """CD-15: steps that tell the user, and changes in contact; of several in a tick each."""
+    parts = Parts(apply(SETTINGS, {"contact.audible": audible}))
+    tells = Event(Kind.PROGRAM_TELLS, 5, {"name": "p", "text": "t", "tone": tone})
+    assert parts.step(tells, EVENT).signs == tone
+    assert parts.step().signs == tone
+    assert parts.step(EVENT, contacts=(CONTACT, CONTACT)).signs == tone + 2 * audible
+    assert parts.step(tells, tells, contacts=(CONTACT,)).signs == 3 * tone + 3 * audible

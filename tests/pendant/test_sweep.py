@@ -34,6 +34,7 @@ COMPARED = apply(CHECKED, {"sequence.period": 0.1, "sequence.stored": True, "seq
 
 AT_A_GLANCE = apply(COMPARED, {"sequence.period": 0.0})
 TOO_SHORT = apply(CHECKED, {"sequence.period": 0.248})
+TEACH_FIRST = apply(CHECKED, {"free_drive.allowed_from.normal": False, "free_drive.allowed_from.teach_first": True})
 STOPPING = apply(CHECKED, {"sequence.beyond_limit": "protective_stop"})
 AT_ONCE = apply(SHORT, {"activation.period": 0.0})
 
@@ -164,7 +165,7 @@ def test_situations_cover_every_mode_phase_safety_and_law() -> None:
     seen = [agree(stream, SHORT)[-1] for stream, _, _ in SITUATIONS.values()]
     assert {item[0] for item in seen} == set(Mode)
     # the sequence has a sweep of its own below; attempts by hand and their confirmation are in test_signals
-    assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE, Phase.FEEDBACK, Phase.CONFIRM, Phase.LET_GO}
+    assert {item[2] for item in seen} == set(Phase) - {Phase.SEQUENCE, Phase.DELAY, Phase.FEEDBACK, Phase.CONFIRM, Phase.LET_GO}
     assert {item[1] for item in seen} == set(Safety)
     assert {item[3] for item in seen} == set(Law)
     assert {item[4] for item in seen} == set(ProgramState)
@@ -182,13 +183,13 @@ def test_every_input_in_every_situation_does_what_the_spec_says(name: str, after
 @pytest.mark.parametrize("name", SITUATIONS)
 def test_options_do_what_the_spec_says(name: str) -> None:
     stream = SITUATIONS[name][0]
-    for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE):
+    for option in (FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, TEACH_FIRST):
         agreement = Agreement(option, AFTER["hold on"])
         for step in FOR_OPTIONS.values():
             agreement.agree([*stream, step])
 
 
-@pytest.mark.parametrize("option", [CHECKED, STOPPING], ids=["checked", "stopping"])
+@pytest.mark.parametrize("option", [CHECKED, STOPPING, TEACH_FIRST], ids=["checked", "stopping", "teach first"])
 @pytest.mark.parametrize("name", CHECKED_SITUATIONS)
 def test_every_input_in_the_activation_sequence_does_what_the_spec_says(name: str, option: Settings) -> None:
     stream = CHECKED_SITUATIONS[name]
@@ -245,7 +246,7 @@ ODD = st.tuples(STEPS, st.integers(1, 60)).map(lambda pair: [pair[0]] * pair[1])
 STREAMS = st.lists(USUAL | ODD, min_size=1, max_size=40).map(lambda parts: [step for part in parts for step in part])
 
 
-OPTIONS = (SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, CHECKED, STOPPING, COMPARED, AT_A_GLANCE, TOO_SHORT)
+OPTIONS = (SHORT, FROM_ANYWHERE, HOLD_TO_RUN, AT_ONCE, CHECKED, STOPPING, TEACH_FIRST, COMPARED, AT_A_GLANCE, TOO_SHORT)
 UNTOUCHED = ticks_of(250)
 PUSHED = {"force": (-8.0, -4.0, 4.0, 8.0), "tau": (-3.0, -1.0, 1.0, 3.0)}
 

@@ -165,7 +165,7 @@ def test_while_the_payload_changes_it_is_refused() -> None:
 
 def test_while_a_posture_is_measured_it_is_refused() -> None:
     robot = Robot().run(1, command(Command.WIZARD_MEASURE))
-    assert robot.zero() == "a posture is being measured"
+    assert robot.zero() == "the payload is being measured"
     assert robot.run(READY).zero() == ""
 
 

@@ -24,11 +24,12 @@ from app.urscript.machine.signature import (
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.motion.script_requests import (
     ForceMode,
+    GentleStop,
     ScriptedArc,
     ScriptedJoints,
     ScriptedLine,
     ScriptedMove,
-    ScriptedStop,
+    ScriptedProcess,
     ServoJoints,
     ServoTool,
     SpeedJoints,
@@ -109,7 +110,8 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
         return until_done(ScriptedLine(position=position, quaternion=turned, acceleration=a, speed=v, time=t, blend=r))
 
     def movep(x: Value, a: float, v: float, r: float) -> Doing:
-        return movel(x, a, v, 0.0, r)
+        position, turned = placed(cartesian(x))
+        return until_done(ScriptedProcess(position=position, quaternion=turned, acceleration=a, speed=v, blend=r))
 
     def movec(*given: Value) -> Doing:
         via, to, a, v, r, mode = given
@@ -148,7 +150,7 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
 
 
 def _stopping(until_done: Callable[[ScriptedMove], Doing], of: Literal["joints", "tool"]) -> Callable[..., Doing]:
-    return lambda a, turning: until_done(ScriptedStop(of=of, deceleration=a))
+    return lambda a, turning: until_done(GentleStop(of=of, deceleration=a))
 
 
 def of_streams(robot: RobotSide) -> Iterator[Builtin]:
@@ -222,7 +224,8 @@ TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "n
 
 def of_force(robot: RobotSide) -> Iterator[Builtin]:
     """force_mode and tool_contact."""
-    gain = [1.0]
+    gain: list[float] = [1.0]
+    damping: list[float | None] = [None]  # both are kept until they are set again
 
     def force_mode(frame: PoseValue, *given: Value) -> None:
         selection, wrench, type_, limits = given
@@ -239,6 +242,7 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
                 R_BU=rotation(turned),
                 turns=TURNS[type_ - 1],
                 gain=gain[0],
+                damping=damping[0],
             )
         except ValueError as error:
             raise Misuse(str(error)) from None
@@ -246,6 +250,9 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
 
     def scale(scaling: float) -> None:
         gain[0] = scaling
+
+    def damp(share: float) -> None:
+        damping[0] = share
 
     yield builtin(
         "force_mode",
@@ -257,7 +264,6 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
         Taken("limits", numbers(6)),
     )
     yield builtin("end_force_mode", lambda: robot.arm.push(None))
-    # The arm has a damping of its own: it goes no faster than its limits, and pushes on whatever it meets.
-    yield builtin("force_mode_set_damping", lambda d: None, Taken("damping", within(number, 0.0, 1.0)))
+    yield builtin("force_mode_set_damping", damp, Taken("damping", within(number, 0.0, 1.0)))
     yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
     yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))

@@ -153,6 +153,8 @@ def _matrix(a: Value) -> bool:
 
 def _product(a: Value, b: Value) -> Value:
     """A matrix times a matrix or a vector."""
+    if _matrix(b) and any(type(row) is not tuple or len(row) != len(b[0]) for row in b):
+        raise Misuse("* of matrices: the rows of the second are not all of one length")
     columns = list(zip(*b, strict=True)) if _matrix(b) else [b]
     for row in a:
         if type(row) is not tuple or any(len(row) != len(column) for column in columns):

@@ -10,7 +10,7 @@ from pendant.decision import Decision
 from pendant.events.event import Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.nearness import Nearness
-from pendant.motion.script_requests import ForceMode, Guided, Scripted, ScriptedMove, ScriptedStop
+from pendant.motion.script_requests import ForceMode, GentleStop, Guided, Scripted, ScriptedMove
 from pendant.program.steps import ProgramState, script_program
 from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode, Phase
@@ -103,7 +103,7 @@ class ScriptArm:
     def drop(self, number: int) -> None:
         """Nobody waits any more."""
         if number == self._count and self._done < number:
-            self.ask(ScriptedStop(deceleration=OWN_STOP))
+            self.ask(GentleStop(deceleration=OWN_STOP))
 
     def push(self, force: ForceMode | None) -> None:
         """Push besides the motion; None: no more."""
@@ -118,7 +118,7 @@ class ScriptArm:
             self._commands += (Command.LEAVE_FREE_DRIVE,)
         if isinstance(self._wish.move, Guided):
             self._count += 1
-            self._wish = replace(self._wish, move=ScriptedStop(id=self._count))
+            self._wish = replace(self._wish, move=GentleStop(id=self._count))
 
     def zero(self) -> None:
         """Zero the flange's sensor as soon as the arm has stood for a while."""

@@ -12,6 +12,7 @@ from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
+from app.urscript.running.garbage import uncollected
 from app.urscript.running.script_arm import ScriptArm
 from app.urscript.running.script_robot import OfferedScript, ScriptRobot, joined
 from app.urscript.running.told import Telling, Told, printable
@@ -149,10 +150,11 @@ class ScriptRunner:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
-        body = read_script(text)
         robot = ScriptRobot(self.cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self.cabinet.simulation.scenario.seed)
-        secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
-        machine = Machine(body, builtins_of(robot, self._history, secondary))
+        with uncollected():
+            body = read_script(text)
+            secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
+            machine = Machine(body, builtins_of(robot, self._history, secondary))
         return OfferedScript(machine, robot, text)
 
     # on the loop's thread

@@ -21,7 +21,19 @@ import websockets.asyncio.server
 from app.web.access.door import Door
 from app.web.access.listening import Access
 from app.web.access.message_gate import MAX_BYTES, MessageGate
-from app.web.access.messages import Admitted, Camera, CommandTrigger, Drag, Update, Upload, UploadPart, decode, encode
+from app.web.access.messages import (
+    Admitted,
+    Camera,
+    CommandTrigger,
+    Drag,
+    Handles,
+    HandlesLetGo,
+    Update,
+    Upload,
+    UploadPart,
+    decode,
+    encode,
+)
 from app.web.access.operator import Operator
 from app.web.access.takes import bounded, reason_against
 
@@ -49,6 +61,7 @@ class Guard:
         self._server: viser.ViserServer | None = None
         self._handles: frozenset[str] = frozenset()
         self._anyone: set[str] = set()
+        self._movable: set[str] = set()  # names of handles in the picture
         self._stalled: Callable[[int], None] = lambda client: None
         self.silence = 0.5
 
@@ -86,9 +99,22 @@ class Guard:
         """Let every client use `control`, not the operator alone."""
         self._anyone.add(control._impl.uuid)
 
+    def forget(self) -> None:
+        """The page is cleared: what was for anyone, and handles, are no more."""
+        self._anyone.clear()
+        self._movable.clear()
+
     def for_nobody(self, control: Any) -> None:
         """Forget a control that was for anyone: it is no more."""
         self._anyone.discard(control._impl.uuid)
+
+    def let_move(self, name: str) -> None:
+        """Let the handles of this name be moved, by the operator."""
+        self._movable.add(name)
+
+    def fix(self, name: str) -> None:
+        """Let them be moved by nobody: they are no more."""
+        self._movable.discard(name)
 
     def now(self) -> float:
         """The clock by which the operator's silence is measured [s]."""
@@ -103,6 +129,8 @@ class Guard:
         self.refused[reason or "not understood"] += 1
         if isinstance(message, Update):
             self._show_truth(client, message.uuid)
+        elif isinstance(message, Handles):
+            self._show_place(client, message.name)
         return None
 
     def _reason_against(self, client: int, message: Admitted) -> str | None:
@@ -116,6 +144,11 @@ class Guard:
             if message.name not in self._handles or message.owner != "":
                 return "not draggable"
             if message.phase == "end":
+                return None
+        elif isinstance(message, Handles):
+            if message.name not in self._movable or message.owner != "":
+                return "not movable"
+            if isinstance(message, HandlesLetGo):
                 return None
         else:
             uuid = message.source_component_uuid if isinstance(message, Upload | UploadPart) else message.uuid
@@ -144,6 +177,19 @@ class Guard:
         if control is not None and not control._impl.is_button:
             truth = viser._messages.GuiUpdateMessage(uuid, {"value": control.value})
             self._server._connected_clients[client]._websock_connection.queue_message(truth)
+
+    def _show_place(self, client: int, name: str) -> None:
+        """Set the handles on the page of a refused client back to where they are."""
+        if self._server is None or client not in self._server._connected_clients:
+            return
+        node = self._server.scene._handle_from_node_name.get(name)
+        if node is None:
+            return
+        w, i, j, k = node.wxyz.tolist()
+        x, y, z = node.position.tolist()
+        connection = self._server._connected_clients[client]._websock_connection
+        connection.queue_message(viser._messages.SetOrientationMessage(name, (w, i, j, k)))
+        connection.queue_message(viser._messages.SetPositionMessage(name, (x, y, z)))
 
     def refuse(self, reason: str) -> None:
         """Count a refusal."""

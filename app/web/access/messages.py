@@ -61,6 +61,29 @@ class Drag(Message, tag="SceneNodeDragMessage"):
     owner: str = ""
 
 
+class HandlesMoved(Message, tag="TransformControlsUpdateMessage"):
+    """Handles in the picture are moved: their pose."""
+
+    name: str
+    wxyz: tuple[float, float, float, float]
+    position: Triple
+    owner: str = ""
+
+
+class HandlesTaken(Message, tag="TransformControlsDragStartMessage"):
+    """Handles in the picture are taken hold of."""
+
+    name: str
+    owner: str = ""
+
+
+class HandlesLetGo(Message, tag="TransformControlsDragEndMessage"):
+    """Handles in the picture are let go."""
+
+    name: str
+    owner: str = ""
+
+
 class Upload(Message, tag="FileTransferStartUpload"):
     """A file is about to come."""
 
@@ -81,7 +104,9 @@ class UploadPart(Message, tag="FileTransferPart"):
     content: bytes
 
 
-Admitted = Camera | Update | HoldMessage | CommandTrigger | Drag | Upload | UploadPart
+Handles = HandlesMoved | HandlesTaken | HandlesLetGo
+
+Admitted = Camera | Update | HoldMessage | CommandTrigger | Drag | Handles | Upload | UploadPart
 
 _decoder = msgspec.msgpack.Decoder(Admitted)
 _encoder = msgspec.msgpack.Encoder()

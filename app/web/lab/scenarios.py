@@ -26,8 +26,10 @@ TOPICS = {
     ),
     "Free-drive is refused": ("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison"),
     "Free-drive ends": ("left-alone", "short-press", "too-fast", "sensor-fails", "way-back"),
-    "Limits, walls, locked axes": (*("soft-limits", "dynamic-limits", "joint-limits", "wall-walked-down", "axis-locks"),),
-    "Payload, tool, sensor": ("payload-wizard", "zeroed", "hanging", "friction-warm-up"),
+    "Limits, walls, locked axes": (
+        *("soft-limits", "dynamic-limits", "joint-limits", "wall-walked-down", "wall-made", "axis-locks", "only-the-elbow"),
+    ),
+    "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "zeroed", "hanging", "friction-warm-up"),
     "Programs and contact": ("hold", "program", "touch-the-table", "network"),
 }
 """What the scenarios teach, by the names of their files."""

@@ -1,6 +1,7 @@
 """What a laboratory sets up before the arm is switched on: mounting, tool, world, seed, mismatch."""
 
 import math
+from collections.abc import Awaitable, Callable
 
 import msgspec
 import viser
@@ -27,7 +28,9 @@ class LabSetup:
 
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._arm = loop, arm
+        self._change_arm: Callable[[str], Awaitable[None]] | None = None
         with gui.add_folder("Set-up", expand_by_default=False):
+            self.arm = gui.add_dropdown("Arm", (arm.name,), hint="Another one begins as it was kept, or as shipped")
             self.mounting = gui.add_dropdown("Mounting", (AS_IS, *MOUNTINGS))
             self.tilt = gui.add_slider("Tilt [°]", min=-90, max=90, step=5, initial_value=0)
             self.tool = gui.add_dropdown("Tool", (AS_IS, *tools()))
@@ -41,6 +44,9 @@ class LabSetup:
 
         @self.begin.on_click
         async def _(_: viser.GuiEvent) -> None:
+            if self.arm.value != self._arm.name and self._change_arm is not None:
+                await self._change_arm(self.arm.value)
+                return
             self._begin(Prepared(self._arm, self.chosen(), self._loop.settings, None, "the page"))
 
         @self.save.on_click
@@ -52,9 +58,15 @@ class LabSetup:
         async def _(_: viser.GuiEvent) -> None:
             self.read(self.load.value.name, self.load.value.content)
 
+    def offer_arms(self, names: tuple[str, ...], change: Callable[[str], Awaitable[None]]) -> None:
+        """Have these arms to choose from; `change` goes over to one."""
+        self._change_arm = change
+        self.arm.options = names if self._arm.name in names else (self._arm.name, *names)
+        self.arm.value = self._arm.name
+
     def file(self) -> bytes:
         """The running set-up with its settings, as a configuration."""
-        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings)).encode()
+        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings, self._loop.walls)).encode()
 
     def read(self, name: str, content: bytes) -> None:
         """Begin with the set-up of a file, or say in a line why not."""
@@ -92,6 +104,7 @@ class LabSetup:
                 tool for tool in self._loop.tools if isinstance(tool, ToolModel)
             ],  # as they were edited; the app has no others
             world=world,
+            walls=list(self._loop.walls),
             seed=int(self.seed.value),
             mismatch="on" if self.mismatch.value else "nominal",
         )

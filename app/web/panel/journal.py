@@ -36,7 +36,7 @@ class LogRow:
     count: int = 1
 
 
-EQUIPMENT = ("setting_", "tool", "payload_", "posture_", "sensor_")
+EQUIPMENT = ("setting_", "tool", "payload_", "posture_", "sensor_", "wizard_")
 FILTERS: dict[str, Callable[[Event], bool]] = {
     "Everything": lambda event: True,
     "Stops and refusals": lambda event: (
@@ -44,9 +44,7 @@ FILTERS: dict[str, Callable[[Event], bool]] = {
     ),
     "Free-drive": lambda event: TABLE[event.kind].effect in (Effect.TRY, Effect.ENTER, Effect.NO_ENTRY, Effect.LEAVE),
     "Contacts": lambda event: event.kind.value.startswith("contact_"),
-    "Settings, tools, payload": lambda event: event.kind.value.startswith(
-        ("setting_", "tool", "payload_", "posture_", "sensor_")
-    ),
+    "Settings, tools, payload": lambda event: event.kind.value.startswith(EQUIPMENT),
 }
 """What may be shown."""
 

@@ -27,7 +27,7 @@ from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
 HOLD = "Hold for free-drive"
-CONFIRM = "Press to confirm"
+CONFIRM, LEAVE = "Press to confirm", "Short press: leave"
 """What is written on the free-drive button."""
 
 HOLD_RATE = 30.0
@@ -125,8 +125,9 @@ class Panel:
         self.holds.let_go(client)
 
     def _name_button(self, decision: Decision) -> bool:
-        """While a confirmation is asked for, the button gives it (FD-8)."""
-        label = CONFIRM if decision.phase is Phase.CONFIRM else HOLD
+        """While a confirmation is asked for, the button gives it (FD-8); in free-drive a short press leaves (FD-8a)."""
+        free = decision.mode is Mode.FREE_DRIVE and decision.phase is not Phase.HELD
+        label = CONFIRM if decision.phase is Phase.CONFIRM else LEAVE if free else HOLD
         changed = self.free_drive.label != label
         if changed:
             self.free_drive.label = label

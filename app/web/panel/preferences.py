@@ -59,6 +59,11 @@ class Preferences:
             for control in (page.dark, page.sound):
                 self._guard.for_nobody(control)
 
+    @property
+    def dark(self) -> frozenset[int]:
+        """Clients whose page is dark."""
+        return frozenset(client for client, page in self._pages.items() if page.dark.value)
+
     def flip_dark(self, client: int) -> None:
         """From light to dark, or back."""
         page = self._pages[client]

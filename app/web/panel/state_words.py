@@ -14,6 +14,7 @@ WORDS = {
 }
 ASKED = {
     Phase.ACTIVATION: ("Keep holding", Colour.BLUE),
+    Phase.DELAY: ("Let go and wait", Colour.BLUE),
     Phase.FEEDBACK: ("Let go and wait", Colour.BLUE),
     Phase.CONFIRM: ("Confirm now", Colour.AMBER),
     Phase.LET_GO: ("Let go of the arm", Colour.AMBER),
@@ -41,6 +42,7 @@ PERIOD_COLOURS = {
     "let go": Colour.AMBER,
     "compensation": Colour.AMBER,
     "feedback": Colour.GREY,
+    "delay": Colour.GREY,
     "cool-down": Colour.GREY,
     "safety": Colour.GREY,
 }
@@ -49,6 +51,7 @@ PERIOD_COLOURS = {
 PERIOD_WORDS = {
     "activation": "Keep holding",
     "feedback": "Hands off",
+    "delay": "Hands off",
     "confirmation": "Confirm within",
     "let go": "Let go within",
     "sequence": "Checking",

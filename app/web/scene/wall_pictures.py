@@ -119,7 +119,9 @@ class DrawnWall:
 
     def draws(self, border: AnyBorder) -> bool:
         """Whether this is what `border` looks like."""
-        return border is self._border or (type(border) is type(self._border) and border.shape == self._border.shape)
+        return border is self._border or (
+            type(border) is type(self._border) and (border.shape, border.on) == (self._border.shape, self._border.on)
+        )
 
     def remove(self) -> None:
         """Take it out of the picture."""
@@ -196,7 +198,7 @@ class DrawnWall:
         """Show the label, and the way that is left to the wall."""
         told: tuple[object, ...] = ()
         if state is None and seen:
-            told = (self._border.name, *self._centre)
+            told = (self._border.name if self._border.on else f"{self._border.name} (off)", *self._centre)
         elif state is not None:
             told = (text_of(state), *(round(value, 3) for value in (*state.p, *_nearest(state))))
         if told == self._told:

@@ -1,3 +1,3 @@
-"""The docks on the left side. Uses files/, learning/, log/, robot_interface/, robot_interface/controller/,
+"""The docks on the left side. Uses files/, robot_interface/, robot_interface/controller/,
 robot_interface/transport/, runs/, urscript/language/, urscript/running/, web/access/, web/scene/, web/tuning/, web/widgets/.
 """

@@ -16,6 +16,7 @@ from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
 from pendant.all_settings import Settings, describe, find, limits_checksum, value_of
 from pendant.events.event import Event, Kind
+from pendant.limits.axis_locks import JOINTS
 from pendant.settings.schema import SettingRow, Value
 from pendant.tick.modes import Mode, Phase
 from sim.exchange.snapshot import Snapshot
@@ -37,8 +38,9 @@ BASIC = tuple(dict.fromkeys(section_of(row) for row in describe() if row.basic))
 class SettingsTab:
     """The tab with the settings."""
 
-    def __init__(self, gui: viser.GuiApi, tab: viser.GuiTabHandle, loop: Running) -> None:
+    def __init__(self, gui: viser.GuiApi, tab: viser.GuiTabHandle, loop: Running, joints: int) -> None:
         self._gui, self._tab, self._loop = gui, tab, loop
+        self._absent = frozenset(f"joints.{name}" for name in JOINTS[joints:])  # joints that this arm has not
         self._settings: Settings | None = None
         self._locked = False
         self._lock = threading.Lock()  # controls are made on viser's event loop and brought up to date by the painter
@@ -168,10 +170,12 @@ class SettingsTab:
         if self._chosen == VIEWS[1]:
             return []
         if self.search.value.strip():
-            return found(self.search.value, describe())
+            return [row for row in found(self.search.value, describe()) if row.name not in self._absent]
         return [row for row in describe() if title_of(section_of(row)) == self.section.value and self._shows(row, settings)]
 
     def _shows(self, row: SettingRow, settings: Settings) -> bool:
+        if row.name in self._absent:
+            return False
         return self.expert.value or row.basic or value_of(settings, row.name) != row.default
 
     def _offer(self) -> None:

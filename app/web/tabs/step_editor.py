@@ -80,7 +80,7 @@ class StepEditor:
         self._edits, self._edited = edits, edited
         self.list = Html(gui)
         self.repeat = gui.add_number(
-            "Times", 1, min=0, max=MOST_RUNS, step=1, hint="That the program runs; 0: until it is stopped"
+            "Times (0: loop)", 1, min=0, max=MOST_RUNS, step=1, hint="That the program runs; 0: until it is stopped"
         )
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen step", names_of(edits.now))
         self.order = gui.add_button_group("Chosen", ("↑", "↓", "✕"))

@@ -8,7 +8,7 @@ import viser
 from app.web.running import Running
 from app.web.tabs.tool_editor import ToolEditor
 from app.web.widgets import svg
-from app.web.widgets.html import Html, enable
+from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
 from pendant.decision import Decision
 from pendant.equipment.load import Load
@@ -19,6 +19,7 @@ from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Phase
 from pendant.tooling.payload_wizard import Progress
 from pendant.tooling.tool_in_use import Fitting
+from pendant.tooling.wrist_postures import WANTED
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
 
@@ -34,24 +35,32 @@ class ToolsTab:
         self._table: tuple[Tool, ...] = ()
         self._fitting: Fitting | None = None
         self.now = Html(gui)
-        names = tuple(tool.name for tool in loop.tools)
-        self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
-        self.about = Html(gui)
-        self.use = gui.add_button("Use this tool", color="gray")
-        self.editor = ToolEditor(gui, loop, arm)
-        with gui.add_folder("Payload wizard"):
-            self.progress = Html(gui)
-            self.measure = gui.add_button("Measure this posture", icon=viser.Icon.SCALE)
-            self.apply = gui.add_button("Apply the payload found", color="gray", disabled=True)
-            self.clear = gui.add_button("Begin again", color="gray", disabled=True)
-        with gui.add_folder("Payload beyond the tool", expand_by_default=False):
-            self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=arm.payload, step=0.01)
-            self.centre = tuple(
-                gui.add_number(f"Centre {axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0) for axis in "xyz"
+        with gui.add_folder("Payload"):
+            self.run = gui.add_button(
+                "Measure the payload",
+                icon=viser.Icon.SCALE,
+                hint="The arm turns its wrist by itself, slowly; it needs room for that",
             )
-            self.enter = gui.add_button("Set payload", color="gray")
+            self.stop = gui.add_button("Stop measuring", color="red", visible=False)
+            self.progress = Html(gui)
+            self.apply = gui.add_button("Take", color="gray", disabled=True, hint="Configure the payload that was found")
+            with gui.add_folder("Turn the wrist by hand", expand_by_default=False):
+                self.measure = gui.add_button("Measure this posture", color="gray")
+                self.clear = gui.add_button("Begin again", color="gray", disabled=True)
+            with gui.add_folder("Type it in", expand_by_default=False):
+                self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=arm.payload, step=0.01)
+                self.centre = tuple(
+                    gui.add_number(f"Centre {axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0) for axis in "xyz"
+                )
+                self.enter = gui.add_button("Set payload", color="gray")
         self.zero = gui.add_button("Zero the force sensor", color="gray", icon=viser.Icon.TARGET)
         self.zeroed = Html(gui)
+        with gui.add_folder("Tool"):
+            names = tuple(tool.name for tool in loop.tools)
+            self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
+            self.about = Html(gui)
+            self.use = gui.add_button("Use this tool", color="gray")
+            self.editor = ToolEditor(gui, loop, arm)
         self._connect()
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -64,18 +73,21 @@ class ToolsTab:
         if decision.fitting is not None and (self._fitting is None or decision.fitting.number != self._fitting.number):
             self._take(decision.fitting)
         self._fitting = decision.fitting
-        measuring = wizard.share > 0.0
+        measuring, turning = wizard.share > 0.0, wizard.doing != ""
+        idle = decision.phase is Phase.OFF and not measuring and not turning
         changed = [
             self.now.show(svg.facts(_facts(decision.fitting, locked))),
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
             self.editor.show(self._chosen(), locked),
-            enable(self.use, not locked),
-            enable(self.enter, not locked),
-            enable(self.measure, decision.phase is Phase.OFF and not measuring),
-            enable(self.apply, wizard.finding is not None and not locked),
-            enable(self.clear, wizard.postures > 0 and not measuring),
-            enable(self.zero, decision.phase is Phase.OFF and not measuring and decision.program is not ProgramState.RUNNING),
+            enable(self.use, not locked and not turning),
+            enable(self.enter, not locked and not turning),
+            enable(self.run, idle and not locked),
+            reveal(self.stop, turning),
+            enable(self.measure, idle),
+            enable(self.apply, wizard.finding is not None and not locked and not turning),
+            enable(self.clear, wizard.postures > 0 and not measuring and not turning),
+            enable(self.zero, idle and decision.program is not ProgramState.RUNNING),
             self.zeroed.show(_subtracted(decision)),
         ]
         return any(changed)
@@ -119,6 +131,8 @@ class ToolsTab:
 
         on(self.use, lambda: desk.choose(self.tool.value))
         on(self.enter, lambda: desk.configure(self.entered()))
+        on(self.run, lambda: desk.command(Command.WIZARD_RUN))
+        on(self.stop, lambda: desk.command(Command.WIZARD_CLEAR))
         on(self.measure, lambda: desk.command(Command.WIZARD_MEASURE))
         on(self.apply, lambda: desk.command(Command.WIZARD_APPLY))
         on(self.clear, lambda: desk.command(Command.WIZARD_CLEAR))
@@ -140,14 +154,17 @@ def _facts(fitting: Fitting | None, locked: bool) -> list[tuple[str, str]]:
     return [
         ("In use", f"{fitting.tool.name}, {fitting.tool.mass:.3f} kg"),
         ("Tool centre point", _point(fitting.tool.tcp)),
-        ("Payload beyond it", f"{fitting.mass:.2f} kg"),
-        ("Together", f"{total:.2f} kg"),
+        ("Payload", f"{fitting.mass:.2f} kg"),
+        ("With the tool", f"{total:.2f} kg"),
         ("Now", state),
     ]
 
 
 def _told(wizard: Progress, measuring: bool) -> str:
     """How far the wizard is, and what to do next."""
+    if wizard.doing:
+        done = f"{wizard.postures} of {WANTED} postures measured"
+        return svg.note("The arm measures its payload", f"It {wizard.doing}. Hands off the arm.", Colour.BLUE, [done])
     if measuring:
         return svg.note(f"Measuring, {100.0 * wizard.share:.0f} %", "Hands off the arm.", Colour.BLUE)
     found = wizard.finding
@@ -159,10 +176,12 @@ def _told(wizard: Progress, measuring: bool) -> str:
             f"Sensor offset {', '.join(f'{value:.1f}' for value in found.force_offset)} N",
         ]
         headline = f"{found.mass:.2f} ± {found.mass_deviation:.2f} kg"
-        return svg.note(headline, "Apply it, or measure more postures.", Colour.GREEN, lines)
+        return svg.note(headline, "Take it, or measure again.", Colour.GREEN, lines)
     if wizard.reason:
         return svg.note("Not found yet", f"{wizard.reason}.", Colour.AMBER)
-    text = "Turn the wrist, let go, measure; then the next posture." if wizard.postures else "Let go of the arm and measure."
+    if not wizard.postures:
+        return svg.fine_print("The arm turns its wrist by itself, through six postures, where there is room for it.")
+    text = "Turn the wrist, let go, measure; then the next posture."
     return svg.note(f"{wizard.postures} of at least {LEAST} postures", text, Colour.GREY)
 
 

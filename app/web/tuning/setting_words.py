@@ -24,6 +24,7 @@ TITLES = {
     "unexplained": "Unintended motion, dropped payload",
     "soft": "Resistance before a limit",
     "axes": "Locked axes",
+    "joints": "Locked joints",
     "joint_limits": "Ends of the joints' ranges",
     "walls": "Virtual walls and areas",
     "haptics": "Haptic feedback",

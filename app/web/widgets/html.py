@@ -31,3 +31,11 @@ def enable(control: Any, enabled: bool) -> bool:
         return False
     control.disabled = not enabled
     return True
+
+
+def reveal(control: Any, visible: bool) -> bool:
+    """Let a control of viser be seen, or not; True if that changed anything."""
+    if control.visible == visible:
+        return False
+    control.visible = visible
+    return True

@@ -3,13 +3,31 @@
 import os
 import signal
 from collections.abc import Iterator
+from concurrent.futures import CancelledError
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from app.engine import dask_client
 from app.engine.source import identity
-from app.engine.spreading import guarded, spread
+from app.engine.spreading import Away, _Spreading, guarded, spread
 from app.files.bad_input import BadInput
+
+
+@pytest.fixture(scope="module", autouse=True)
+def workers_that_may_die_once() -> Iterator[None]:
+    """Dask gives work up when a second worker died of it: each takes seconds to come again. A cluster of these tests alone."""
+
+    def end() -> None:
+        for workers in list(dask_client._embedded):
+            dask_client.end_embedded(workers)
+
+    end()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(dask_client.CONFIG, "distributed.scheduler.allowed-failures", 1)
+        yield
+    end()
 
 
 def squared(number: int) -> tuple[int, int]:
@@ -81,3 +99,50 @@ def test_a_worker_that_came_later_and_runs_another_source_does_nothing() -> None
     with pytest.raises(BadInput, match=r"a worker: source = .*: expected c0ffee"):
         guarded({**identity(), "source": "c0ffee"}, done.append, 1)
     assert done == []
+
+
+class Answering:
+    """A future that raises when it is asked for its result."""
+
+    def __init__(self, status: str, error: Exception) -> None:
+        self.status, self._error = status, error
+
+    def result(self, timeout: float) -> object:
+        raise self._error
+
+
+@pytest.mark.parametrize("error", [TimeoutError(), CancelledError(), OSError("connection lost")])
+def test_a_result_that_does_not_come_is_no_error_of_the_work(error: Exception) -> None:
+    spreading = _Spreading.__new__(_Spreading)
+    with pytest.raises(Away):
+        spreading._result(Answering("finished", error), 1, None, 1)
+    with pytest.raises(type(error)):
+        spreading._result(Answering("error", error), 1, None, 1)  # the work raised it
+
+
+def test_a_result_that_is_late_is_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    late, ask = set[object](), _Spreading._result
+
+    def first_late(self: _Spreading, future: object, *more: Any) -> object:
+        if future not in late:
+            late.add(future)
+            raise Away
+        return ask(self, future, *more)
+
+    monkeypatch.setattr(_Spreading, "_result", first_late)
+    found = list(spread(squared, range(12), workers=2))
+    assert sorted((place, value) for place, (value, _) in found) == [(k, k * k) for k in range(12)]
+    assert len(late) == 12
+
+
+def test_a_cluster_whose_processes_ended_for_good_is_replaced() -> None:
+    """As Dask lets go of those that do not start again in time; without another cluster the work would wait for ever."""
+    list(spread(squared, [1, 2], workers=2))
+    cluster = dask_client._embedded[2]
+    for name in list(cluster.workers):
+        cluster.sync(cluster.workers.pop(name).close)
+    assert dask_client.crippled(2)
+    found = dict(spread(squared, range(8), workers=2))
+    assert [found[k][0] for k in range(8)] == [k * k for k in range(8)]
+    assert dask_client._embedded[2] is not cluster
+    assert not dask_client.crippled(2)

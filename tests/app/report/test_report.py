@@ -88,6 +88,32 @@ def test_what_ended_a_check_at_once_is_a_margin_too(log: Log) -> None:
     assert after == before
 
 
+def test_a_contact_is_timed_from_its_true_onset(log: Log) -> None:
+    """CD-16: the push begins and ends the only touch."""
+    touched = log.truth["touched"]
+    assert set(touched) == {0.0, 1.0}
+    begin, end = (float(log.t[1:][np.diff(touched) == way][0]) for way in (1.0, -1.0))
+    assert end - begin == pytest.approx(0.2)
+
+    def told(kind: str, t: float) -> EventLine:
+        return EventLine(tick=1, t=t, kind=kind, severity="NOTICE", headline="", guidance="", values={"steps": 3})
+
+    events = [
+        told("contact_gained", begin - 0.002),
+        told("contact_gained", begin),
+        told("contact_clamping", begin + 0.01),
+        told("contact_lost", begin + 0.1),
+        told("contact_lost", end + 0.004),
+        told("contact_resistance", end),
+    ]
+    log.events += events
+    summary = summarise(log)
+    text = page(summary, [])
+    del log.events[-len(events) :]
+    assert summary.onset_delays == [None, 0.0, pytest.approx(0.01), None, pytest.approx(0.004), None]
+    assert re.search(r"<td[^>]*>6</td><td[^>]*>10</td>", text)
+
+
 def test_a_stop_is_timed_until_the_arm_stands(log: Log, summary: Summary) -> None:
     (stop,) = summary.stops
     assert stop.time is not None

@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from numba.core.registry import CPUDispatcher
 
 import sim
+from app.api import run, session
 from app.files.checked import load
 from app.session.prepare import prepare
 from app.runs.runner import record
@@ -30,6 +31,10 @@ assert sum(before.values()) > 20, before
 for name in ("axis-locks", "program", "wall-resists", "felt", "touch-the-table"):
     with TemporaryDirectory() as out:
         record(load(find(name), Session), prepare(load(find(name), Session), name), Path(out))
+limits = "[0.1,0.1,0.03,0.2,0.2,0.2]"
+push = f"def push():\\n force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,-5,0,0,0], 2, {limits})\\n sleep(0.1)\\nend"
+simulated = run(session({"title": "push", "duration": 2.0, "timeline": [{"at": 0.5, "do": "script", "text": push}]}))
+assert simulated.passed, simulated
 print(sorted(name for name, count in compiled().items() if count != before[name]))
 """
 

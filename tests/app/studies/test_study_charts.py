@@ -1,5 +1,8 @@
+import math
+
 import numpy as np
 import pytest
+from matplotlib.collections import LineCollection, PolyCollection
 
 from app.report.drawing import svg_of
 from app.studies.study_charts import curves, heat_map, roc_chart, sensitivity, short
@@ -21,6 +24,25 @@ def test_a_band_reaches_from_low_to_high() -> None:
     axes = curves({"": points(1.0, 2.0)}, "x", "y", share=True).axes[0]
     box = axes.collections[0].get_paths()[0].get_extents()
     assert (box.ymin, box.ymax) == (25.0, 75.0)
+
+
+def test_intervals_of_many_lines_are_bars_side_by_side() -> None:
+    axes = curves({name: points(1.0, 2.0, 4.0) for name in "abcd"}, "x", "y", share=True).axes[0]
+    assert not any(isinstance(each, PolyCollection) for each in axes.collections), "bands hide each other"
+    bars = [each for each in axes.collections if isinstance(each, LineCollection)]
+    places = [bar.get_segments()[1][0][0] for bar in bars]
+    assert len(places) == 4
+    assert places == sorted(set(places)), "in the order of the lines, none above another"
+    assert np.mean(places) == pytest.approx(2.0)
+    assert places[-1] - places[0] < 0.6, "nearer to their value than to the next"
+    assert [tuple(y for _, y in bar.get_segments()[1]) for bar in bars] == [(25.0, 75.0)] * 4
+
+
+def test_bars_of_a_logarithmic_scale_keep_their_distance() -> None:
+    axes = curves({name: points(1.0, 100.0) for name in "abcd"}, "x", "y", share=False).axes[0]
+    bars = [each.get_segments() for each in axes.collections if isinstance(each, LineCollection)]
+    shifts = [[math.log(segment[0][0] / value) for segment, value in zip(bar, (1.0, 100.0), strict=True)] for bar in bars]
+    assert all(first == pytest.approx(second) for first, second in shifts)
 
 
 @pytest.mark.parametrize(("values", "scale"), [((1.0, 10.0), "linear"), ((1.0, 100.0), "log"), ((0.0, 100.0), "linear")])

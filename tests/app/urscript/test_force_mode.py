@@ -105,6 +105,39 @@ def test_the_frame_turns_so_that_its_y_points_to_its_origin() -> None:
     assert np.abs(way[:2]).max() < 5e-3
 
 
+@pytest.mark.parametrize(("damping", "least", "most"), [(0.0, 0.019, 0.021), (0.025, 0.004, 0.008), (1.0, 0.0, 1e-6)])
+def test_without_damping_the_tool_goes_on_and_with_all_of_it_it_stops_at_once(damping: float, least: float, most: float) -> None:
+    """Pushed to 20 mm/s with no damping. A tenth of a second without a force: it keeps that; or loses (1 - 0.025)**50 of it."""
+    arm = bench(block=False)
+    mode = "force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,{}], 2, [0.05,0.05,0.02,0.2,0.2,0.2])"
+    offered(
+        arm,
+        f" zero_ftsensor()\n sleep(1.5)\n force_mode_set_damping(0)\n {mode.format('-40,0,0,0')}\n sleep(0.5)\n"
+        f" force_mode_set_damping({damping})\n force_mode_set_gain_scaling(0)\n {mode.format('0,0,0,0')}\n sleep(1)",
+    )
+    arm.robot.step(1050)
+    speed = -float(arm.robot.cabinet.record.field("target_TCP_speed")[2])
+    assert least <= speed <= most
+    arm.robot.step(300)
+    assert -float(arm.robot.cabinet.record.field("target_TCP_speed")[2]) == pytest.approx(
+        0.02 if damping == 0.0 else 0.0, abs=1e-3
+    )
+
+
+@pytest.mark.parametrize("damping", [0.01, 0.025, 0.2])
+def test_a_damped_arm_settles_on_what_is_hard(damping: float) -> None:
+    arm = bench(block=True)
+    offered(arm, f" zero_ftsensor()\n sleep(1.5)\n force_mode_set_damping({damping})\n {DOWN}\n sleep(20)")
+    arm.robot.step(8000)
+    forces = []
+    for _ in range(20):
+        arm.robot.step(10)
+        forces.append(contact_force(arm.robot.simulation))
+    assert np.mean(forces) == pytest.approx(15.0, abs=1.5)
+    assert np.ptp(forces) < 3.0
+    assert arm.runner.trouble is None
+
+
 @pytest.mark.parametrize(("type_", "least", "most"), [(2, 0.049, 0.051), (3, 0.0, 0.01)])
 def test_the_frame_turns_with_the_tools_way(type_: int, least: float, most: float) -> None:
     """Its x is free. Turned to where the tool goes, that is the way of the motion, which does not count any more."""

@@ -1,5 +1,6 @@
 """Scripts move the arm: what the commands of the language do, from the text to the simulated joints."""
 
+import numpy as np
 import pytest
 
 from pendant.events.event import Kind
@@ -206,3 +207,29 @@ def test_two_threads_do_not_move_the_arm_at_once() -> None:
     _, trouble = told(THREADS.format(then="sync()"))
     assert trouble.endswith("another thread is controlling the robot")
     assert told(THREADS.format(then="kill h")) == ([1.0], "")
+
+
+PROCESS = """ p = get_target_tcp_pose()
+ movep(pose_trans(p, p[0.08,0,0,0,0,0]), a=1.2, v=0.1, r={r})
+ movep(pose_trans(p, p[0.08,0.08,0,0,0,0]), a=1.2, v=0.1, r={r})
+ movep(pose_trans(p, p[0,0.08,0,0,0,0]), a=1.2, v=0.1, r={r})
+ {last}(p, a=1.2, v=0.1)
+ textmsg(point_dist(get_target_tcp_pose(), p))"""
+
+
+@pytest.mark.parametrize(("last", "r", "slowest"), [("movep", 0.02, 0.098), ("movel", 0.02, 0.01), ("movep", 0.0, 0.0)])
+def test_lines_of_a_process_are_gone_at_one_speed(last: str, r: float, slowest: float) -> None:
+    """From script to reference: three corners of a square of 80 mm; the last line is left out where another kind of motion is."""
+    bench = begun(PROCESS.format(last=last, r=r))
+    speeds = []
+    bench.robot.step()
+    while bench.state is not None:
+        bench.robot.step()
+        speeds.append(float(np.linalg.norm(bench.robot.cabinet.record.field("target_TCP_speed")[:3])))
+        assert len(speeds) < 4000
+    moving = [k for k, speed in enumerate(speeds) if speed > 0.05]
+    whole = speeds[moving[0] + 50 : moving[-1] - 50]
+    assert bench.runner.trouble is None
+    assert float(bench.runner.told[-2].text) < 2e-4
+    assert max(whole) < 0.102
+    assert min(whole) == pytest.approx(0.0, abs=1e-3) if slowest == 0.0 else min(whole) > slowest

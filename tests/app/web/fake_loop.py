@@ -101,7 +101,8 @@ class FakeLoop:
         self.program = ProgramState.NONE
         self.step = 0  # of the program
         self.outputs: frozenset[int] = frozenset()
-        self.walls: tuple[WallState, ...] = ()
+        self.states: tuple[WallState, ...] = ()
+        self.borders: tuple[AnyBorder, ...] | None = None
         self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
         self.log: list[Event] = []
@@ -118,6 +119,11 @@ class FakeLoop:
     def tools(self) -> tuple[Tool, ...]:
         """The table: the scenario's until the test gives another."""
         return self.table or tuple(table(self.scenario))
+
+    @property
+    def walls(self) -> tuple[AnyBorder, ...]:
+        """The list: the scenario's until the test gives another."""
+        return tuple(self.scenario.walls) if self.borders is None else self.borders
 
     def advance(self, seconds: float = 0.002) -> None:
         """Let simulated time pass and read the desk once."""
@@ -152,7 +158,7 @@ class FakeLoop:
             zero_due=self.zero_due,
             locks=self.locks,
             singularity=self.singularity,
-            walls=self.walls,
+            walls=self.states,
             program=self.program,
             step=self.step,
             outputs=self.outputs,

@@ -44,10 +44,3 @@ def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
     assert near.acceleration_variance == pytest.approx(0.1**2)
     assert far.acceleration_variance == pytest.approx(0.1**2 + 2.0 / 3.0 * 0.12**2)
     assert far.noise_acceleration_sq == pytest.approx(18.0 * far.acceleration_variance)
-
-
-def test_a_link_has_its_own_thresholds() -> None:
-    on_link = limits(USE, Mode.RUN, mass=0.0, effective_mass=2.0, speed=0.0, link=True)
-    assert (on_link.slow_force, on_link.payload_margin) == (60.0, 20.0)
-    assert on_link.clamping == 24.0  # 4 kg beyond what a wrong model may explain
-    assert on_link.force_variance == pytest.approx(9.0)

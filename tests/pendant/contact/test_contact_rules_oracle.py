@@ -23,13 +23,13 @@ from pendant.contact.contact_rules import (
     OLD,
     RESTLESS,
     STEP,
-    P,
     clear,
     hard,
     slow,
     statistical,
 )
 from pendant.contact.history import History
+from pendant.contact.settings import BufferStatistic
 from pendant.tick.source_signal import Signal
 from tests.pendant.contacts import USE, limit
 
@@ -45,6 +45,13 @@ KINDS = [
     limit(msgspec.structs.replace(USE, angle=0.0), mass=0.5),
     limit(msgspec.structs.replace(USE, opposite=False)),
 ]
+
+MEDIANS = {"newest": 4, "oldest": 12, "statistic": BufferStatistic.MEDIAN}
+OTHER_BUFFERS = [
+    limit(msgspec.structs.replace(USE, force_step=5, acceleration_step=2, tested=3, window=40, **MEDIANS)),
+    limit(msgspec.structs.replace(USE, force_step=2, acceleration_step=4, tested=8, window=20, newest=15, oldest=50)),
+]
+"""What each rule looks at, other than as shipped."""
 
 
 def size(vectors: Array) -> Array:
@@ -81,19 +88,21 @@ def told(stream: list[Signal], rule: Callable[[History, ContactLimits], object],
     return said
 
 
-@pytest.mark.parametrize("limits", KINDS)
+@pytest.mark.parametrize("limits", [*KINDS, *OTHER_BUFFERS])
 def test_difference_and_ratio_in_space(limits: ContactLimits) -> None:
     """CD-4, CD-5, eq. 5 to 7."""
     rng, n = np.random.default_rng(1), 1500
     a = rng.normal(0.0, 0.5, (n, 3))
     f = -np.repeat(rng.uniform(-1.0, 2.5, (n // 30, 1)), 30, axis=0) * a + rng.normal(0.0, 0.4, (n, 3))
-    df, da = f[STEP:] - f[:-STEP], a[STEP:] - a[:-STEP]
+    i, j = limits.force_step, limits.acceleration_step
+    far = max(i, j)
+    df, da = (f[i:] - f[:-i])[far - i :], (a[j:] - a[:-j])[far - j :]
     sight = lie_against(df, da, limits) & (size(df) > limits.noise_force_sq**0.5) & (size(da) > limits.noise_acceleration_sq**0.5)
     difference = sight & (size(df) > limits.force_sq**0.5) & (size(da) > limits.acceleration_sq**0.5)
-    far = size(da) > limits.ratio_acceleration_sq**0.5
-    ratio = sight & far & (abs(along(df, da)) / size(da) ** 2 > limits.ratio)
+    large = size(da) > limits.ratio_acceleration_sq**0.5
+    ratio = sight & large & (abs(along(df, da)) / size(da) ** 2 > limits.ratio)
     expected = list(zip(difference.tolist(), ratio.tolist(), strict=True))
-    assert told(signals(BIAS + np.hstack([f, a])), hard, limits) == [(False, False)] * STEP + expected
+    assert told(signals(BIAS + np.hstack([f, a])), hard, limits) == [(False, False)] * far + expected
     assert {expected.count((one, other)) > 20 for one in (True, False) for other in (True, False)} == {True}
 
 
@@ -121,41 +130,43 @@ def test_a_clear_difference_in_space(limits: ContactLimits) -> None:
     assert 20 < expected.sum() < n - 20
 
 
-@pytest.mark.parametrize("limits", KINDS)
+@pytest.mark.parametrize("limits", [*KINDS, *OTHER_BUFFERS])
 def test_the_statistical_rule_in_space(limits: ContactLimits) -> None:
     """CD-6, eq. 9, 10: the newest five samples against the thirty before them; then CD-0's contact force."""
     rng, n = np.random.default_rng(3), 1200
     rows = jumps(rng, n, 40, limits.mass)
-    old = sliding_window_view(rows, OLD, axis=0)[:-NEW]
-    new = sliding_window_view(rows, NEW, axis=0)[OLD:].mean(axis=-1)
+    tested, window = limits.tested, limits.window
+    old = sliding_window_view(rows, window, axis=0)[:-tested]
+    new = sliding_window_view(rows, tested, axis=0)[window:].mean(axis=-1)
     df, da = np.hsplit(new - old.mean(axis=-1), 2)
     variances = old.var(axis=-1)
-    error = np.sqrt(limits.confidence_sq * (1.0 / NEW + 1.0 / OLD))
+    error = np.sqrt(limits.confidence_sq * (1.0 / tested + 1.0 / window))
     force = np.maximum(variances[:, :3].mean(axis=1), limits.force_variance)
     acceleration = np.maximum(variances[:, 3:].mean(axis=1), limits.acceleration_variance)
     expected = lie_against(df, da, limits) & (size(df) > error * np.sqrt(force))
     expected |= object_pushes(df, da, OBJECT * error * np.sqrt(force + limits.mass**2 * acceleration), limits)
     expected &= size(da) > error * np.sqrt(acceleration)
-    assert told(signals(rows), statistical, limits) == [False] * (OLD + NEW - 1) + expected.tolist()
+    assert told(signals(rows), statistical, limits) == [False] * (window + tested - 1) + expected.tolist()
     assert 30 < expected.sum() < n - 30
 
 
-@pytest.mark.parametrize("limits", KINDS)
+@pytest.mark.parametrize("limits", [*KINDS, *OTHER_BUFFERS])
 def test_the_slow_rule_in_space(limits: ContactLimits) -> None:
     """CD-7, CD-8, eq. 11 to 17: the newest mean against the stored ones, the youngest first."""
     rng, n = np.random.default_rng(4), 1500
     rows = jumps(rng, n, 25, limits.mass)
     expected = [(0, False)] * n
+    p, q, of = limits.newest, limits.oldest, np.median if limits.median else np.mean
     for lag in reversed(LAGS):
-        old = sliding_window_view(rows, MEAN, axis=0).mean(axis=-1)[: n - lag - MEAN + 1]
-        new = sliding_window_view(rows, P, axis=0).mean(axis=-1)[lag + MEAN - P :]
+        old = of(sliding_window_view(rows, q, axis=0), axis=-1)[: n - lag - q + 1]
+        new = of(sliding_window_view(rows, p, axis=0), axis=-1)[lag + q - p :]
         df, da = np.hsplit(new - old, 2)
         force, change = size(df - limits.mass * da), size(da)
         clamping = force > limits.clamping * change
         beyond = lie_against(df, da, limits) & (force >= limits.slow_force + limits.payload_margin * change)
         for k in np.flatnonzero((force >= limits.slow_force) & (clamping | beyond)).tolist():
             sightings = min(int(force[k] // limits.slow_force), 5)
-            expected[lag + MEAN - 1 + k] = (sightings, bool(clamping[k] and change[k] < DIED_OUT))
+            expected[lag + q - 1 + k] = (sightings, bool(clamping[k] and change[k] < DIED_OUT))
     assert told(signals(rows), slow, limits) == expected
     assert set(expected) >= {(count, False) for count in range(6)}
 

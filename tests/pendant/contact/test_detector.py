@@ -126,7 +126,7 @@ def test_what_it_reports_of_a_step_in_space(mass: float) -> None:
         assert tick - finding.steps == START
         assert finding.force == pytest.approx(push)
         assert finding.acceleration == pytest.approx(a)
-        assert finding.ratio == pytest.approx(np.dot(push + mass * a, a) / np.dot(a, a))
+        assert finding.ratio == pytest.approx(np.dot(push, a) / np.dot(a, a))
 
 
 def test_the_first_suspicious_sample_of_a_ramp_is_the_first_beyond_the_noise() -> None:
@@ -226,7 +226,9 @@ def test_a_change_of_a_contact_that_never_settles_is_judged_in_the_end() -> None
         if tick > 450 and finding is not None:
             break
     assert begun is not None
-    assert (tick - begun, finding.change) == (PATIENCE, Change.RESISTANCE)  # type: ignore[union-attr]
+    assert finding is not None
+    assert finding.change is Change.RESISTANCE
+    assert PATIENCE <= tick - begun <= PATIENCE + SETTLED  # as soon as it does not fall
 
 
 @pytest.mark.parametrize(("high", "change"), [(3, Change.LOST), (4, Change.RESISTANCE)])

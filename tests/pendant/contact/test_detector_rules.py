@@ -100,3 +100,18 @@ def test_a_contact_that_goes_as_it_listens_again_lasts_as_long() -> None:
         detector.step(only([Rule.DIFFERENCE] if tick <= end else []), limit())
         ticks += tick > end and detector.touching
     assert ticks == GONE - 1
+
+
+@pytest.mark.parametrize("older", range(4))
+def test_older_pairs_confirm_a_difference_in_the_tick_in_which_all_of_them_show_it(older: int) -> None:
+    """CD-9: the first tick of a run that shows it counts as the oldest pair; without older pairs ten in a row are needed."""
+    stream = signals(START + 20, push=ramp(START + 20, START, 5.0), noise=0.0)
+    use = msgspec.structs.replace(only([Rule.DIFFERENCE]), hard_count=10, older_pairs=older)
+    history, limits = History(), limit()
+    shows: list[bool] = []
+    for signal in stream:
+        history.push(signal)
+        shows.append(hard(history, limits).difference)
+    first = shows.index(True)
+    assert all(shows[first : first + 10])
+    assert found(stream, use)[0][0] == first + (older or 9)

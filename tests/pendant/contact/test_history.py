@@ -26,6 +26,7 @@ def test_a_mean_and_a_variance_are_those_of_the_samples(rows: list[list[float]],
     samples = np.array(rows[::-1][age : age + length])
     mean = history.mean(age, length)
     assert mean == pytest.approx(samples.mean(axis=0), abs=1e-9)
+    assert history.median(age, length) == pytest.approx(np.median(samples, axis=0))
     force, acceleration = history.variances(age, length, mean)
     assert force == pytest.approx(samples[:, :3].var(axis=0).mean(), abs=1e-7)
     assert acceleration == pytest.approx(samples[:, 3:].var(axis=0).mean(), abs=1e-7)

@@ -3,7 +3,7 @@
 import msgspec
 import pytest
 
-from pendant.equipment.tools import BARE, LONGEST, MOST, Equipment, Tool, difference, first_problem, table_problem, tool_problem
+from pendant.equipment.tools import BARE, LONGEST, MOST, Equipment, Tool, first_problem, table_problem, tool_problem
 
 GRIPPER = Tool(name="gripper", mass=0.925, com=[0.0, 0.0, 0.058], tcp=[0.0, 0.0, 0.163])
 
@@ -54,13 +54,3 @@ def test_a_table_has_an_end() -> None:
     many = [msgspec.structs.replace(GRIPPER, name=f"gripper {k}") for k in range(MOST + 1)]
     assert first_problem(many[:MOST], 5.0) is None
     assert first_problem(many, 5.0) == (50, ("name", "gripper 50", "at most 50 tools"))
-
-
-def test_what_was_done_to_a_table_is_said_in_words() -> None:
-    heavier = msgspec.structs.replace(GRIPPER, mass=1.0)
-    probe = msgspec.structs.replace(GRIPPER, name="probe")
-    assert difference([BARE], [BARE, GRIPPER]) == "gripper added"
-    assert difference([BARE, GRIPPER], [BARE, heavier]) == "gripper changed"
-    assert difference([BARE, GRIPPER], [BARE]) == "gripper deleted"
-    assert difference([BARE, GRIPPER], [heavier, probe]) == "1 added, 1 changed, 1 deleted"
-    assert difference([BARE, GRIPPER], [GRIPPER, BARE]) == "in another order"

@@ -7,6 +7,7 @@ from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
 from pendant.freedrive.activation import Activation
 from pendant.freedrive.gate import Gate
+from pendant.freedrive.periods import Remaining
 from pendant.guided.sensor_bias import SensorBias
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.validity import Stillness
@@ -268,3 +269,102 @@ def test_a_sequence_begins_with_its_walls_and_with_what_is_nobodys_at_the_sensor
     assert alone.activation.phase is Phase.SEQUENCE
     assert alone.walls.starts == [Start.ACTIVATION, Start.SEQUENCE]
     assert alone.zero.used is sensor
+
+
+WITHIN = {
+    "handshake__on": True,
+    "handshake__when": "within",
+    "handshake__delay": 0.02,
+    "handshake__feedback": 0.04,
+    "handshake__window": 1.0,
+    "activation__period": 0.0,
+    "sequence__period": 0.1,
+    "let_go__on": False,
+}
+"""In ticks: delay 10, feedback 20, window 500, sequence 50; an absence takes 100, and the answer lasts 100."""
+
+
+def kinds(events: list[Event]) -> list[Kind]:
+    return [event.kind for event in events]
+
+
+@pytest.mark.parametrize("begin", [101, 300, 499])
+def test_within_the_sequence_the_arm_is_free_when_the_answer_has_come(begin: int) -> None:
+    """FD-8: the robot asks after its delay; the period of the sequence has ended by then, and goes on."""
+    bench = Alone(**WITHIN)  # type: ignore[arg-type]
+    assert kinds(bench.step()) == [Kind.ACTIVATION_STARTED, Kind.SEQUENCE_STARTED]
+    assert bench.activation.remaining == Remaining("delay", 10, 10)
+    assert bench.run(9, NONE) == []
+    assert bench.activation.remaining == Remaining("delay", 1, 10)
+    assert kinds(bench.step(NONE)) == [Kind.CONFIRM_ASKED]
+    assert bench.activation.remaining == Remaining("feedback", 20, 20)
+    assert bench.run(20, NONE) == []
+    assert bench.activation.remaining == Remaining("confirmation", 500, 500)
+    assert bench.run(begin - 31, NONE) == []
+    assert bench.run(100, BUTTON) == []
+    assert bench.activation.phase is Phase.SEQUENCE
+    assert kinds(bench.step(BUTTON)) == [Kind.ENTERED]
+
+
+def test_within_the_sequence_the_answer_may_come_before_its_end() -> None:
+    """FD-8: then the period of the sequence decides."""
+    bench = Alone(**{**WITHIN, "sequence__period": 1.0})  # type: ignore[arg-type]
+    bench.step()
+    bench.run(130, NONE)
+    assert bench.run(101, BUTTON) == []
+    assert bench.activation.remaining == Remaining("sequence", 500 - 231, 500)
+    assert bench.run(500 - 232, NONE) == []
+    assert kinds(bench.step(NONE)) == [Kind.ENTERED]
+
+
+@pytest.mark.parametrize("answer", [NONE, PUSH])
+def test_within_the_sequence_no_answer_refuses(answer: Presence) -> None:
+    """FD-8: in the last tick of the window; what a hand that cannot be told from the free arm's motion does is none."""
+    bench = Alone(**{**WITHIN, "handshake__by": "button"})  # type: ignore[arg-type]
+    bench.step(Presence("digital input"))
+    assert kinds(bench.run(529, answer)) == [Kind.CONFIRM_ASKED]
+    (refused,) = bench.step(answer)
+    assert refused == Event(Kind.REFUSED_UNCONFIRMED, 530, {"source": "digital input", "limit": 1.0})
+
+
+def test_within_the_sequence_a_limit_refuses_as_ever() -> None:
+    """FD-10: also after the sequence's own period, while the answer is waited for."""
+    bench = Alone(**WITHIN)  # type: ignore[arg-type]
+    bench.step()
+    bench.run(200, NONE)
+    assert kinds(bench.step(NONE, estimate(qd=0.2))) == [Kind.ENTRY_PREVENTED, Kind.REFUSED_LIMIT]
+
+
+def test_within_the_sequence_the_robot_may_ask_at_once() -> None:
+    """FD-8: without a delay; a button that is held from before is no answer."""
+    bench = Alone(**{**WITHIN, "handshake__delay": 0.0})  # type: ignore[arg-type]
+    assert kinds(bench.step()) == [Kind.ACTIVATION_STARTED, Kind.SEQUENCE_STARTED, Kind.CONFIRM_ASKED]
+    assert kinds(bench.run(520, BUTTON)) == [Kind.REFUSED_UNCONFIRMED]
+
+
+def test_what_is_chosen_to_confirm_begins_nothing() -> None:
+    """FD-8."""
+    bench = Alone(handshake__on=True, handshake__by="button")  # type: ignore[arg-type]
+    assert bench.run(20, BUTTON) == []
+    assert bench.activation.phase is Phase.OFF
+    assert kinds(bench.step(PUSH)) == [Kind.SIGNAL_SEEN]
+
+
+@pytest.mark.parametrize("checked", [True, False])
+@pytest.mark.parametrize(("mode", "switches"), [(Mode.NORMAL, True), (Mode.RUN, True), (Mode.TEACH, False)])
+@pytest.mark.parametrize("guided", [True, False])
+def test_activation_switches_to_teach_first(mode: Mode, switches: bool, guided: bool, checked: bool) -> None:
+    """FD-1: not where a program asks for the hand."""
+    names = {f"free_drive__allowed_from__{name}": True for name in ("run", "teach_first")}
+    bench = Alone(activation__period=0.0, sequence__on=checked, **names)
+    events = bench.step(mode=mode, guided=guided)
+    switches = switches and not guided
+    assert kinds(events) == [
+        Kind.ACTIVATION_STARTED,
+        *[Kind.TEACH_FIRST] * switches,
+        Kind.SEQUENCE_STARTED if checked else Kind.ENTERED,
+    ]
+    if switches:
+        assert events[1].values == {"from": mode}
+    if not checked:
+        assert events[-1].values["from"] == (Mode.TEACH if switches else mode)

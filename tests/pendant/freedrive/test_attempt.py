@@ -3,7 +3,8 @@
 import pytest
 
 from pendant.all_settings import Settings, apply
-from pendant.freedrive.attempt import Attempt, Outcome
+from pendant.freedrive.attempt import CONFIRMING, Attempt, Outcome, reserved
+from pendant.signals.settings import ConfirmedBy
 from pendant.signals.sources import NONE, Presence
 from pendant.tick.modes import Phase
 
@@ -110,3 +111,55 @@ def test_a_tap_is_over_with_its_tick(feedback: int, new: bool, signal: Presence)
     assert attempt.phase is Phase.CONFIRM
     said = [attempt.step(signal, False, False) for _ in range(HOLD + 1)]
     assert said == [Outcome.GOES_ON] * HOLD + [Outcome.READY if new else Outcome.GOES_ON]
+
+
+ALL = sorted(set().union(*CONFIRMING.values()))
+
+
+@pytest.mark.parametrize("by", ConfirmedBy)
+@pytest.mark.parametrize("first", ["button", "push", "force step"])
+@pytest.mark.parametrize("second", [*ALL, "digital input", "tap"])
+def test_what_is_chosen_confirms(by: ConfirmedBy, first: str, second: str) -> None:
+    """FD-8: any that can, another than the first, or one kind; a confirmation by hand is let go of."""
+    chosen = {
+        "any": set(ALL),
+        "other": set(ALL) - {first},
+        "button": {"button", "presses in a row"},
+        "push": {"push"},
+        "twist": {"twist"},
+        "joints": {"push felt by joints"},
+        "pattern": {"pushes in a row"},
+        "turn": {"turned joint"},
+        "posture": {"posture", "series of postures"},
+    }[by]
+    settings = apply(Settings(), {"handshake.on": True, "activation.period": 0.0, "handshake.by": by.value})
+    attempt = Attempt(Presence(first), settings)
+    assert attempt.first() is Outcome.CONFIRM
+    course = [(250, NONE), (HOLD, Presence(second)), (1, Presence(second))]
+    said = [attempt.step(signal, False, False) for count, signal in course for _ in range(count)]
+    assert said[:-1] == [Outcome.GOES_ON] * (250 + HOLD)
+    assert (said[-1] is Outcome.READY) is (second in chosen)
+
+
+@pytest.mark.parametrize("by", ConfirmedBy)
+@pytest.mark.parametrize("on", [True, False])
+def test_what_is_chosen_to_confirm_does_not_begin(by: ConfirmedBy, on: bool) -> None:
+    """FD-8."""
+    settings = apply(Settings(), {"handshake.on": on, "handshake.by": by.value})
+    kept = {source for source in [*ALL, "digital input"] if reserved(Presence(source), settings)}
+    assert kept == (CONFIRMING[by] if on and by in CONFIRMING else set())
+
+
+@pytest.mark.parametrize(("delay", "count"), [(0.0, 0), (0.002, 1), (0.5, 250), (5.0, 2500)])
+def test_the_robot_asks_after_a_delay(delay: float, count: int) -> None:
+    """FD-8: what comes meanwhile does not count, to the tick; then the feedback of 0.5 s begins."""
+    names = {"handshake.on": True, "handshake.delay": delay, "activation.period": 0.02}
+    attempt = Attempt(BUTTON, apply(Settings(), names))
+    attempt.first()
+    said = [attempt.step(BUTTON, False, False) for _ in range(10)]
+    assert said == [Outcome.GOES_ON] * 9 + [Outcome.GOES_ON if count else Outcome.CONFIRM]
+    assert attempt.phase is (Phase.DELAY if count else Phase.FEEDBACK)
+    assert (attempt.left, attempt.total) == ((count, count) if count else (250, 250))
+    said = [attempt.step(BUTTON, False, False) for _ in range(count)]
+    assert said == [Outcome.GOES_ON] * (count - 1) + [Outcome.CONFIRM] * (count > 0)
+    assert (attempt.phase, attempt.left, attempt.total) == (Phase.FEEDBACK, 250, 250)

@@ -4,8 +4,9 @@ import pytest
 
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
-from pendant.freedrive.origins import may_enter, origins
+from pendant.freedrive.origins import may_enter, origins, teach_first
 from pendant.inputs import Command, Inputs
+from pendant.program.steps import Program, ProgramState, Wait
 from pendant.tick.modes import Mode
 from tests.pendant.freedrive.test_state_machine import HOLD, LET_GO, Bench
 
@@ -78,3 +79,34 @@ def test_a_sequence_that_the_remote_controller_began_ends_with_its_control() -> 
     bench.events.clear()
     bench.step(Inputs(commands=(Command.TEACH,), remote_signal=True))
     assert Kind.REFUSED_MODE in {event.kind for event in bench.events}
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.parametrize("on", [True, False])
+@pytest.mark.parametrize("teach", [True, False])
+@pytest.mark.parametrize("normal", [True, False])
+def test_with_a_switch_to_teach_normal_counts_as_teach(mode: Mode, on: bool, teach: bool, normal: bool) -> None:
+    """FD-1."""
+    names = {"teach_first": on, "teach": teach, "normal": normal}
+    settings = apply(Settings(), {f"free_drive.allowed_from.{name}": value for name, value in names.items()})
+    assert teach_first(mode, settings) is (on and teach and mode in (Mode.NORMAL, Mode.RUN))
+    expected = {Mode.TEACH: teach, Mode.NORMAL: normal or (on and teach)}
+    assert may_enter(mode, "button", settings) is expected.get(mode, False)
+
+
+def test_a_program_is_given_up_for_teach_and_free_drive_leads_back_there() -> None:
+    """FD-1: a paused one, too."""
+    for paused in (False, True):
+        bench = Bench(free_drive__allowed_from__run=True, free_drive__allowed_from__teach_first=True, free_drive__period=0.5)
+        bench.run(60)
+        bench.step(Inputs(program=Program(steps=(Wait(duration=60.0),))))
+        bench.step(Inputs(commands=(Command.START_PROGRAM,)))
+        if paused:
+            bench.step(Inputs(commands=(Command.PAUSE_PROGRAM,)))
+        bench.run(60)
+        bench.events.clear()
+        assert bench.run(501, HOLD).mode is Mode.FREE_DRIVE
+        assert [event.kind for event in bench.events[1:]] == [Kind.TEACH_FIRST, Kind.PROGRAM_STOPPED, Kind.ENTERED]
+        assert bench.last.program is ProgramState.STOPPED
+        bench.step(LET_GO)
+        assert bench.run(260).mode is Mode.TEACH

@@ -21,7 +21,7 @@ HOLD = Inputs(held=frozenset({Button.FREE_DRIVE}))
 LET_GO = Inputs(released=frozenset({Button.FREE_DRIVE}))
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
 
-BY_HAND = {Phase.FEEDBACK, Phase.CONFIRM, Phase.LET_GO}
+BY_HAND = {Phase.DELAY, Phase.FEEDBACK, Phase.CONFIRM, Phase.LET_GO}
 """Phases that test_attempt.py is about."""
 
 

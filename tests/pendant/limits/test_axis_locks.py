@@ -8,7 +8,7 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.limits.axis_locks import AXES, PRESETS, axis_locks, freeing
+from pendant.limits.axis_locks import AXES, JOINTS, PRESETS, axis_locks, freeing, freeing_joints, with_joints
 from pendant.limits.nearness import Nearness
 from pendant.limits.settings import AxisSettings, LockFrame
 from pendant.supervisor import Supervisor
@@ -37,6 +37,31 @@ def test_a_preset_becomes_settings_and_those_locks(name: str) -> None:
 def test_switched_off_nothing_is_locked() -> None:
     assert axis_locks(AxisSettings(x=False)) is not None
     assert axis_locks(AxisSettings(x=False, on=False)) is None
+
+
+def test_locked_joints_become_locks_alone_or_with_axes() -> None:
+    settings = apply(Settings(), freeing_joints(frozenset({2}), 6))
+    alone = with_joints(None, settings.joints)
+    assert alone is not None
+    assert (alone.locked, alone.near) == ((False,) * 6, 0.0)
+    assert alone.joints == (True, True, False, True, True, True, *(False,) * 6)
+    axes = axis_locks(AxisSettings(x=False))
+    assert axes is not None
+    assert with_joints(axes, settings.joints) == axes._replace(joints=alone.joints)
+    assert with_joints(axes, apply(settings, {"joints.on": False}).joints) is axes
+    assert with_joints(None, apply(settings, freeing_joints(frozenset(range(6)), 6)).joints) is None
+    assert len(JOINTS) == len(set(JOINTS)) == 12
+
+
+def test_locked_joints_are_published_in_free_drive_whatever_a_script_locks() -> None:
+    robot = Robot()
+    decision = robot.step(Inputs(settings={"joints.j3": False}))
+    assert decision.mode is Mode.FREE_DRIVE
+    locks = robot.step().locks
+    assert locks is not None
+    assert locks.joints[2] is True
+    robot.step(Inputs(settings={"joints.j3": True}))
+    assert robot.step().locks is None
 
 
 def test_the_frame_is_turned_by_roll_pitch_yaw() -> None:

@@ -40,6 +40,7 @@ def test_sizes(seed: int) -> None:
     start, angles = rng.normal(size=3), rng.normal(size=6)
     since = EntryValues(tuple(start), ZEROS, (0.0,) * 6, tuple(angles))
     fastest, quickest, furthest = (int(np.abs(each).argmax()) for each in (value.qd, value.qdd, value.q - angles))
+    value.current = rng.normal(size=6)
     strained = int((np.abs(value.tau_m) / RATED).argmax())
     expected = {
         "flange_displacement": (np.linalg.norm(value.p_BF - start), "flange"),
@@ -51,6 +52,7 @@ def test_sizes(seed: int) -> None:
         "joint_speed": (abs(value.qd[fastest]), JOINTS[fastest]),
         "joint_acceleration": (abs(value.qdd[quickest]), JOINTS[quickest]),
         "motor_torque": (abs(value.tau_m[strained]), JOINTS[strained]),
+        "motor_current": (np.abs(value.current).max(), JOINTS[int(np.abs(value.current).argmax())]),
         "payload_force": (value.F_user[2], "flange"),
         "payload_torque": (math.hypot(*value.F_user[3:5]), "flange"),
         "user_force": (math.hypot(*value.F_user[:2]), "flange"),

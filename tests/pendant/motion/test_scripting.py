@@ -11,11 +11,11 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.motion.script_requests import (
     ForceMode,
+    GentleStop,
     Guided,
     Scripted,
     ScriptedJoints,
     ScriptedMove,
-    ScriptedStop,
     ServoJoints,
     SpeedJoints,
     SpeedTool,
@@ -240,4 +240,4 @@ def test_servo_commands_keep_to_the_ranges_of_the_manual(name: str, value: float
 
 
 def test_a_stop_of_a_script_is_as_hard_as_the_arm_can_unless_it_says_so() -> None:
-    assert ScriptedStop().deceleration == math.inf
+    assert GentleStop().deceleration == math.inf

@@ -15,11 +15,13 @@ from pendant.program.reaction import REACTION_SPEED, Until, goal
 from pendant.program.steps import (
     AnyStep,
     ContactMove,
+    GentleStop,
     JointMove,
     LinearMove,
     Program,
     ProgramState,
     SwitchTool,
+    Tell,
     Wait,
     WaitForContact,
 )
@@ -345,3 +347,40 @@ def test_a_move_until_contact_has_its_distance_and_speed_to_the_ends_of_their_ra
     for value in beyond:
         with pytest.raises(msgspec.ValidationError, match=field):
             msgspec.convert({"kind": "until_contact", field: value}, ContactMove)
+
+
+@pytest.mark.parametrize(
+    ("how", "deceleration"), [({"within": 0.05}, 0.2 * 3.141592653589793), ({"time": 1.0}, 0.1 * 3.141592653589793)]
+)
+def test_a_gentle_stop_is_followed_until_the_arm_rests(how: dict[str, float], deceleration: float) -> None:
+    """CD-15: at 0.2 m/s; then the step is done."""
+    move = LinearMove(position=DOWN.position, quaternion=DOWN.quaternion, until=Until(**how))  # type: ignore[arg-type]
+    bench, told = running(move, NEXT)
+    moving = estimate(qd=0.3, v_tcp=0.2)
+    bench.run(20, value=moving)
+    told.coming = iter((GAINED,))
+    decision = bench.step(value=moving)
+    stop = decision.move
+    assert isinstance(stop, GentleStop)
+    assert (decision.law, decision.mode, stop.of) == (Law.FOLLOW, Mode.RUN, "tool")
+    assert stop.deceleration == pytest.approx(deceleration)
+    told.coming = iter((GAINED,))
+    assert bench.run(100, value=moving).move is stop
+    assert bench.run(49).move is stop
+    bench.step()
+    assert isinstance(bench.last.move, JointMove)
+    assert bench.last.move.id > stop.id
+
+
+def test_a_step_tells_the_user_once() -> None:
+    """CD-15: in its own tick, which it takes."""
+    bench, _ = running(Wait(duration=0.02), Tell(text="Hello"), Tell(text="again", tone=False), Wait(duration=1.0))
+    bench.run(20)
+    events = [event for event in bench.events if event.kind is Kind.PROGRAM_TELLS]
+    assert [event.values for event in events] == [
+        {"name": "program", "text": "Hello", "tone": True},
+        {"name": "program", "text": "again", "tone": False},
+    ]
+    assert events[1].tick == events[0].tick + 1
+    assert render(events[0]) == ("Hello", "Program program.")
+    assert bench.last.signs == 1

@@ -18,6 +18,7 @@ from pendant.program.steps import (
     ProgramState,
     SetOutput,
     SwitchTool,
+    Tell,
     Wait,
     WaitForInput,
     misfit,
@@ -113,6 +114,7 @@ def test_a_wait_that_is_left_out_after_a_pause_lasts_a_tick() -> None:
         (JointMove(q=(0.0,) * 6, when=InputLevel(input=0)), False),
         (SetOutput(output=1, on=True), False),
         (SwitchTool(on=True), False),
+        (Tell(text="t"), False),
         (WaitForInput(level=InputLevel(input=0)), False),
     ],
 )
@@ -121,7 +123,7 @@ def test_a_program_that_repeats_takes_time(step: AnyStep, lasts: bool, repeat: i
     reason = misfit(Program(steps=(SetOutput(output=0, on=True), step), repeat=repeat), 6)
     assert (reason is None) is lasts
     assert misfit(Program(steps=(step,)), 6) is None
-    assert set(INSTANT) == {SwitchTool, SetOutput, WaitForInput}
+    assert set(INSTANT) == {SwitchTool, SetOutput, Tell, WaitForInput}
 
 
 @pytest.mark.parametrize(

@@ -87,3 +87,41 @@ def test_a_rotation_back_into_its_quaternion(wxyz: tuple[float, float, float, fl
     same = sum(a * b for a, b in zip(back, wxyz, strict=True)) / size
     assert abs(same) == pytest.approx(1.0, abs=1e-12)
     assert math.hypot(*back) == pytest.approx(1.0)
+
+
+def test_after_a_contact_straight_to_a_place() -> None:
+    """CD-15: the tool stays turned as it is."""
+    there = goal(Until(then="position", position=(0.1, 0.2, 0.4)), contact(), begun=BEGUN, now=NOW)
+    assert there is not None
+    assert (there.q, there.position) == ((), (0.1, 0.2, 0.4))
+    assert there.quaternion == pytest.approx((1.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"then": "position"}, "position: it goes with"),
+        ({"position": (0.1, 0.2, 0.3)}, "position: it goes with"),
+        ({"within": 0.1, "time": 0.1}, "one of them says how the arm stops"),
+    ],
+)
+def test_what_does_not_go_together_is_refused(values: dict[str, object], says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        Until(**values)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("until", "speed", "time"),
+    [
+        (Until(within=0.05), 0.2, 0.5),  # half a cosine: the way is half of speed times time
+        (Until(within=0.05), 0.1, 1.0),
+        (Until(time=0.4), 0.2, 0.4),
+        (Until(time=0.4), 0.0, 0.4),
+        (Until(), 0.2, 0.0),
+        (Until(within=0.05), 0.0, 0.0),
+    ],
+)
+def test_a_gentle_stop_brakes_as_its_way_or_its_time_asks_for(until: Until, speed: float, time: float) -> None:
+    """CD-15: the peak of half a cosine's deceleration is pi/2 of its mean."""
+    expected = math.inf if time == 0.0 else 0.5 * math.pi * speed / time
+    assert until.deceleration(speed) == pytest.approx(expected)

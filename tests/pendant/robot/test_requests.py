@@ -8,7 +8,7 @@ from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import ProgramState
 from pendant.robot.requests import Calls
 from pendant.settings.schema import Value
-from pendant.signals.sources import BUTTON, DIGITAL, NONE, REMOTE_CONTROLLER, Presence
+from pendant.signals.sources import BUTTON, DIGITAL, NONE, PRESSES, REMOTE_CONTROLLER, Presence
 from tests.pendant.estimates import estimate
 from tests.pendant.telling import whole
 
@@ -203,3 +203,32 @@ def test_the_remote_controllers_level_is_a_signal_unless_button_or_input_give_on
     assert bench.step(inputs=asks, button=True)[0] is BUTTON
     assert bench.step(inputs=Inputs(high=frozenset({bench.settings.signals.digital_input}), remote_signal=True))[0] is DIGITAL
     assert bench.step()[0] is NONE
+
+
+@pytest.mark.parametrize("of", ["button", "input"])
+@pytest.mark.parametrize("pressed", ["button", "input"])
+@pytest.mark.parametrize("on", [True, False])
+def test_presses_in_a_row_are_a_signal_of_what_is_chosen(of: str, pressed: str, on: bool) -> None:
+    """FD-5f: three of 0.1 s, with gaps of 0.1 s; whole when the last one has ended."""
+    bench = Bench(presses__on=on, presses__of=of, button=False, digital_input=3.0)
+    seen: list[int] = []
+    for tick in range(400):
+        down = tick // 50 in (1, 3, 5)
+        high = Inputs(high=frozenset({3})) if down and pressed == "input" else NOTHING
+        signal, _, _ = bench.step(inputs=high, button=down and pressed == "button")
+        assert signal in (NONE, PRESSES)
+        seen += [tick] if signal is PRESSES else []
+    assert seen == ([300] if on and of == pressed else [])
+
+
+def test_presses_that_were_begun_before_the_source_was_off_count_no_more() -> None:
+    """FD-5f."""
+    bench = Bench(presses__on=True, button=False)
+    for switched in (False, True):
+        signals: list[Presence] = []
+        for tick in range(350):
+            if switched and tick == 260:
+                bench.calls.refresh(Settings())
+                bench.calls.refresh(bench.settings)
+            signals.append(bench.step(button=tick // 50 in (1, 3, 5))[0])
+        assert (PRESSES in signals) is not switched

@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from pendant.signals.gestures import PatternSignal, StepSignal, TapSignal, TurnSignal
+from pendant.signals.gestures import PatternSignal, PostureSignal, StepSignal, TapSignal, TurnSignal
 from pendant.signals.push_signal import PushSignal, TwistSignal
-from pendant.signals.settings import ForceStep, PushPattern, PushSettings, TapSettings, Turn, Twist
+from pendant.signals.settings import ForceStep, PostureSignalUse, PushPattern, PushSettings, TapSettings, Turn, Twist
 from pendant.tick.pose import UNTURNED, flat
 
 SHORT, LONG = 40, 140
@@ -171,3 +171,73 @@ def test_a_push_passes_its_place_within_the_radius() -> None:
 
 def test_before_the_first_tick_no_signal_is_present() -> None:
     assert (StepSignal().present, TurnSignal().present) == (False, False)
+
+
+REST, FIRST, SECOND, BOTH = (0.0, 0.0), (0.02, 0.0), (0.0, -0.02), (0.02, -0.02)
+"""Angles of two joints: neither turned, the first to its side, the second to its, both."""
+
+SERIES = PostureSignalUse(count=2, joint_1=1, angle_1=0.01, joint_2=2, angle_2=-0.01, within=0.2)
+POSTURE = PostureSignalUse(together=True, count=2, joint_1=1, angle_1=0.01, joint_2=2, angle_2=-0.01)
+
+
+def postured(use: PostureSignalUse, *course: tuple[int, tuple[float, ...]], holding: bool = True) -> list[int]:
+    """Ticks in which the signal is there; the arm is held in angles of 0 before."""
+    signal = PostureSignal()
+    angles = [angle for count, angle in ((1, REST), *course) for _ in range(count)]
+    return [tick for tick, each in enumerate(angles) if signal.step(each, holding, use)]
+
+
+@pytest.mark.parametrize(
+    ("course", "at"),
+    [
+        ([(10, FIRST), (10, SECOND)], [11]),
+        ([(10, FIRST), (10, BOTH)], [11]),  # the first need not be back
+        ([(10, FIRST), (90, REST), (10, SECOND)], [101]),  # 0.2 s are 100 ticks
+        ([(10, FIRST), (91, REST), (10, SECOND)], []),
+        ([(10, SECOND), (10, FIRST)], []),  # in their order
+        ([(10, SECOND), (10, BOTH), (10, SECOND)], []),
+        ([(10, BOTH)], []),  # not at once
+        ([(10, (0.01, 0.0)), (10, SECOND)], []),  # beyond the angle
+        ([(10, (-0.02, 0.0)), (10, SECOND)], []),  # to its side
+        ([(10, FIRST), (10, (0.0, 0.02))], []),
+        ([(10, FIRST), (10, SECOND), (10, FIRST), (10, SECOND)], [11]),  # it must be back before another one
+        ([(10, FIRST), (10, SECOND), (1, REST), (10, FIRST), (10, SECOND)], [11, 32]),
+        ([(10, FIRST), (10, SECOND), (1, (0.005, 0.0)), (10, FIRST), (10, SECOND)], [11]),
+        ([(10, SECOND), (1, REST), (10, FIRST), (10, SECOND)], [22]),
+    ],
+)
+def test_a_series_of_postures_is_in_its_order_and_in_time(course: list[tuple[int, tuple[float, ...]]], at: list[int]) -> None:
+    """FD-5g: whole in the tick in which the last joint is turned."""
+    assert postured(SERIES, *course) == at
+    assert postured(SERIES, *course, holding=False) == []
+
+
+def test_a_posture_is_there_while_every_joint_is_turned() -> None:
+    """FD-5g."""
+    assert postured(POSTURE, (3, FIRST), (2, BOTH), (3, SECOND), (1, BOTH)) == [4, 5, 9]
+    assert postured(POSTURE, (3, (0.02, -0.01)), (3, (0.01, -0.02))) == []
+
+
+def test_a_series_has_as_many_joints_as_it_counts() -> None:
+    """FD-5g: three, and one joint may come twice; one of 0 rad is never turned."""
+    to_and_fro = PostureSignalUse(count=3, joint_1=1, angle_1=0.01, joint_2=1, angle_2=-0.01, joint_3=2, angle_3=-0.01)
+    assert postured(to_and_fro, (5, FIRST), (5, (-0.02, 0.0)), (5, SECOND)) == [11]
+    assert postured(PostureSignalUse(count=1, joint_1=1, angle_1=0.01), (5, FIRST)) == [1]
+    assert postured(PostureSignalUse(count=1, joint_1=1, angle_1=0.0), (5, FIRST), (5, BOTH)) == []
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_an_arm_without_the_joint_gives_no_series(count: int) -> None:
+    """FD-5g."""
+    use = PostureSignalUse(count=count, joint_1=1, angle_1=0.01, joint_2=3, angle_2=0.01)
+    assert postured(use, (5, FIRST), (5, SECOND)) == ([1] if count == 1 else [])
+
+
+def test_a_hand_is_felt_in_a_joint_that_is_turned_and_what_was_held_is_where_the_hold_began() -> None:
+    """FD-8a."""
+    signal = PostureSignal()
+    seen: list[bool] = []
+    for angles, holding in ((REST, True), (FIRST, True), (REST, True), (FIRST, False), (FIRST, True), (REST, True)):
+        signal.step(angles, holding, SERIES)
+        seen.append(signal.touched)
+    assert seen == [False, True, False, False, False, False]

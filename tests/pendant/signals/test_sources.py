@@ -51,6 +51,10 @@ COURSES: dict[str, tuple[Course, Presence]] = {
     "joints.on": ([(60, {"tau_ext": 9.0})], Presence("push felt by joints", by_hand=True)),
     "pattern.on": ([(60, {"force": 25.0}), (60, {})] * 2, Presence("pushes in a row", by_hand=True, whole=True)),
     "turn.on": ([(60, TURNED)], Presence("turned joint", by_hand=True)),
+    "posture.on": (
+        [(60, TURNED), (60, {"q": [0.0] * 4 + [0.01, 0.0]})],
+        Presence("series of postures", by_hand=True, whole=True),
+    ),
     "force_step.on": ([(60, {"force": 20.0})], Presence("force step", by_hand=True)),
     "tap.on": ([(10, {"acceleration": 8.0}), (60, {})], Presence("tap", by_hand=True, whole=True)),
 }

@@ -111,5 +111,11 @@ def test_only_what_is_known_is_left_out() -> None:
             for line in node.body if isinstance(node, ast.ClassDef) else []:
                 if isinstance(line, ast.Assign) and ast.unparse(line.targets[0]) == "NOT_STATE":
                     found[node.name] = list(ast.literal_eval(line.value))
-    buffers = ["detectors", "_poses", "_kept", "_limits", "_keys", "_use", "_on_links", "_used"]
-    assert found == {"ContactMonitor": buffers, "Barrier": ["_field"], "Anchor": ["_decide"]}
+    buffers = ["detectors", "links", "_poses", "_kept", "_limits", "_keys"]
+    assert found == {
+        "ContactMonitor": buffers,
+        "OperatingSensitivity": ["_given"],
+        "Equipping": ["_shape", "_room"],
+        "Barrier": ["_field"],
+        "Anchor": ["_decide"],
+    }

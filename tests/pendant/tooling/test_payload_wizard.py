@@ -9,7 +9,7 @@ from pendant.equipment.load import Load
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
 from pendant.tick.estimate import Estimate
-from pendant.tooling.payload_wizard import IDLE, MOST, UNSTEADY, PayloadWizard
+from pendant.tooling.payload_wizard import IDLE, MOST, UNSTEADY, PayloadWizard, Progress
 from tests.pendant.estimates import estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 from tests.pendant.telling import whole
@@ -129,7 +129,7 @@ def test_a_measurement_lasts_its_ticks_and_shows_how_far_it_is() -> None:
         assert wizard.left
         wizard.step(value, "", ())
     assert (seen, wizard.left) == ([0.0, 0.25, 0.5, 0.75], False)
-    assert wizard.progress == (1, 0.0, None, "")
+    assert wizard.progress == Progress(postures=1)
 
 
 @pytest.mark.parametrize("length", [2, 5])

@@ -400,10 +400,10 @@ def test_the_frame_of_the_tool_is_told_to_walls_and_programs() -> None:
     robot = Robot()
     bent = msgspec.structs.replace(GRIPPER, rpy=[0.0, 0.0, math.pi / 2.0])
     robot.supervisor = Supervisor(Settings(), 6, equipment=EQUIPMENT._replace(tools=(BARE, bent)))
-    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor._containment.R_FT):
+    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor.containment.R_FT):
         assert turn == pytest.approx(UNTURNED)
     robot.step(Inputs(tool="gripper"))
-    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor._containment.R_FT):
+    for turn in (robot.supervisor._sequencer.R_FT, robot.supervisor.containment.R_FT):
         assert turn == pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 
 
@@ -414,7 +414,7 @@ def test_the_table_is_told_and_the_tool_in_use_takes_effect() -> None:
     assert robot.supervisor.tools == (turned, HOOK)
     assert robot.last.fitting is not None
     assert robot.last.fitting.tool is turned
-    R_FT = robot.supervisor._containment.R_FT
+    R_FT = robot.supervisor.containment.R_FT
     assert pytest.approx((0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)) == R_FT
 
 

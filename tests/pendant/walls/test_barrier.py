@@ -129,3 +129,35 @@ def test_who_pays_for_the_motion_takes_a_wall_along_without_any_force_at_the_fla
     wall = Wall(name="w", shape=BALL, policy=Policy.STEPWISE, safety_period=0.1)
     barrier, seen = Barrier(wall, Stage.OPERATION), msgspec.structs.replace(around(), led=led)
     assert [tick for tick in range(1, 121) if barrier.step(seen).anchored] == ([50, 100] if led else [])
+
+
+@pytest.mark.parametrize("axis", AXES)
+@pytest.mark.parametrize(
+    ("depth", "force"), [(0.021, 0.0), (0.02, 0.0), (0.015, 10.0), (0.01, 20.0), (0.0, 40.0), (-0.005, 60.0), (-0.1, 150.0)]
+)
+def test_a_wall_that_pushes_pushes_a_part_at_rest_the_harder_the_nearer(axis: Vector, depth: float, force: float) -> None:
+    """VW-7: 40 N at the border, none where the band of 20 mm begins; beyond it 4000 N/m besides, at most 150 N."""
+    area = Area(name="a", shape=HalfSpace(normal=axis), band=0.02, push=40.0)
+    barrier = Barrier(area, Stage.OPERATION)
+    barrier.step(around(scaled(axis, -0.1)))
+    assert barrier.step(around(scaled(axis, -depth))).force == pytest.approx(scaled(axis, -force))
+    checked = Barrier(area, Stage.ACTIVATION)
+    checked.step(around(scaled(axis, -0.1)))
+    assert checked.step(around(scaled(axis, -depth))).force == ORIGIN
+
+
+def test_a_push_adds_to_the_resistance_and_is_part_of_the_most() -> None:
+    """VW-7: half-way 20 N, and 0.5 * 200 N·s/m at 0.1 m/s; at most `force`."""
+    for most, force in ((150.0, 30.0), (25.0, 25.0)):
+        area = Area(name="a", shape=HalfSpace(normal=(1.0, 0.0, 0.0)), band=0.02, push=40.0, force=most)
+        barrier = Barrier(area, Stage.OPERATION)
+        barrier.step(around((-0.1, 0.0, 0.0)))
+        assert barrier.step(around((-0.01, 0.0, 0.0), (0.1, 0.0, 0.0))).force == pytest.approx((-force, 0.0, 0.0))
+
+
+def test_a_part_that_begins_outside_is_not_pushed() -> None:
+    """VW-10: neither there nor where it has come in."""
+    area = Area(name="a", shape=HalfSpace(normal=(1.0, 0.0, 0.0)), band=0.02, push=40.0)
+    barrier = Barrier(area, Stage.OPERATION)
+    assert barrier.step(around((0.05, 0.0, 0.0))).force == pytest.approx(ORIGIN)
+    assert barrier.step(around((0.04, 0.0, 0.0))).force == pytest.approx(ORIGIN)

@@ -3,18 +3,21 @@
 import math
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
-from pendant.inputs import NOTHING, Button, Inputs
+from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.settings.bounds import MOST_WALLS
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import HERE, Pose, from_rpy, turned
 from pendant.tick.state import state_of
+from pendant.walls.barrier import Place
 from pendant.walls.containment import NOBODY, Containment, WallState, _measures, facts, tether
 from pendant.walls.definitions import AnyBorder, Area, Dependence, Measure, Policy, Start, Wall, problem
 from pendant.walls.settings import Reaction, WallSettings
@@ -407,6 +410,10 @@ def test_the_way_back_is_told_in_axes_of_the_base(outward: tuple[float, float, f
     assert facts(reading)["distance"] == pytest.approx(1000.0 * (0.3 * math.sqrt(x * x + y * y + z * z) - 0.2))
 
 
+def places(bench: "Bench") -> tuple[tuple[AnyBorder, Place], ...]:
+    return bench.supervisor.containment.every_place(bench.supervisor.settings.walls)
+
+
 def test_pictures_know_where_areas_will_hold_and_where_walls_do() -> None:
     frames = {"world": HERE, "cart": Pose((0.4, 0.1, 0.2), from_rpy(0.0, 0.0, math.pi / 2))}
     size = Dependence(measure=Measure.REACH, low=-1.0, high=1.0, at_low=0.5, at_high=2.0)
@@ -417,23 +424,23 @@ def test_pictures_know_where_areas_will_hold_and_where_walls_do() -> None:
     wall = Wall(name="round it", shape=Sphere(radius=0.2), policy=Policy.FIXED)
     bench = Bench(cart, held, wall, frames=frames, walls__tether=False)
     bench.step()
-    ((border, place),) = bench.supervisor.places  # what lies in a part of the arm, or round it, has no place of its own
+    ((border, place),) = places(bench)  # what lies in a part of the arm, or round it, has no place of its own
     assert border is cart
     assert place.pose.p == pytest.approx((0.4, 0.2, 0.2))  # 0.1 along the cart's x, which is the base's y
     assert turned(place.pose.R, (1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.0), abs=1e-12)
     assert place.factor == 0.5
     bench.run(60)
     bench.run(30, HOLD)  # in the activation period it does not hold yet
-    assert [border.name for border, _ in bench.supervisor.places] == ["cart"]
+    assert [border.name for border, _ in places(bench)] == ["cart"]
     bench.entered()
-    assert [border.name for border, _ in bench.supervisor.places] == ["cart", "held", "round it"]
-    assert bench.supervisor.places[0][1].factor == pytest.approx(1.25)  # the flange is at the origin
+    assert [border.name for border, _ in places(bench)] == ["cart", "held", "round it"]
+    assert places(bench)[0][1].factor == pytest.approx(1.25)  # the flange is at the origin
 
 
 def test_areas_that_are_switched_off_have_no_place() -> None:
     bench = Bench(FLOOR, walls__on=False)
     bench.step()
-    assert bench.supervisor.places == ()
+    assert places(bench) == ()
 
 
 def test_sizes_follow_reach_and_height_along_gravity() -> None:
@@ -442,3 +449,55 @@ def test_sizes_follow_reach_and_height_along_gravity() -> None:
     value.g_B = GRAVITY * np.array([0.0, -0.6, -0.8])
     measures = {Measure.REACH: 1.3, Measure.HEIGHT: -0.24 + 0.96, Measure.PAYLOAD: 1.5}
     assert _measures(value) == pytest.approx(measures)
+
+
+NEAR = msgspec.structs.replace(FLOOR, name="near", position=(0.0, 0.0, -0.05))
+ODD = [
+    ((FLOOR, FLOOR), "'floor' is given twice"),
+    ((msgspec.structs.replace(FLOOR, name="tether"),), "'tether' is the name"),
+    ((msgspec.structs.replace(FLOOR, part="nose"),), "floor.part: 'nose' is unknown"),
+    ((msgspec.structs.replace(FLOOR, reference="moon"),), "floor.reference: 'moon' is unknown"),
+    (tuple(msgspec.structs.replace(FLOOR, name=f"{k}") for k in range(MOST_WALLS + 1)), "41 are too many"),
+]
+
+
+def test_another_list_of_walls_holds_from_the_next_free_drive_on() -> None:
+    bench = Bench(FLOOR)
+    bench.step(Inputs(borders=(FLOOR,)))  # nothing new
+    assert bench.kinds() == []
+    bench.step(Inputs(borders=(FLOOR, NEAR)))
+    assert bench.events[-1].values == {"change": "near added", "count": 2}
+    bench.entered()
+    assert [wall.name for wall in bench.step().walls] == ["tether", "floor", "near"]
+    bench.step(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)))
+    bench.step(Inputs(borders=()))
+    assert bench.events[-1].values == {"change": "2 deleted", "count": 0}
+
+
+@pytest.mark.parametrize(("borders", "why"), ODD)
+def test_a_list_that_does_not_fit_is_refused_whole(borders: tuple[AnyBorder, ...], why: str) -> None:
+    bench = Bench(FLOOR)
+    bench.step(Inputs(borders=borders))
+    assert bench.kinds() == [Kind.WALLS_REFUSED]
+    assert why in str(bench.events[-1].values["reason"])
+    assert bench.supervisor.containment.borders == (FLOOR,)
+
+
+def test_no_wall_changes_while_the_arm_is_free_or_about_to_be() -> None:
+    bench = Bench(FLOOR)
+    bench.trying()
+    bench.step(Inputs(borders=()))
+    assert bench.events[-1].values == {"reason": "no change of a wall in the activation of free-drive"}
+    bench.run(501, LET_GO)
+    bench.step(Inputs(borders=(NEAR,)))
+    assert bench.events[-1].values == {"reason": "no change of a wall in FREE_DRIVE"}
+    assert bench.supervisor.containment.borders == (FLOOR,)
+
+
+def test_a_wall_that_is_off_is_remembered_and_does_not_hold() -> None:
+    off = msgspec.structs.replace(FLOOR, on=False)
+    bench = Bench(off)
+    bench.entered()
+    assert [wall.name for wall in bench.step().walls] == ["tether"]
+    assert bench.step(NOTHING, at(0.0, 0.0, -0.02)).mode is Mode.FREE_DRIVE
+    assert (off, off.position) in [(border, place.pose.p) for border, place in places(bench)]

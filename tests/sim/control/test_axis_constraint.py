@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pendant.all_settings import Settings, apply
 from pendant.inputs import Inputs
-from pendant.limits.axis_locks import AXES, PRESETS, AxisLocks, freeing
+from pendant.limits.axis_locks import AXES, PRESETS, AxisLocks, freeing, freeing_joints
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import UNTURNED, from_rpy
 from sim.arm.frames import matrix_from_quaternion, rotation
@@ -31,8 +31,9 @@ FLANGE = tuple(MODEL.update(HOME)[1].ravel().tolist())
 FRAME = from_rpy(0.3, -0.4, 1.2)
 
 
-def locks(*free: str, tool: bool = False, R_BU: tuple[float, ...] = FRAME) -> AxisLocks:
-    return AxisLocks(tuple(axis not in free for axis in AXES), tool, R_BU, 0.04, 0.01)  # type: ignore[arg-type]
+def locks(*free: str, tool: bool = False, R_BU: tuple[float, ...] = FRAME, joints: tuple[int, ...] = ()) -> AxisLocks:
+    held = tuple(k in joints for k in range(12))
+    return AxisLocks(tuple(axis not in free for axis in AXES), tool, R_BU, 0.04, 0.01, held)  # type: ignore[arg-type]
 
 
 class Held:
@@ -242,6 +243,54 @@ def test_in_a_plane_the_tool_keeps_height_and_tilt() -> None:
 def test_what_is_locked_holds_against_a_push_of_50_newtons() -> None:
     ways = guided({"x", "y", "rx", "ry", "rz"}, (0.0, 0.0, -50.0))
     assert np.abs(ways[:, 2]).max() < 15.0
+
+
+def test_a_locked_joint_is_held_like_a_rotor_that_holds_still() -> None:
+    """K = J w²: 0.01 rad at a rotor of 0.6 kg·m² and 12 Hz are 34 N·m, less what HEAVIEST softens; the others feel nothing."""
+    held = Held(locks(*AXES, joints=(1,)))
+    turn = np.array([0.0, 0.01, 0.0, 0.0, 0.0, 0.0])
+    held.at(HOME + turn, qd=turn / TICK)
+    held.torque  # noqa: B018 - the spring is loaded on the way out
+    torque = held.at(HOME + turn + 0.3 * np.eye(N)[3]).torque
+    expected = np.zeros(N)
+    expected[1] = -0.01 * (2.0 * math.pi * 12.0) ** 2 / (1.0 / ROTOR[1] + 1.0 / HEAVIEST)
+    np.testing.assert_allclose(torque, expected, rtol=1e-9)
+    assert -34.0 < torque[1] < -33.0
+    assert MOST * RATED[1] > 60.0 > abs(torque[1])
+
+
+def test_what_the_hand_asks_of_a_locked_joint_is_taken_away() -> None:
+    held = Held(locks(*AXES, joints=(0, 1, 3, 4, 5)))
+    asked, torque = np.full(N, 8.0), np.full(N, 8.0)
+    held.module.project(asked, 1.0, torque)
+    np.testing.assert_allclose(asked[[0, 1, 3, 4, 5]], 0.0, atol=0.1)  # but for what HEAVIEST leaves
+    assert asked[2] == torque[2] == 8.0
+
+
+def test_axes_and_joints_together_hold_and_stay_bounded() -> None:
+    """A joint and a way that are both locked ask for what the others can give; a tool held by six axes and six joints, too."""
+    for held in (Held(locks("x", "y", "rx", "ry", "rz", joints=(0, 5))), Held(locks(joints=tuple(range(N))))):
+        rng = np.random.default_rng(3)
+        for _ in range(50):
+            torque = held.at(HOME + 0.02 * rng.normal(size=N), rng.normal(size=N)).torque
+            assert np.isfinite(torque).all()
+            assert (np.abs(torque) <= MOST * RATED * (1.0 + 1e-9)).all()
+
+
+def test_only_the_elbow_turns_where_it_alone_is_free() -> None:
+    """40 N across the forearm turn the elbow far; the other joints keep within a degree."""
+    bench = Bench(Scenario(seed=5), settings=apply(Settings(), {"activation.period": 0.1, "free_drive.period": 30.0}))
+    bench.enter()
+    bench.tick(Wishes(Inputs(settings=freeing_joints(frozenset({2}), N)), (), ()))
+    bench.run(0.05)
+    start = bench.plant.q.copy()
+    for k in range(750):
+        share = min(k / 50.0, 1.0)
+        bench.run(TICK, push("flange", (0.0, 0.0, 25.0 * share)))
+    turned = np.degrees(np.abs(bench.plant.q - start))
+    assert bench.mode is Mode.FREE_DRIVE
+    assert turned[2] > 15.0
+    assert np.delete(turned, 2).max() < 1.0
 
 
 @pytest.mark.parametrize("posture", [[0.0, -1.2, 1.5, -1.87, -0.05, 0.0], [0.0, -1.57, 0.1, -1.57, -1.57, 0.0]])

@@ -180,3 +180,25 @@ def test_a_lower_share_of_the_speed_and_reduced_are_kept() -> None:
     for limits, share, most in ((None, 0.5, 0.15), (SpeedLimits(0.1, 0.1, 1.0), 1.0, 0.1)):
         places = np.array([tool(row.q)[0] for row in play(tool_stream(move), 500, limits, share)])
         assert 0.8 * most < np.linalg.norm(np.diff(places[300:], axis=0), axis=1).max() / TICK <= 1.01 * most
+
+
+def test_on_the_way_to_another_pose_the_speed_stays_and_the_way_is_a_circle() -> None:
+    p, R = tool(HOME)
+    first, second = (
+        ServoTool(position=tuple(np.add(p, way)), quaternion=tuple(quaternion_from_matrix(R)), speed=0.1, acceleration=0.5)
+        for way in ([0.0, 0.2, 0.0], [0.0, 0.1, 0.1])
+    )
+    stream = tool_stream(first)
+    rows = play(stream, 300)
+    turning = tool(rows[-1].q)[0]
+    stream.renew(second)
+    rows += play(stream, 1500)
+    places = np.array([tool(row.q)[0] for row in rows])
+    moving = np.linalg.norm(np.diff(places[280:], axis=0), axis=1) / TICK
+    slow = np.linalg.norm(places[280:-1] - second.position, axis=1) < 0.025  # it slows down to stand there
+    assert moving[~slow] == pytest.approx(0.1, rel=0.02)
+    assert np.linalg.norm(places[-1] - second.position) < 1e-3
+    radius = 0.1**2 / 0.5  # of the circle, which begins where the pose was given
+    centre = np.add(turning, [0.0, 0.0, radius])
+    arc = places[302:330]
+    assert np.linalg.norm(arc - centre, axis=1) == pytest.approx(radius, abs=1e-3)

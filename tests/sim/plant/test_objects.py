@@ -7,7 +7,7 @@ import pytest
 from sim.arm.chain import Body, chain, plate_body, tool_body
 from sim.arm.scenario import AnyObject, BoxObject, Moving, Pad, Plane, Scenario, SnapFit, ToolModel, TwoFrictions
 from sim.plant.model import Step
-from sim.plant.objects import DAMPING_RATIO
+from sim.plant.objects import DAMPING_RATIO, DEPTH, SKIN
 from sim.plant.touch import Push
 from sim.plant.true_arm import Plant
 from sim.rigid_body.dynamics import Dynamics
@@ -240,3 +240,28 @@ def test_a_moving_object_follows_its_sine() -> None:
         expected = np.array([1.0, 1.0 + 0.2 * np.sin(np.pi * time), 1.0])
         mujoco.mj_kinematics(plant.model, plant.data)
         assert np.allclose(plant.object_poses()[0, :3], expected, atol=1e-4)
+
+
+def test_the_tool_touches_the_arms_own_links_where_that_is_asked_for() -> None:
+    """CD-2: foot, shoulder, upper arm and forearm, as stiff as a housing; as shipped, and without a world, nothing collides."""
+    assert Plant(UR5E, Scenario(tool=PROBE)).model.npair == 0
+    model = Plant(UR5E, Scenario(tool=PROBE, self_contact=True, world=[below(0.1, Pad)])).model
+    own = [k for k in range(model.npair) if model.pair(k).name.startswith("itself ")]
+    links = {model.body(model.geom_bodyid[model.pair_geom2[k]]).name for k in own}
+    links |= {model.body(model.geom_bodyid[model.pair_geom1[k]]).name for k in own}
+    assert links == {"foot", "base", "shoulder", "elbow", "flange"}
+    for k in own:
+        bodies = model.geom_bodyid[[model.pair_geom1[k], model.pair_geom2[k]]]
+        assert model.pair_solref[k, 0] == pytest.approx(-SKIN * model.body_invweight0[bodies, 0].sum() * (1 - DEPTH))
+
+
+def test_an_arm_that_begins_inside_itself_says_so() -> None:
+    """The probe is turned towards the upper arm, in whose plane it lies."""
+    found = set[str]()
+    for angle in np.linspace(-6.0, 0.0, 25):
+        try:
+            Plant(UR5E, Scenario(posture=[0.0, -1.2, 2.2, angle, -1.57, 0.0], tool=PROBE, self_contact=True))
+            found.add("")
+        except ValueError as error:
+            found.add(str(error).partition(" mm ")[2])
+    assert found == {"", "inside itself"}

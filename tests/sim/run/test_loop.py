@@ -18,6 +18,8 @@ from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.inputs import Button, Command, Inputs
 from pendant.tick.modes import Law, Mode, Phase, Safety
+from pendant.walls.definitions import Area
+from pendant.walls.shapes import Sphere
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
 from sim.run.loop import DEBT, LONGEST_REASON, SNAPSHOT_TICKS, Loop
@@ -44,6 +46,7 @@ class Ticker:
     def __init__(self, during: Callable[[int], None] = lambda tick: None) -> None:
         self.plant = SimpleNamespace(tick=0)
         self.scenario = Scenario(seed=42)
+        self.walls: tuple[Area, ...] = ()
         self.wishes: list[Wishes] = []
         self._during = during
 
@@ -274,6 +277,20 @@ def test_a_reset_starts_anew_and_lets_go_of_everything(running: Callable[..., Lo
     assert now.truth_links.tobytes() == start.tobytes()
     assert len(loop.events(0)) == told, "what happened before stays; nothing held or commanded came over"
     assert loop.events(told) == []
+
+
+def test_a_reset_takes_no_wall_away_and_another_simulation_brings_its_own(running: Callable[..., Loop]) -> None:
+    floor = Area(name="floor", shape=Sphere(radius=0.5))
+    loop = running(lambda: Simulation(UR5E, Scenario(), Settings()))
+    loop.desk.fence((floor,))
+    until(lambda: loop.walls == (floor,))
+    until(lambda: loop.latest().tick > 20)
+    loop.reset()
+    until(lambda: loop.latest().tick < 20)
+    until(lambda: loop.walls == (floor,))
+    loop.begin(lambda: Simulation(UR5E, Scenario(), Settings()))
+    until(lambda: loop.walls == ())
+    assert [event.kind for event in loop.events(0)].count(Kind.WALLS_CHANGED) == 2
 
 
 def test_the_simulation_before_a_reset_is_gone_with_it(running: Callable[..., Loop]) -> None:

@@ -18,7 +18,18 @@ from app.web.access import message_gate as gate_module
 from app.web.access.door import MAX_CLIENTS
 from app.web.access.guard import VISER_VERSION
 from app.web.access.message_gate import MAX_BYTES, MessageGate
-from app.web.access.messages import Camera, CommandTrigger, Drag, HoldMessage, Update, Upload, UploadPart
+from app.web.access.messages import (
+    Camera,
+    CommandTrigger,
+    Drag,
+    HandlesLetGo,
+    HandlesMoved,
+    HandlesTaken,
+    HoldMessage,
+    Update,
+    Upload,
+    UploadPart,
+)
 from app.web.server import Served
 from pendant.inputs import Button, Command
 from sim.plant.touch import Pull
@@ -62,6 +73,9 @@ def heard(app: Served, client: RawClient) -> list[dict[str, Any]]:
     return client.messages_until(lambda m: m["type"] == "SetGuiPanelLabelMessage" and m["label"] == "mark")
 
 
+OURS = (Camera, Update, HoldMessage, CommandTrigger, Drag, HandlesMoved, HandlesTaken, HandlesLetGo, Upload, UploadPart)
+
+
 def test_viser_is_the_version_that_the_guard_knows() -> None:
     assert viser.__version__ == VISER_VERSION
 
@@ -73,7 +87,7 @@ def test_viser_handles_the_messages_that_the_guard_knows(served: Served, join: J
     assert {message.__name__ for message in own} - HANDLED == {"ViewerCameraMessage"}
 
 
-@pytest.mark.parametrize("ours", [Camera, Update, HoldMessage, CommandTrigger, Drag, Upload, UploadPart])
+@pytest.mark.parametrize("ours", OURS)
 def test_admitted_messages_have_the_fields_of_visers(ours: Any) -> None:
     theirs = getattr(wire, ours.__struct_config__.tag)
     assert list(ours.__struct_fields__) == [field.name for field in fields(theirs)]
@@ -170,7 +184,7 @@ def test_only_the_hold_button_at_its_rate_is_held(served: Served, join: Join, na
 def others() -> dict[str, Any]:
     """All messages that viser, and what is built on it, know and a client may not send, by name."""
     known = {message.__name__: message for message in wire.Message.get_subclasses() if is_dataclass(message)}
-    ours = {message.__struct_config__.tag for message in (Camera, Update, HoldMessage, CommandTrigger, Drag, Upload, UploadPart)}
+    ours = {message.__struct_config__.tag for message in OURS}
     return {name: message for name, message in sorted(known.items()) if name not in ours}
 
 

@@ -169,14 +169,14 @@ def test_the_wall_that_the_arm_is_nearest_to_is_told(loop: FakeLoop, still: Serv
     def wall(name: str, distance: float, near: float = 0.0) -> WallState:
         return WallState(name, "elbow", (0.0, 0.0, 0.0), distance, (1.0, 0.0, 0.0), near, distance > 0.0, (0.0, 0.0, 0.0))
 
-    loop.walls = (wall("<b>", -0.123), wall("far", -0.5), wall("tether", -0.03))
+    loop.states = (wall("<b>", -0.123), wall("far", -0.5), wall("tether", -0.03))
     still.panel.show(loop.latest(), [])
     assert "<dt>&lt;b&gt;, elbow</dt><dd>123 mm left</dd>" in still.panel.numbers.shown
     assert "tether" not in still.panel.numbers.shown
-    loop.walls = (wall("tether", -0.003, 0.5), wall("far", 0.012, 1.0))
+    loop.states = (wall("tether", -0.003, 0.5), wall("far", 0.012, 1.0))
     still.panel.show(loop.latest(), [])
     assert "<dt>far, elbow</dt><dd>12 mm beyond</dd>" in still.panel.numbers.shown
-    loop.walls = loop.walls[:1]
+    loop.states = loop.states[:1]
     still.panel.show(loop.latest(), [])
     assert "<dt>tether, elbow</dt><dd>3 mm left</dd>" in still.panel.numbers.shown
 

@@ -25,7 +25,7 @@ def state(name: str, distance: float = -0.05, near: float = 0.0, force: float = 
 
 
 def shown(loop: FakeLoop, still: Served, border: AnyBorder, place: Place = AT, *states: WallState) -> DrawnWall:
-    loop.places, loop.walls = ((border, place),), states
+    loop.places, loop.states = ((border, place),), states
     still.scene.walls.show(loop.latest())
     return still.scene.walls._drawn[border.name]
 
@@ -100,7 +100,7 @@ def test_nothing_is_sent_while_nothing_changes_and_walls_that_are_gone_are_taken
     assert shown(loop, still, again, AT, state("ball")) is first
     other = shown(loop, still, Wall(name="ball", shape=Sphere(radius=0.2)), AT, state("ball"))
     assert other is not first
-    loop.places = loop.walls = ()
+    loop.places = loop.states = ()
     assert still.scene.walls.show(loop.latest())
     assert still.scene.walls._drawn == {}
     assert not still.scene.walls.show(loop.latest())

@@ -9,6 +9,7 @@ from app.web.tabs.settings_tab import BASIC, VIEWS
 from app.web.tuning.presets import as_file, from_file, presets
 from app.web.tuning.setting_words import CHANGED, SAFETY, SECTIONS, section_of, title_of
 from pendant.all_settings import Settings, apply, describe, limits_checksum
+from pendant.limits.axis_locks import JOINTS
 from pendant.tick.modes import Mode
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -38,6 +39,10 @@ def choose(served: Served, client: RawClient, section: str) -> None:
     until(lambda: tab.controls and all(name.startswith(f"{section}.") for name in tab.controls), f"section {section}")
 
 
+HERE = [row for row in describe() if row.name not in {f"joints.{name}" for name in JOINTS[6:]}]
+"""The settings that an arm of six joints has."""
+
+
 def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: Served, join: Join) -> None:
     client = join()
     tab = served.docks.settings
@@ -45,17 +50,18 @@ def test_every_setting_is_in_a_section_and_has_a_control_with_its_range(served: 
     seen: set[str] = set()
     for section in (*SECTIONS[1:], SECTIONS[0]):
         choose(served, client, section)
-        for row in describe():
+        for row in HERE:
             if section_of(row) == section:
                 control = tab.controls[row.name]
                 seen.add(row.name)
                 assert control.value == row.default
                 assert row.low is None or (control.min, control.max) == (row.low, row.high)
         hints = "".join(control.hint for control in tab.controls.values())
-        assert all(row.id in hints for row in describe() if section_of(row) == section)
+        assert all(row.id in hints for row in HERE if section_of(row) == section)
         texts = "".join(text.shown for text in tab._texts.values())
         assert not any(row.id in texts for row in describe())
-    assert seen == {row.name for row in describe()}
+    assert seen == {row.name for row in HERE}
+    assert {row.name for row in describe()} - seen == {f"joints.j{number}" for number in range(7, 13)}, "this arm has six"
 
 
 def test_the_basic_settings_are_shown_and_what_was_changed(served: Served, join: Join, loop: FakeLoop) -> None:

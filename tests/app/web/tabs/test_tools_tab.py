@@ -78,7 +78,7 @@ def test_a_watcher_changes_nothing(served: Served, join: Join, loop: FakeLoop) -
 
 def test_the_wizard_says_what_to_do_and_what_it_found(served: Served, join: Join, loop: FakeLoop) -> None:
     client, tab = join(), served.docks.tools
-    until(lambda: "0 of at least 4 postures" in tab.progress.shown, "nothing yet")
+    until(lambda: "turns its wrist by itself" in tab.progress.shown, "nothing yet")
     assert tab.apply.disabled
     assert tab.clear.disabled
     client.set(tab.measure._impl.uuid, value=True)
@@ -95,6 +95,24 @@ def test_the_wizard_says_what_to_do_and_what_it_found(served: Served, join: Join
     until(lambda: loop.advance() is None and Command.WIZARD_APPLY in loop.wishes[-1].inputs.commands, "applied")
     client.set(tab.clear._impl.uuid, value=True)
     until(lambda: loop.advance() is None and Command.WIZARD_CLEAR in loop.wishes[-1].inputs.commands, "cleared")
+
+
+def test_the_arm_measures_by_itself_on_one_button(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, tab = join(), served.docks.tools
+    equip(loop)
+    until(lambda: not tab.run.disabled and not tab.stop.visible, "ready")
+    client.set(tab.run._impl.uuid, value=True)
+    until(lambda: loop.advance() is None and Command.WIZARD_RUN in loop.wishes[-1].inputs.commands, "asked")
+    loop.wizard = Progress(2, 0.0, doing="turns the wrist")
+    until(lambda: tab.stop.visible and tab.run.disabled and tab.use.disabled and tab.enter.disabled, "it turns")
+    until(lambda: "It turns the wrist. Hands off the arm." in tab.progress.shown, "said")
+    assert "2 of 6 postures measured" in tab.progress.shown
+    client.set(tab.stop._impl.uuid, value=True)
+    until(lambda: loop.advance() is None and Command.WIZARD_CLEAR in loop.wishes[-1].inputs.commands, "stopped")
+    loop.wizard = Progress(6, 0.0, FOUND, doing="turns the wrist back")
+    until(lambda: "back" in tab.progress.shown and tab.apply.disabled, "not to be taken yet")
+    loop.wizard = Progress(6, 0.0, FOUND)
+    until(lambda: not tab.apply.disabled and not tab.stop.visible and not tab.run.disabled, "done")
 
 
 def test_a_change_shows_how_far_it_is(served: Served, join: Join, loop: FakeLoop) -> None:

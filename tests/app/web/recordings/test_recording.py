@@ -97,3 +97,48 @@ def test_recording_from_the_start_needs_a_folder(loop: FakeLoop, tmp_path: Path,
     finally:
         app.close()
     assert loop.watch is None
+
+
+def recorded(client: RawClient, served: Served, loop: FakeLoop) -> str:
+    """A file of some ticks."""
+    switch, simulation = served.docks.recording.switch, loop.simulation
+    client.set(switch._impl.uuid, value=True)
+    until(lambda: loop.watch is not None, "it is on")
+    for _ in range(300):
+        loop.watch(simulation, simulation.tick(loop.desk.take()))
+    client.set(switch._impl.uuid, value=False)
+    until(lambda: served.recording.path is not None and not served.recording.writing, "it is whole")
+    assert served.recording.path is not None
+    return served.recording.path.name
+
+
+def test_a_recording_is_replayed_beside_the_running_arm(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, replay = join(), served.docks.recording.replay
+    assert replay.play.disabled
+    assert replay.download.disabled
+    name = recorded(client, served, loop)
+    until(lambda: replay.choice.value == name and not replay.play.disabled, "it is offered")
+    assert not replay.line.visible
+    client.set(replay.play._impl.uuid, value=True)
+    until(lambda: replay.ghost.posture is not None, "it is shown", seconds=20.0)
+    until(lambda: replay.line.visible and replay.line.max == pytest.approx(0.6, abs=0.01), "with its time line")
+    until(lambda: "Replay: the violet arm" in replay.said.shown, "said")
+    until(lambda: replay.play.label == "Replay" and replay.line.value == replay.line.max, "to its end")
+    client.set(replay.line._impl.uuid, value=0.2)
+    until(lambda: replay.play.label == "Go on", "a place in time")
+    client.set(replay.speed._impl.uuid, value="0.1 ×")
+    client.set(replay.play._impl.uuid, value=True)
+    until(lambda: replay.play.label == "Pause" and 0.2 < replay.line.value < 0.6, "slowly on")
+    client.set(replay.leave._impl.uuid, value=True)
+    until(lambda: replay.ghost.posture is None and not replay.line.visible, "over")
+
+
+def test_what_cannot_be_replayed_says_why(served: Served, join: Join, tmp_path: Path) -> None:
+    client, replay = join(), served.docks.recording.replay
+    (tmp_path / "broken.mcap").write_bytes(b"no recording")
+    until(lambda: replay.choice.value == "broken.mcap" and not replay.play.disabled, "it is offered", seconds=10.0)
+    client.set(replay.play._impl.uuid, value=True)
+    until(lambda: "Not opened" in replay.said.shown and "broken.mcap" in replay.said.shown, "why not")
+    (tmp_path / "broken.mcap").unlink()
+    client.set(replay.download._impl.uuid, value=True)
+    until(lambda: "cannot be read" in replay.said.shown, "gone")

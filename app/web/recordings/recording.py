@@ -1,21 +1,28 @@
-"""The switch that records what the page shows, the name of the file, and the export of the demonstrations in it."""
+"""The tab Record: the switch that records what the page shows, replay of what was recorded, export of its demonstrations."""
 
 import viser
 
 from app.learning.exporting import Exporting
 from app.log.live import LiveRecording
+from app.web.recordings.replay_controls import ReplayControls
+from app.web.recordings.shelf import Shelf
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
+from sim.arm.arm_file import Arm
+from sim.exchange.snapshot import Snapshot
 
 
 class RecordingSwitch:
     """The tab with the switch and what it says."""
 
-    def __init__(self, gui: viser.GuiApi, recording: LiveRecording) -> None:
+    def __init__(self, server: viser.ViserServer, recording: LiveRecording, arm: Arm) -> None:
+        gui = server.gui
         self._recording = recording
-        self.switch = gui.add_checkbox("Record", recording.on, hint="Into a file that pendant replay and Foxglove open.")
+        self._wrote = ""
+        self.switch = gui.add_checkbox("Record", recording.on, hint="Into a file that can be replayed here, and by Foxglove")
         self.status = Html(gui)
+        self.replay = ReplayControls(server, arm, Shelf(recording.folder, arm.name), busy=lambda: recording.writing)
         self.export = gui.add_button(
             "Export demonstrations", disabled=True, hint="Of the last recording: each way that a hand led the arm, for LeRobot."
         )
@@ -32,15 +39,18 @@ class RecordingSwitch:
             if self.switch.value != recording.on:
                 (recording.start if self.switch.value else recording.stop)()
 
-    def show(self) -> bool:
-        """Bring switch and words up to date; True if anything changed."""
+    def show(self, snapshot: Snapshot) -> bool:
+        """Bring switch, words and replay up to date; True if anything changed."""
         recording = self._recording
+        if recording.writing != self._wrote:
+            self._wrote = recording.writing
+            self.replay.look()
         ended = self.switch.value and not recording.on  # by itself
         if ended:
             self.switch.value = False
         possible = recording.path is not None and not recording.on and not self._exporting.on
         words = self.status.show(self._words()), self.exported.show(self._export_words())
-        return any([*words, enable(self.export, possible), ended])
+        return any([*words, enable(self.export, possible), ended, self.replay.show(snapshot)])
 
     def close(self) -> None:
         """End an export that runs."""

@@ -1,0 +1,50 @@
+"""What the page needs to go over to another arm without a new start of the server (app.serving.ServedArms)."""
+
+from typing import NamedTuple, Protocol
+
+from app.files.library import mesh_path
+from app.files.taught_program import Lesson
+from app.kept_setup import Keeper
+from app.robot_interface.interfaces import RobotInterfaces
+from app.session.prepare import Prepared
+from app.urscript.running.script_runner import ScriptRunner
+from sim.arm.arm_file import Arm
+
+
+class ReadyArm(NamedTuple):
+    """An arm that can be brought in, as it begins: as it was kept, or as shipped."""
+
+    prepared: Prepared
+    keeper: Keeper | None
+    lesson: Lesson | None
+    meshes: dict[str, bytes]
+
+
+class BroughtArm(NamedTuple):
+    """What stands around the arm that now runs."""
+
+    interfaces: RobotInterfaces | None
+    scripts: ScriptRunner | None
+    said: str  # what became of the network and of a recording; "": there was neither
+
+
+class ArmChange(Protocol):
+    """Brings another arm into the loop that is served. Its methods wait, so they are called on threads of their own."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The arms that there are."""
+        ...
+
+    def ready(self, name: str) -> ReadyArm:
+        """An arm, checked and ready. Raises BadInput: it cannot be simulated as it was kept."""
+        ...
+
+    def bring(self, arm: ReadyArm) -> BroughtArm:
+        """Let it run in place of the one that does; returns when its first tick is done."""
+        ...
+
+
+def meshes_of(arm: Arm) -> dict[str, bytes]:
+    """The pictures of an arm's links. Raises BadInput: there are none."""
+    return {part: mesh_path(arm.name, part).read_bytes() for part in ("foot", *arm.chain.joints)}

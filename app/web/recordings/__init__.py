@@ -1,0 +1,3 @@
+"""Recordings on the page: made, replayed, downloaded, exported. Uses files/, learning/, log/, web/panel/, web/scene/,
+web/widgets/.
+"""

@@ -1,0 +1,270 @@
+"""The walls tab: areas are made, moved, changed, switched off and deleted; walls of the set-up are switched and set, too."""
+
+from collections.abc import Callable
+from typing import Any
+
+import viser
+from msgspec.structs import replace
+
+from app.web.access.guard import Guard
+from app.web.running import Running
+from app.web.walls.made_walls import (
+    FARTHEST,
+    LONGEST,
+    PARTS,
+    REACTIONS,
+    SHAPES,
+    SHORTEST,
+    SIDES,
+    SIZES,
+    about,
+    at_tool,
+    made,
+    moved,
+    sized,
+    sizes,
+    tool_pose,
+    word,
+)
+from app.web.walls.wall_handles import WallHandles
+from app.web.widgets import svg
+from app.web.widgets.html import Html, enable
+from app.web.widgets.svg import Colour
+from pendant.events.event import Event, Kind
+from pendant.tick.modes import Mode, Phase
+from pendant.tick.pose import Pose, Quaternion, Vector, quaternion
+from pendant.walls.barrier import Place
+from pendant.walls.definitions import AnyBorder, Area
+from sim.arm.frames import rotation_from_rpy
+from sim.exchange.snapshot import Snapshot
+
+NONE: str = "no wall yet"
+REMEMBERED = 100
+"""Edits that can be undone."""
+
+Borders = tuple[AnyBorder, ...]
+
+
+class WallsTab:
+    """The tab. Its controls run on viser's event loop; `show` runs in the painter, which is there, too."""
+
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running) -> None:
+        self._loop = loop
+        self._before: list[Borders] = []  # each edit
+        self._asked: Borders | None = None  # not taken yet
+        self._shown: Borders | None = None
+        self._scenario: object = None
+        self._place: Place | None = None  # of the chosen one
+        gui = server.gui
+        self.message = Html(gui)
+        self.list = Html(gui)
+        self.add = gui.add_button_group("Add", tuple(SHAPES))
+        names: tuple[str, ...] = (NONE,)
+        self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen", names)
+        self.on = gui.add_checkbox("On", True)
+        self.side = gui.add_dropdown("Limit", tuple(SIDES))
+        self.part = gui.add_dropdown("Watched", tuple(PARTS), hint="The point of the arm that the limit is for")
+        self.reaction = gui.add_dropdown("When reached", tuple(REACTIONS))
+        self.size = [gui.add_number("Radius [mm]", SHORTEST, min=SHORTEST, max=LONGEST, step=1.0) for _ in range(3)]
+        self.spot = [
+            gui.add_number(f"{axis} [mm]", 0.0, min=-FARTHEST, max=FARTHEST, step=1.0, hint="Of its centre, in the base")
+            for axis in "XYZ"
+        ]
+        self.shown = gui.add_checkbox("Handles", False, hint="Arrows and arcs in the picture, with which it is moved and turned")
+        self.here = gui.add_button("Bring it to the tool", color="gray")
+        self.delete = gui.add_button("Delete", color="gray")
+        self.undo = gui.add_button("Undo", color="gray")
+        self.handles = WallHandles(server, guard, self._moved)
+        self._connect()
+        self._connect_values()
+
+    @property
+    def borders(self) -> Borders:
+        """Walls and areas, as they are or as was asked for just now."""
+        return self._loop.walls if self._asked is None else self._asked
+
+    @property
+    def chosen(self) -> AnyBorder | None:
+        """The chosen one."""
+        return next((border for border in self.borders if border.name == self.choice.value), None)
+
+    def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
+        """Show list, values and handles; True if anything changed."""
+        self._follow(fresh)
+        decision, borders = snapshot.decision, self.borders
+        locked = decision.mode in (Mode.FREE_DRIVE, Mode.RUN) or decision.phase is not Phase.OFF
+        changed = borders is not self._shown
+        if changed:
+            self._shown = borders
+            self._offer(tuple(border.name for border in borders))
+            self._refresh()
+        chosen = self.chosen
+        area = chosen if isinstance(chosen, Area) else None
+        places = {border.name: place for border, place in snapshot.places}
+        self._place = None if area is None else places.get(area.name)
+        changed |= self.list.show(svg.facts([(border.name, about(border)) for border in borders]) if borders else "")
+        for control in (self.on, self.reaction, self.part, self.delete):
+            changed |= enable(control, chosen is not None and not locked)
+        for control in (self.side, self.here, *self.size, *self.spot):
+            changed |= enable(control, area is not None and not locked)
+        changed |= enable(self.undo, bool(self._before) and not locked)
+        held = self._asked is not None  # the handles stay where they were let go until the robot has answered
+        return changed or (not held and self.handles.show(area if self.shown.value and not locked else None, self._place))
+
+    def let_go(self, client: int) -> None:
+        """`client` has stalled, left, or given control back: what it moves goes back."""
+        self.handles.let_go(client)
+
+    def _follow(self, fresh: list[Event]) -> None:
+        """What became of the last edit."""
+        for event in fresh:
+            if event.kind is Kind.WALLS_REFUSED:
+                self._asked = None
+                if self._before and self._before[-1] == self._loop.walls:
+                    self._before.pop()
+                self.message.show(svg.note("Not changed", f"{event.values['reason']}.", Colour.AMBER))
+            elif event.kind is Kind.WALLS_CHANGED:
+                self.message.show("")
+        if self._asked is not None and self._loop.walls == self._asked:
+            self._asked = None
+        if self._loop.scenario is not self._scenario:
+            self._scenario, self._before, self._asked = self._loop.scenario, [], None
+
+    def _offer(self, names: tuple[str, ...]) -> None:
+        """Have these to choose from; what is new is chosen, else what was."""
+        old, chosen = self.choice.options, self.choice.value
+        names = names or (NONE,)
+        if old == names:
+            return
+        new = [name for name in names if name not in old]
+        self.choice.options = names
+        wanted = new[-1] if new else chosen if chosen in names else names[-1]
+        if self.choice.value != wanted:
+            self.choice.value = wanted
+
+    def _refresh(self) -> None:
+        """The controls say what the chosen one is."""
+        border = self.chosen
+        area = border if isinstance(border, Area) else None
+        values = () if area is None else sizes(area.shape)
+        names = () if area is None else SIZES.get(type(area.shape), ())
+        for place, control in enumerate(self.size):
+            _see(control, place < len(values))
+            if place < len(values):
+                _label(control, f"{names[place]} [mm]")
+                _bring(control, round(values[place], 1))
+        for control in (self.side, self.here, self.shown, *self.spot):
+            _see(control, area is not None)
+        for control in (self.on, self.part, self.reaction, self.delete):
+            _see(control, border is not None)
+        if border is None:
+            return
+        _bring(self.on, border.on)
+        _bring(self.part, word(PARTS, border.part))
+        _bring(self.reaction, word(REACTIONS, border.reaction))
+        if area is not None:
+            _bring(self.side, word(SIDES, area.keep_out))
+            for control, value in zip(self.spot, self._spot(area), strict=True):
+                _bring(control, round(1000.0 * value, 1))
+
+    def _spot(self, area: Area) -> Vector:
+        """Where its shape's origin is in B, as far as that is known [m]."""
+        place = next((place for border, place in self._loop.latest().places if border == area), None)
+        return area.position if place is None else place.pose.p
+
+    def _ask(self, borders: Borders) -> None:
+        self._asked = borders
+        self._loop.desk.fence(borders)
+
+    def _edit(self, borders: Borders) -> None:
+        """Another list, by hand."""
+        if borders != self.borders:
+            self._before = [*self._before, self.borders][-REMEMBERED:]
+            self._ask(borders)
+
+    def _change(self, border: AnyBorder) -> None:
+        """The chosen one becomes this."""
+        self._edit(tuple(border if each.name == border.name else each for each in self.borders))
+
+    def _moved(self, p: Vector, turn: Quaternion) -> None:
+        area = self.chosen
+        if isinstance(area, Area):
+            self._change(moved(area, self._place, p, turn))
+
+    def _tool(self) -> Pose:
+        """Of the tool centre point, in B, as the controller knows it."""
+        snapshot = self._loop.latest()
+        fitting, seen = snapshot.decision.fitting, snapshot.estimate
+        tcp, rpy = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if fitting is None else (fitting.tool.tcp, fitting.tool.rpy)
+        x, y, z = tcp
+        return tool_pose(seen.p_BF, seen.R_BF, (x, y, z), rotation_from_rpy(rpy))
+
+    def _connect(self) -> None:
+        @self.add.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            taken = frozenset(border.name for border in self.borders)
+            self._edit((*self.borders, made(self.add.value, taken, self._tool())))
+            self.shown.value = True
+
+        @self.choice.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._refresh()
+
+        @self.here.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            if isinstance(area := self.chosen, Area):
+                self._change(at_tool(area, self._place, self._tool()))
+
+        @self.delete.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._edit(tuple(border for border in self.borders if border.name != self.choice.value))
+
+        @self.undo.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            if self._before:
+                self._ask(self._before.pop())
+
+    def _connect_values(self) -> None:
+        def by_hand(control: Any, act: Callable[[AnyBorder], AnyBorder]) -> None:
+            @control.on_update
+            async def _(event: viser.GuiEvent) -> None:
+                border = self.chosen
+                if event.client_id is not None and border is not None:  # a person, and not the page bringing itself up to date
+                    self._change(act(border))
+
+        by_hand(self.on, lambda border: replace(border, on=self.on.value))
+        by_hand(self.part, lambda border: replace(border, part=PARTS[self.part.value]))
+        by_hand(self.reaction, lambda border: replace(border, reaction=REACTIONS[self.reaction.value]))
+        by_hand(self.side, self._sided)
+        for control in self.size:
+            by_hand(control, self._sized)
+        for control in self.spot:
+            by_hand(control, self._placed)
+
+    def _sided(self, border: AnyBorder) -> AnyBorder:
+        return replace(border, keep_out=SIDES[self.side.value]) if isinstance(border, Area) else border
+
+    def _sized(self, border: AnyBorder) -> AnyBorder:
+        return replace(border, shape=sized(border.shape, tuple(float(control.value) for control in self.size)))
+
+    def _placed(self, border: AnyBorder) -> AnyBorder:
+        if not isinstance(border, Area):
+            return border
+        x, y, z = (float(control.value) / 1000.0 for control in self.spot)
+        turn = border.orientation if self._place is None else quaternion(self._place.pose.R)
+        return moved(border, self._place, (x, y, z), turn)
+
+
+def _bring(control: Any, value: object) -> None:
+    if control.value != value:
+        control.value = value
+
+
+def _see(control: Any, visible: bool) -> None:
+    if control.visible is not visible:
+        control.visible = visible
+
+
+def _label(control: Any, text: str) -> None:
+    if control.label != text:
+        control.label = text

@@ -1,0 +1,110 @@
+"""One arm after the other in a served loop: network, recording, what was kept."""
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.files.checked import BadInput
+from app.files.taught_program import Lesson, TaughtStep
+from app.kept_setup import Keeper
+from app.log.live import LiveRecording
+from app.log.reader import read
+from app.robot_interface.interfaces import RobotInterfaces
+from app.robot_interface.ports import DASHBOARD
+from app.robot_serving import Network
+from app.runs.runner import simulate
+from app.serving import ServedArms
+from app.session.prepare import prepare
+from app.session.session_file import Setup
+from pendant.all_settings import Settings, apply
+from sim.run.loop import Loop
+from tests.app.web.raw_client import until
+
+UR5E = prepare(Setup(), "test")
+OFFSET = 21_700
+
+
+@pytest.fixture
+def loop() -> Iterator[Loop]:
+    running = Loop(lambda: simulate(UR5E))
+    running.start()
+    yield running
+    running.stop()
+
+
+def asked(interfaces: RobotInterfaces, line: str) -> str:
+    """What the dashboard answers."""
+    with socket.create_connection((interfaces.host, interfaces.ports[DASHBOARD]), timeout=5.0) as client:
+        client.recv(200)
+        client.sendall(f"{line}\n".encode())
+        return client.recv(200).decode()
+
+
+def test_another_arm_runs_and_answers_at_the_same_ports(loop: Loop, tmp_path: Path) -> None:
+    recording = LiveRecording(loop, tmp_path)
+    arms = ServedArms(loop, recording, network=Network(offset=OFFSET))
+    first = arms.open(UR5E)
+    try:
+        assert first is not None
+        assert "UR5" in asked(first, "get robot model")
+        recording.start()
+        until(lambda: recording.seconds > 0.1, "recorded")
+        held = socket.create_connection((first.host, first.ports[DASHBOARD]), timeout=5.0)
+        brought = arms.bring(arms.ready("ur10e"))
+        assert loop.simulation.arm.name == "ur10e"
+        assert held.recv(200).startswith(b"Connected")
+        assert held.recv(200) == b"", "who was connected is parted from it"
+        held.close()
+        assert brought.interfaces is not None
+        assert brought.interfaces is not first
+        assert "UR10" in asked(brought.interfaces, "get robot model")
+        assert "file of its own" in brought.said
+        assert "can come again" in brought.said
+    finally:
+        arms.close()
+        recording.close()
+    assert [read(path).arm.name for path in sorted(tmp_path.glob("*.mcap"))] == ["ur5e", "ur10e"]
+
+
+def test_a_network_that_cannot_be_opened_again_has_ended_and_it_is_said(
+    loop: Loop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As for an arm of seven joints, which these protocols cannot tell."""
+    arms = ServedArms(loop, LiveRecording(loop, tmp_path), network=Network(offset=OFFSET + 100))
+    assert arms.open(UR5E) is not None
+
+    def refuse(*_: object) -> RobotInterfaces:
+        raise BadInput("--interfaces", "robot", "ur10e", "an arm of 6 joints")
+
+    monkeypatch.setattr("app.serving.open_interfaces", refuse)
+    try:
+        brought = arms.bring(arms.ready("ur10e"))
+    finally:
+        arms.close()
+    assert brought.interfaces is None
+    assert brought.scripts is not None
+    assert "The network interfaces have ended" in brought.said
+    assert loop.simulation.arm.name == "ur10e"
+
+
+def test_another_arm_begins_as_it_was_kept(loop: Loop, tmp_path: Path) -> None:
+    keeper, settings = Keeper(tmp_path, "ur10e"), apply(Settings(), {"free_drive.period": 7.0})
+    ur10e, lesson = prepare(Setup(robot="ur10e"), "test"), Lesson(steps=[TaughtStep(do="wait", seconds=2.0)])
+    keeper.see(Lesson(), ur10e.arm, ur10e.scenario, Settings(), walls=(), now=0.0)
+    keeper.see(lesson, ur10e.arm, ur10e.scenario, settings, walls=(), now=5.0)
+    ready = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path).ready("ur10e")
+    assert (ready.prepared.settings, ready.lesson) == (settings, lesson)
+    assert ready.keeper is not None
+    keeper.path.write_text("[")
+    ready = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path).ready("ur10e")
+    assert (ready.prepared.settings, ready.keeper) == (Settings(), None)
+    assert ServedArms(loop, LiveRecording(loop, tmp_path)).ready("ur10e").keeper is None
+
+
+@pytest.mark.parametrize("name", ["nobody", "../ur5e"])
+def test_an_arm_that_there_is_not_is_refused(loop: Loop, tmp_path: Path, name: str) -> None:
+    arms = ServedArms(loop, LiveRecording(loop, tmp_path))
+    with pytest.raises(BadInput):
+        arms.ready(name)

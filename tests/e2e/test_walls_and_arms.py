@@ -1,0 +1,121 @@
+"""Everyday tasks of walls, joints and arms: a wall that stops the hand, only the elbow free, another arm."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page
+
+from app.web.walls.wall_handles import SCALE
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode
+from pendant.walls.definitions import Area
+from tests.e2e.cell import Cell
+from tests.e2e.first_use import FirstUse
+from tests.e2e.hold import enter_free_drive
+from tests.e2e.test_everyday import open_tab
+from tests.e2e.test_tasks import LATER, choose, click
+
+pytestmark = pytest.mark.e2e
+Visit = Callable[..., Page]
+
+TOUCH = 1000
+"""Windows that are narrower are of a tablet [pixels]."""
+
+
+def plane(cell: Cell) -> Area:
+    """The one wall that was made."""
+    (wall,) = cell.loop.walls
+    assert isinstance(wall, Area)
+    return wall
+
+
+def pull_handle(page: Page, cell: Cell, by: float) -> None:
+    """Pull the arrow along z of the plane's handles by so many pixels; a page that is drawn late is pulled again."""
+    before = plane(cell).position
+    for _ in range(6):
+        p = np.array(plane(cell).position)
+        x, y = cell.pixel(page, 0, p + np.array([0.0, 0.0, -0.75 * SCALE]))
+        page.mouse.move(x, y - 1.0)
+        page.mouse.move(x, y)
+        page.wait_for_timeout(700)
+        page.mouse.down()
+        page.mouse.move(x, y + by / 2, steps=4)
+        page.mouse.move(x, y + by, steps=4)
+        page.wait_for_timeout(300)
+        page.mouse.up()
+        page.wait_for_timeout(700)
+        if plane(cell).position != before:
+            return
+    pytest.fail(f"the handle was not found: {cell.served.guard.refused}")
+
+
+@pytest.mark.parametrize(("width", "height"), LATER)
+def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    """A plane 100 mm below the tool, pulled up by its handle; the hand cannot lead the tool through it."""
+    page = visit(width, height, touch=width < TOUCH)
+    tab = cell.served.docks.walls
+    open_tab(page, "Walls")
+    click(page, "Plane")
+    cell.wait(lambda: len(cell.loop.walls) == 1 and tab.handles._gizmo is not None, "the plane, with handles")
+    first = plane(cell).position
+    pull_handle(page, cell, -25.0)
+    moved = plane(cell).position
+    assert moved[2] > first[2] + 0.01
+    assert np.hypot(moved[0] - first[0], moved[1] - first[1]) < 0.005
+    use = FirstUse(page, cell)
+
+    def reached() -> bool:
+        return any(event.kind is Kind.WALL_REACHED and event.values["wall"] == "plane 1" for event in cell.loop.events(0))
+
+    use.drag((0.0, 220.0), reached, "the wall", use.be_free)
+    cell.pass_time(0.5)
+    stopped = float(cell.position("flange")[2])
+    cell.pass_time(0.5)
+    assert cell.loop.latest().touches, "the hand still pulls, to a place far below"
+    assert cell.loop.latest().decision.mode is Mode.FREE_DRIVE
+    assert tab.handles._gizmo is None, "nothing moves a wall that holds"
+    assert abs(float(cell.position("flange")[2]) - stopped) < 0.003
+    assert moved[2] - 0.05 < stopped < moved[2] + 0.02  # a hand that pulls with all its force arrives fast
+    use.let_go()
+
+
+@pytest.mark.parametrize(("width", "height"), LATER)
+def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    page = visit(width, height, touch=width < TOUCH)
+    open_tab(page, "Axes")
+    click(page, "All locked")
+    cell.wait(lambda: not cell.loop.settings.joints.j3, "all are locked")
+    elbow = page.get_by_role("checkbox", name="Elbow", exact=True)
+    elbow.scroll_into_view_if_needed()
+    elbow.click()
+    cell.wait(lambda: cell.loop.settings.joints.j3, "the elbow is free")
+    start = cell.loop.latest().truth_q.copy()
+
+    def turned() -> np.ndarray:
+        return np.degrees(np.abs(cell.loop.latest().truth_q - start))
+
+    use = FirstUse(page, cell)
+    use.drag((0.0, -160.0), lambda: turned()[2] > 5.0, "the elbow turns", use.be_free)
+    assert np.delete(turned(), 2).max() < 1.5
+    use.let_go()
+
+
+@pytest.mark.parametrize(("width", "height"), LATER)
+def test_change_the_arm(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    """The server goes on, and so does the page of a second window."""
+    page, other = visit(width, height, touch=width < TOUCH), visit(width, height)
+    open_tab(page, "Lab")
+    click(page, "Set-up")
+    choose(page, "Arm", "ur10e")
+    cell.wait(lambda: cell.served.lab.setup.arm.value == "ur10e", "it is chosen")
+    click(page, "Restart with this set-up")
+    cell.wait(lambda: cell.loop.simulation.arm.name == "ur10e", "it runs", 120.0)
+    for each in (page, other):
+        each.get_by_text("Universal Robots UR10e").first.wait_for(timeout=60_000)
+        each.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)
+    other.get_by_role("button", name="EMERGENCY STOP").click()
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped from the other window")
+    page.get_by_role("button", name="Reset", exact=True).click()
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
+    enter_free_drive(page, cell)

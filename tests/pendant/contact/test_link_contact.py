@@ -1,0 +1,173 @@
+"""Contacts of links by the torques of six joints: onset, which link, release, silence (CD-2, CD-9a)."""
+
+import msgspec
+import numpy as np
+import pytest
+
+from pendant.contact.confirmation import Confirmation
+from pendant.contact.contact_change import Change
+from pendant.contact.history import SIZE
+from pendant.contact.link_contact import CALM, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, Felt, LinkWatch, Torques
+from pendant.contact.settings import ContactUse
+from pendant.tick.source_signal import ContactSignals, Signal
+
+USE = ContactUse()
+DOUBT = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
+START = 100
+
+
+def tick(torques: np.ndarray, doubt: np.ndarray = DOUBT, saturated: float = 0.0) -> ContactSignals:
+    """Torques on the joints; the force at both points is a tenth of their sum along x, in the other direction."""
+    force = -0.1 * float(torques.sum())
+    row = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
+    return ContactSignals(np.tile(row, (4, 1)), (False, False, True, True), torques, doubt)
+
+
+def stream(n: int, way: tuple[float, ...], *spans: tuple[int, int, float], noise: float = 0.1, seed: int = 0) -> np.ndarray:
+    """n ticks of torques: `way` times the size of each span (begin, end, size), on noise and what the arm always feels."""
+    rng = np.random.default_rng(seed)
+    torques = np.tile([0.5, -1.0, 0.4, 0.1, 0.1, 0.0], (n, 1)) + rng.normal(0.0, noise, (n, 6)) * DOUBT
+    for begin, end, size in spans:
+        torques[begin:end] += size * np.array(way)
+    return torques
+
+
+def run(torques: np.ndarray, use: ContactUse = USE, scale: float = 1.0) -> list[tuple[int, Felt]]:
+    watch, found = LinkWatch(), []
+    for k, row in enumerate(torques):
+        signals = tick(row)
+        watch.sense(signals)
+        felt = watch.step(use, signals, scale)
+        if felt is not None:
+            found.append((k, felt))
+    return found
+
+
+UPPER, FORE, HAND = (0.3, 1.0, 0.0, 0.0, 0.0, 0.0), (0.3, 1.0, 0.8, 0.0, 0.0, 0.0), (0.3, 1.0, 0.8, 0.3, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(("way", "part"), [(UPPER, "elbow"), ((1.0, 0, 0, 0, 0, 0), "elbow"), (FORE, "forearm"), (HAND, "wrist")])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_last_joint_that_feels_it_tells_the_link(way: tuple[float, ...], part: str, sign: float) -> None:
+    found = run(stream(500, way, (START, 300, sign * 25.0)))
+    assert [(felt.change, LINKS[felt.link]) for _, felt in found] == [(Change.GAINED, part), (Change.LOST, part)]
+    assert START < found[0][0] < START + 25
+    assert 300 < found[1][0] < 300 + HELD + GONE
+
+
+def test_what_is_little_beside_the_rest_is_an_error_of_the_model() -> None:
+    """The elbow joint feels 7 N·m, beyond its bound of 4.5, where the shoulder feels 120."""
+    way = (0.0, 1.0, 7.0 / 120.0, 0.0, 0.0, 0.0)
+    assert [LINKS[felt.link] for _, felt in run(stream(400, way, (START, 400, 120.0)))] == ["elbow"]
+    way = (0.0, 1.0, 15.0 / 120.0, 0.0, 0.0, 0.0)
+    assert [LINKS[felt.link] for _, felt in run(stream(400, way, (START, 400, 120.0)))] == ["forearm"]
+
+
+@pytest.mark.parametrize(("size", "scale", "seen"), [(4.2, 1.0, False), (4.9, 1.0, True), (4.9, 2.0, False), (9.8, 2.0, True)])
+def test_the_bound_is_so_many_deviations(size: float, scale: float, seen: bool) -> None:
+    found = run(stream(500, (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (START, 500, size), noise=0.01), scale=scale)
+    assert bool(found) is seen
+
+
+def test_the_change_is_told_as_force_and_acceleration_of_the_link() -> None:
+    (at, felt), _ = run(stream(500, UPPER, (START, 300, 30.0), noise=0.0))
+    assert felt.force[0] == pytest.approx(-0.1 * 1.3 * 30.0, rel=0.05)
+    assert felt.acceleration[0] == pytest.approx(-0.01 * felt.force[0])
+    assert abs(at - felt.steps - START) <= 1
+
+
+def test_a_push_that_changes_is_one_contact() -> None:
+    """It swells, weakens to a third and swells again."""
+    found = run(stream(900, UPPER, (100, 300, 40.0), (300, 500, 100.0), (500, 600, 35.0), (600, 700, 90.0)))
+    assert [felt.change for _, felt in found] == [Change.GAINED, Change.LOST]
+    assert found[1][0] > 700
+
+
+def test_after_a_release_it_is_silent_until_the_torques_are_calm() -> None:
+    """An arm that swings back feels 30 N·m to and fro for 0.3 s; a hand that comes afterwards is a contact again."""
+    torques = stream(900, UPPER, (START, 300, 60.0), (700, 900, 30.0))
+    torques[300:450, 1] += 30.0 * np.cos(np.arange(150) * 2 * np.pi / 30.0) * np.linspace(1.0, 0.0, 150)
+    found = run(torques)
+    assert [felt.change for _, felt in found] == [Change.GAINED, Change.LOST, Change.GAINED]
+    assert found[2][0] > 700
+
+
+def test_where_torques_never_calm_down_it_listens_again() -> None:
+    torques = stream(SILENCE + 900, UPPER, (START, 300, 60.0))
+    swing = np.arange(300, len(torques))
+    torques[300:, 1] += 20.0 * np.sign(np.sin(swing * 2 * np.pi / 60.0)) * (swing > 350)
+    found = run(torques)
+    assert [felt.change for _, felt in found[:2]] == [Change.GAINED, Change.LOST]
+    assert found[2][0] >= found[1][0] + SILENCE
+
+
+def test_a_gap_ends_what_is_known_and_is_no_contact() -> None:
+    torques, watch = stream(500, UPPER, (START, 500, 30.0)), LinkWatch()
+    changes = []
+    for k, row in enumerate(torques):
+        signals = tick(row, saturated=1.0 if k == 200 else 0.0)
+        watch.sense(signals)
+        felt = watch.step(USE, signals, 1.0)
+        changes += [] if felt is None else [felt.change]
+    assert changes == [Change.GAINED]
+    assert watch.touched is None
+    assert watch.torques.count == 299
+    watch.sense(ContactSignals())
+    assert watch.torques.count == 0
+    watch.sense(ContactSignals())
+    assert watch.points[0].count == 0
+
+
+def test_who_forgets_is_free_of_contact_and_keeps_the_buffers() -> None:
+    watch = LinkWatch()
+    for row in stream(200, UPPER, (START, 200, 30.0)):
+        watch.sense(tick(row))
+        watch.step(USE, tick(row), 1.0)
+    assert watch.touched == 0
+    watch.forget()
+    watch.forget()
+    assert watch.touched is None
+    assert not watch.silent
+    assert watch.torques.count == 200
+
+
+def test_confirmation_takes_the_ticks_that_are_set() -> None:
+    way = (0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    slow = msgspec.structs.replace(USE, slow_count=40)
+    torques = stream(300, way, (START, 300, 7.0), noise=0.01)
+    assert run(torques, slow)[0][0] == run(torques)[0][0] + 20
+
+
+def test_means_of_torques() -> None:
+    torques = Torques()
+    rows = np.random.default_rng(1).normal(size=(SIZE + 40, 6))
+    for row in rows:
+        torques.push(row)
+    assert torques.count == SIZE - 1
+    assert torques.mean(0, 10) == pytest.approx(rows[-10:].mean(axis=0))
+    assert torques.mean(200, 20) == pytest.approx(rows[-220:-200].mean(axis=0))
+    torques.gap()
+    torques.push(rows[0])
+    assert torques.mean(0, 1) == pytest.approx(rows[0])
+    torques.push(np.ones(7))
+    assert torques.count == 1
+    assert torques.mean(0, 1) == pytest.approx(np.ones(7))
+
+
+def test_silence_is_as_long_as_calm_needs_it() -> None:
+    watch = LinkWatch()
+    torques = stream(600, UPPER, (START, 300, 60.0))
+    silent = []
+    for k, row in enumerate(torques):
+        watch.sense(tick(row))
+        watch.step(USE, tick(row), 1.0)
+        silent += [k] if watch.silent else []
+    assert CALM <= len(silent) <= CALM + SETTLED + NEWEST
+    assert isinstance(watch._count, Confirmation)
+
+
+def test_a_contact_that_began_too_gently_is_lost_where_it_ends() -> None:
+    """It swells over a second, by less than a bound within 0.2 s, and goes at once."""
+    torques = stream(1000, UPPER)
+    torques[100:700] += np.linspace(0.0, 15.0, 600)[:, None] * np.array(UPPER)
+    assert [felt.change for _, felt in run(torques)] == [Change.LOST]
