@@ -34,7 +34,6 @@ GENTLE = 0.1
 SETTLING = ticks(0.3)
 """After a turn the arm stands for so long before it is measured."""
 
-
 LOOKS = 25
 """Postures of a way that are looked at."""
 
@@ -147,7 +146,7 @@ class Equipping:
         if reason or self._shape is None:
             events.append(Event(Kind.WIZARD_REFUSED, estimate.tick, {"reason": reason}))
             return
-        walls = tuple([(border, place) for border, place in self._containment.every_place(settings.walls) if border.on])
+        walls = self._containment.every_place(settings.walls)
         self._begin = estimate.q.copy()
         self._room = WristRoom(self._shape, self._begin, tooling.fitting.tool, settings.tools, borders=walls)
         self._watch.begin(self._mean.mean()[:3])

@@ -65,7 +65,7 @@ class Estimate:
     touched: bool = False  # the joints feel a contact, so that nothing is learned
     signals: ContactSignals = field(
         default_factory=ContactSignals
-    )  # for the contact detectors, as pendant.contact.contact_monitor.SOURCES
+    )  # for the contact detectors, as pendant.contact.contact_monitor says
     tcp: Array = field(default_factory=_nowhere)  # (6,) tool centre point: position [m], then velocity [m/s], axes of B
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]

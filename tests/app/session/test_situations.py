@@ -1,4 +1,4 @@
-"""The situations of figures 3h, 3i, 4h and 4i tell the two frictions apart: swapped, each session is not met (CD-17)."""
+"""The situations of figures 3h, 3i, 4h and 4i tell two frictions apart: with them swapped, none is met (CD-17)."""
 
 import msgspec
 import pytest
