@@ -16,7 +16,7 @@ from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.flange_forces import FlangeForces, needed
-from sim.estimation.wrench_hypotheses import BEFORE, FREED, LATE, LOST, MORE, Seen, anything, hand, nobody, payload
+from sim.estimation.wrench_hypotheses import BEFORE, FREED, LATE, LOST, MORE, Seen, anything, hand, jump, nobody, payload
 
 SHORTEST, LONGEST = 2, 10
 """Ticks since the change that are looked at: 20 ms at most, in which a dropped payload has to be known (bench `drop`)."""
@@ -60,7 +60,8 @@ class ExternalWrench:
         )
         own = self._own = self.record[0]
         force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
-        self.present = force_torque is not None
+        self._sensed = force_torque is not None
+        self._watches = False  # there is a sensor, and a payload to lose
         if force_torque is not None:
             own["noise"] = force_torque.force.noise, force_torque.torque.noise
         own["shaking"] = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
@@ -83,6 +84,7 @@ class ExternalWrench:
         own["mass"], own["com"], own["inertia"] = payload.mass, payload.com, payload.inertia - payload.mass * turned @ turned
         for moments, body in (("whole", load), ("rest", rest)):
             own[moments] = max(body.mass, 0.0) * np.linalg.norm(body.com) ** np.arange(3.0)
+        self._watches = self._sensed and payload.mass > 0.0
         self.forget()
 
     def forget(self) -> None:
@@ -96,7 +98,7 @@ class ExternalWrench:
         Args:
             bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used.
         """
-        if bias is None or not self.present:
+        if bias is None or not self._watches:
             self.forget()
         else:
             _update(self.record, self._forces.record, bias)
@@ -115,7 +117,7 @@ def _update(wrenches, forces, bias) -> None:
     own.next = (here + 1) % KEPT
     own.count = min(own.count + 1, KEPT)
     own.lost, own.share = -np.inf, 0.0
-    if own.count == KEPT and own.mass > 0.0:
+    if own.count == KEPT:
         _weigh(own, here, bias)
 
 
@@ -149,6 +151,11 @@ def _compare(own, seen, change, bias) -> None:
         before[k] -= bias[k]
         half = own.x[last, k] + own.x[(last - 1) % KEPT, k] - own.x[(last - 2) % KEPT, k] - own.x[(last - 3) % KEPT, k]
         steep[k // 3] += (half / BEFORE) ** 2
+    moved = 0.0
+    for k in range(6):
+        moved += 0.5 * (seen.x[k] / length - before[k]) ** 2 / jump(own, steep, k // 3)
+    if moved < 0.5:  # a hand changes by as much within a tick: no odds can be more than about even
+        return
     rest, other = anything(seen, length), np.nan
     for kind in (LOST, FREED, MORE):
         likelihood, carried, share = payload(own, seen, (length, before, steep), kind)

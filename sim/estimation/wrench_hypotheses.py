@@ -88,7 +88,7 @@ def noise(own, load, axis, late):
 
 
 @kernel
-def _jump(own, steep, axis):
+def jump(own, steep, axis):
     """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
     return (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
 
@@ -103,12 +103,12 @@ def hand(own, seen, change, late):
     rising = steady = 0.0
     for axis in range(2):
         R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else LEVER
-        jump = _jump(own, steep, axis)
+        sudden = jump(own, steep, axis)
         rise = (0.5 * HAND / RISE * lever) ** 2
-        a, b, c = count / R + 1.0 / jump, once / R, square / R + 1.0 / rise
+        a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
         determinant = a * c - b * b
-        rising -= 1.5 * (count * np.log(R) + np.log(determinant * jump * rise))
-        steady -= 1.5 * (count * np.log(R) + np.log(a * jump))
+        rising -= 1.5 * (count * np.log(R) + np.log(determinant * sudden * rise))
+        steady -= 1.5 * (count * np.log(R) + np.log(a * sudden))
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - count * before[k]
             later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
@@ -181,5 +181,5 @@ def payload(own, seen, change, kind):
     carried = 0.0
     for k in range(6):
         way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)
-        carried += 0.5 * way * way / _jump(own, steep, k // 3)
+        carried += 0.5 * way * way / jump(own, steep, k // 3)
     return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried, share
