@@ -15,7 +15,7 @@ from pendant.tick.pose import Pose
 from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
-from sim.arm.chain import arm_shape, chain, load_body, plate_body, tool_body
+from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.control.controller import Controller
@@ -67,19 +67,18 @@ class Simulation:
         drift = None if drifts is None else SensorDrift(drifts, self.calibration, walk)
         self.plant = Plant(arm, scenario, step)
         self.sensors = Sensors(arm, self.calibration, noise, drift)
-        rigid = chain(arm)
-        tools = tuple(table(scenario))
+        rigid, tools = chain(arm), tuple(table(scenario))
         used = tools[0]
         self.tcp, self.R_FT = np.array(used.tcp), rotation_from_rpy(used.rpy)
         self._plate = plate = plate_body(arm)
+        fixed = Load(mass=plate.mass, com=plate.com.tolist())
         # What the controller takes to be beyond the flange, before a change and after it.
         self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
-        reach = math.inf if wrench is None else wrench.force.range
-        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach)
-        fixed = Load(mass=plate.mass, com=plate.com.tolist())
+        self.estimator.set_load(self._before, load_body(scenario.payload_configured))
+        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, math.inf if wrench is None else wrench.force.range)
         self.supervisor = Supervisor(
             settings,
             arm.n,
@@ -156,7 +155,8 @@ class Simulation:
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
         learn = before is _FOLLOW
-        estimate = estimator.update(sample, done, refusal, use=use, answered=references.answered, learn=learn)
+        bias = self._decision.baseline if before is _FREE and self._decision is not None else None
+        estimate = estimator.update(sample, done, refusal, use=use, answered=references.answered, learn=learn, bias=bias)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
@@ -203,7 +203,7 @@ class Simulation:
         self.fitting = fitting
         body = self._after if fitting.share == 1.0 else self._before.blend(self._after, fitting.share)
         self.dynamics.set_load(body)
-        self.estimator.forces.set_load(body)
+        self.estimator.set_load(body, load_body(fitting.load) if fitting.share == 1.0 else NOTHING)  # a ramp's is not there yet
         self.contact_sources.set_load(body)
 
     def apply(self, change: AnyChange) -> None:

@@ -73,6 +73,8 @@ class Estimate:
     current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
     energy: float = 0.0  # kinetic, of links and rotors [J]
+    lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed; in free-drive only [nats]
+    lost_share: float = 0.0  # of the payload that is gone then
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":

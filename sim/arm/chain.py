@@ -50,6 +50,9 @@ class Body:
         return ours + Body(share * other.mass, other.com, share * other.inertia)
 
 
+NOTHING = Body(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
 @dataclass(frozen=True, slots=True)
 class Chain:
     """Links base to flange. The pose of joint frame i (z is the joint's axis) is given in joint frame i-1 (B for 0) at q = 0."""
@@ -108,7 +111,7 @@ def load_body(load: Load) -> Body:
 def tool_body(tool: pendant.equipment.tools.Tool | None) -> Body:
     """`tool` as a body in F: without an inertia a cylinder of its length and radius, or as a load; no tool weighs nothing."""
     if tool is None:
-        return Body(0.0, np.zeros(3), np.zeros((3, 3)))
+        return NOTHING
     if tool.inertia is not None or not isinstance(tool, ToolModel):
         return load_body(Load(mass=tool.mass, com=tool.com, inertia=tool.inertia))
     across = tool.mass * (3 * tool.radius**2 + tool.length**2) / 12.0

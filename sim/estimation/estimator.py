@@ -9,7 +9,9 @@ from pendant.all_settings import JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
+from sim.arm.chain import Body
 from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.estimation.external_wrench import ExternalWrench
 from sim.estimation.flange_forces import FlangeForces
 from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
@@ -76,8 +78,14 @@ class Estimator:
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
+        self.wrench = ExternalWrench(arm, self.forces)
         self._known: Estimate | None = None
         self.tick = 0
+
+    def set_load(self, load: Body, payload: Body) -> None:
+        """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
+        self.forces.set_load(load)
+        self.wrench.set_load(load, payload)
 
     def update(
         self,
@@ -88,11 +96,13 @@ class Estimator:
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
         learn: bool = True,
+        bias: tuple[float, ...] | None = None,
     ) -> Estimate:
         """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
-        as known, and the gears are not compared with the rigid model.
+        as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
+        of F [N, N·m]; None otherwise.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -121,6 +131,7 @@ class Estimator:
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         self._estimate_torques(sample, use, learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
+        self.wrench.update(bias if sample.wrench_valid else None)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -134,6 +145,7 @@ class Estimator:
         known.lost, known.touched = self._lost, self.transmission.contact
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         known.energy = self._energy(rigid.energy)
+        known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
         return known
 
     def _energy(self, links: Array) -> float:

@@ -41,6 +41,7 @@ class FlangeForces:
         F_user: the user's wrench (6,) in axes of B at the flange origin: force [N], torque [N·m]; zeros while the sensor is out.
         F_joints: the force (3,) in B that explains the joints' external torques best [N].
         a_felt: what the accelerometer on the arm's side feels beyond gravity (3,), axes of B [m/s²].
+        record: all of it, for other kernels.
 
     Args:
         dynamics: the controller's rigid model, whose recursion has been run in this tick.
@@ -48,19 +49,21 @@ class FlangeForces:
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
-        self._record = record(
+        self.record = record(
             F_user=(6,),
             F_joints=(3,),
             a_felt=(3,),
             gyro=(3,),  # its last value
             turn=(3,),  # smoothed angular acceleration
             smoothing=(),
+            specific=(3,),  # force behind the sensor, in F [m/s²]
+            missing=(6,),  # of what the load needs in its motion: F_user in axes of F
             gravity=(3,),
             mass=(),
             com=(3,),
             inertia=(3, 3),  # about the flange
         )
-        own = self._own = self._record[0]
+        own = self._own = self.record[0]
         self.F_user, self.F_joints, self.a_felt = own["F_user"], own["F_joints"], own["a_felt"]
         own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         own["gravity"] = dynamics.gravity_B
@@ -88,7 +91,7 @@ class FlangeForces:
             force, own["turn"] = self._dynamics.specific_force(q, motion[1], motion[2])
             own["gyro"] = rigid.R.T @ rigid.v_F[3:]
         felt = (sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
-        _update(self._record, rigid.record, felt, (sample.wrench_valid, differentiated))
+        _update(self.record, rigid.record, felt, (sample.wrench_valid, differentiated))
 
 
 @kernel
@@ -103,7 +106,8 @@ def _update(forces, model, felt, valid) -> None:
     if differentiated:
         _differentiate(felt.gyro, own.gyro, own.turn, own.smoothing)
     if wrench_valid:
-        _user_wrench(own, felt.wrench, felt.tool_side, R)
+        own.specific[:] = felt.tool_side
+        _user_wrench(own, felt.wrench, R)
     else:
         own.F_user[:] = 0.0
 
@@ -142,13 +146,26 @@ def _differentiate(gyro, last, turn, smoothing) -> None:
 
 
 @kernel
-def _user_wrench(own, measured, force, R) -> None:
-    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B.
+def _user_wrench(own, measured, R) -> None:
+    """F_user: minus what the flange exerts beyond what the configured load needs, in axes of B."""
+    rest, out = own.missing, own.F_user
+    needed((own.mass, own.com, own.inertia), (own.specific, own.gyro, own.turn), rest)
+    for k in range(6):
+        rest[k] -= measured[k]
+    for k in range(3):
+        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
+        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]
 
-    The load moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
+
+@kernel
+def needed(body, motion, out) -> None:
+    """The wrench that a body beyond the flange sensor needs in its motion, in F.
+
+    It moves with the tool-side face: its force is m (a + turn x c + w x (w x c)), its torque about the flange origin
     c x m a + J turn + w x J w, with a the specific force there, w the gyro and turn the angular acceleration.
     """
-    mass, com, inertia, gyro, turn, out = own.mass, own.com, own.inertia, own.gyro, own.turn, own.F_user
+    mass, com, inertia = body
+    force, gyro, turn = motion
     tangential = cross(turn, com)
     normal = cross(gyro, cross(gyro, com))
     lever = cross(com, force)
@@ -157,10 +174,6 @@ def _user_wrench(own, measured, force, R) -> None:
         spin[k] = inertia[k, 0] * gyro[0] + inertia[k, 1] * gyro[1] + inertia[k, 2] * gyro[2]
         torque[k] = inertia[k, 0] * turn[0] + inertia[k, 1] * turn[1] + inertia[k, 2] * turn[2]
     whirl = cross(gyro, spin)
-    rest = np.empty(6)
     for k in range(3):
-        rest[k] = mass * (force[k] + tangential[k] + normal[k]) - measured[k]
-        rest[3 + k] = mass * lever[k] + torque[k] + whirl[k] - measured[3 + k]
-    for k in range(3):
-        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
-        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]
+        out[k] = mass * (force[k] + tangential[k] + normal[k])
+        out[3 + k] = mass * lever[k] + torque[k] + whirl[k]

@@ -249,6 +249,8 @@ def test_a_snapshot_never_changes_afterwards() -> None:
             "lost",
             "touched",
             "load_mass",
+            "lost_odds",
+            "lost_share",
         }
         assert changed or field.name in same
     assert (later.truth_links != first.truth_links).any()

@@ -1,0 +1,204 @@
+"""Observer: payloads of 0.3 to 5 kg that fall, and hands that grab, snatch and let go, as the bank of hypotheses sees them.
+
+Beside it, on the same ticks, the rule that it replaced (`benchmarks.wrenches.force_share`). Neither ends free-drive here: a fall
+is judged for 60 ms. A payload falls from an arm at rest; from a guided one whose hand lets go with it, or stays; and out of a
+hand that carries its weight. Truth is read for scoring alone.
+"""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.common import Report, main, spread
+from benchmarks.drop import LONG, PACE, enter
+from benchmarks.hold import IDLE, flange
+from benchmarks.payload import Case, draw, simulation
+from benchmarks.use import free_way
+from benchmarks.wrenches.force_share import ForceShare
+from pendant.all_settings import apply
+from pendant.decision import Decision
+from pendant.guided.endings import KNOWN
+from pendant.guided.user_force import UserForce
+from pendant.tick.modes import Mode
+from pendant.tick.pose import flat, turned
+from sim.exchange.desk import Wishes
+from sim.plant.changes import DropPayload
+from sim.plant.touch import Pull, Push, Touch
+from sim.simulation import Simulation
+
+WATCHED = apply(LONG, {"free_drive.period": 20.0, "unexplained.payload": False})
+FALLS = ("rest", "guided", "hand stays", "carried")
+MASSES = (0.3, 5.0)  # [kg]
+JUDGED = 30  # ticks after the fall
+TOUCHES = 10  # on one arm
+LEVELS = (0.5, 0.9, 0.99, 1.0)
+
+
+class Fall(NamedTuple):
+    """One payload that falls."""
+
+    case: Case
+    how: str
+
+
+class Seen(NamedTuple):
+    """What observer and rule make of one case."""
+
+    what: str
+    mass: float  # [kg]
+    odds: float  # the best, log [nats]
+    known: float  # ticks until they are enough, infinite without
+    rule: float  # ticks until the rule is sure, infinite without
+
+
+class Watch:
+    """Both, on one arm in free-drive."""
+
+    def __init__(self, device: Simulation, decision: Decision, mass: float) -> None:
+        self._device, self.mass = device, mass
+        R_BF, bias = flat(device.estimate.R_BF), decision.baseline
+        wrench = (*turned(R_BF, (bias[0], bias[1], bias[2])), *turned(R_BF, (bias[3], bias[4], bias[5])))
+        self._hand, self._rule = UserForce(device.estimate, wrench), ForceShare(mass)
+        self.begin()
+
+    def begin(self) -> None:
+        """A case begins."""
+        self._ticks, self._odds, self._known, self._told = 0, -math.inf, math.inf, math.inf
+
+    def tick(self, touches: tuple[Touch, ...] = (), changes: tuple[DropPayload, ...] = ()) -> bool:
+        """One tick; whether the arm is still free."""
+        decision = self._device.tick(Wishes(IDLE.inputs, touches, changes))
+        estimate = self._device.estimate
+        self._hand.step(estimate, True)
+        self._ticks += 1
+        if self._rule.step(estimate, self._hand, decision.baseline):
+            self._told = min(self._told, self._ticks)
+        self._odds = max(self._odds, estimate.lost_odds)
+        if estimate.lost_odds >= KNOWN:
+            self._known = min(self._known, self._ticks)
+        return decision.mode is Mode.FREE_DRIVE
+
+    def seen(self, what: str) -> Seen:
+        """What came of the case."""
+        return Seen(what, self.mass, self._odds, self._known, self._told)
+
+
+def watch(case: Case) -> tuple[Simulation, Watch | None]:
+    """An arm in free-drive, and what watches it; None where it was not entered."""
+    device = simulation(case, WATCHED)
+    if not enter(device):
+        return device, None
+    return device, Watch(device, device.tick(IDLE), case.true)
+
+
+def measure_fall(fall: Fall) -> list[Seen]:
+    """The time before, in which nothing falls, and the fall."""
+    case, how = fall
+    device, both = watch(case)
+    if both is None:
+        return []
+    rng = np.random.default_rng([case.seed, case.number, 9])
+    way = free_way(device, rng) if how in ("guided", "hand stays") else None
+    up = -np.array(device.plant.model.opt.gravity)
+    lift = up * case.true * rng.uniform(0.97, 1.03)
+    target, pace = flange(device) / 1000.0, 0.0
+
+    def touches(tick: int) -> tuple[Touch, ...]:
+        nonlocal target, pace
+        if way is not None:
+            pace = min(pace + 0.002, PACE)
+            target = target + 0.002 * pace * way
+            return (Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), 40.0),)
+        if how == "carried":
+            return (Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 50, 1.0) * lift).tolist())),)
+        return ()
+
+    if not all(both.tick(touches(tick)) for tick in range(100 if how == "rest" else 300)):
+        return []
+    before = both.seen("before")
+    both.begin()
+    for tick in range(JUDGED):
+        both.tick(touches(tick) if how == "hand stays" else (), (DropPayload(),) if tick == 0 else ())
+    return [before, both.seen(how)]
+
+
+def measure_touches(case: Case) -> list[Seen]:
+    """Grabs, snatches and let-goes, as bench `drop` has them."""
+    _, both = watch(case)
+    found: list[Seen] = []
+    rng = np.random.default_rng([case.seed, case.number, 11])
+    for _ in range(TOUCHES if both is not None else 0):
+        assert both is not None
+        both.begin()
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        size, rise, held = rng.uniform(10.0, 60.0), int(rng.integers(5, 26)), int(rng.integers(10, 60))
+        sudden = rng.uniform() < 0.5
+        free = True
+        for tick in range(rise + held + rise + 100):
+            share = min((tick + 1) / rise, 1.0)
+            if tick >= rise + held:
+                share = 0.0 if sudden else max(1.0 - (tick - rise - held + 1) / rise, 0.0)
+            free = free and both.tick((Push("flange", (0.0, 0.0, 0.0), tuple((share * size * direction).tolist())),))
+        if not free:
+            break
+        found.append(both.seen("touch"))
+    return found
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    full = report.options.full
+    rng = np.random.default_rng([report.options.seed, 23])
+    cases, _ = draw(report.options.seed + 2300, 100 if full else 10, "sensor")
+    falls: list[Fall] = []
+    for k, case in enumerate(cases):
+        mass = float(np.exp(rng.uniform(*np.log(MASSES))))
+        falls.append(Fall(case._replace(true=mass, configured=mass), FALLS[k // 4 % 4]))
+    hands, _ = draw(report.options.seed + 2500, 50 if full else 5, "sensor")
+    seen = [one for some in spread(measure_fall, falls) for one in some]
+    seen += [one for some in spread(measure_touches, [case._replace(configured=case.true) for case in hands]) for one in some]
+    fallen = [one for one in seen if one.what in FALLS]
+    for how in FALLS:
+        score(report, f"payload falls, {how}", [one for one in fallen if one.what == how])
+    score(report, "payload of less than 1 kg falls", [one for one in fallen if one.mass < 1.0])
+    away(report, "before a fall", [one for one in seen if one.what == "before"])
+    touches = [one for one in seen if one.what == "touch"]
+    away(report, "grab or let-go", touches)
+    for low, high in itertools.pairwise(LEVELS):
+        reliability(report, (low, high), fallen, touches)
+
+
+def score(report: Report, what: str, some: list[Seen]) -> None:
+    """How many of these falls are known, and how soon."""
+    n = len(some)
+    report.share(f"{what}: known to the observer", sum(one.known < math.inf for one in some), n)
+    report.share(f"{what}: known to the rule", sum(one.rule < math.inf for one in some), n)
+    for name, delays in (("observer", [one.known for one in some]), ("rule", [one.rule for one in some])):
+        late = [2.0 * delay for delay in delays if delay < math.inf]
+        if late:
+            report.row(f"{what}: {name} knows after, longest", max(late), "ms", n=len(late))
+
+
+def away(report: Report, what: str, some: list[Seen]) -> None:
+    """How many of these are taken for a fall."""
+    n = len(some)
+    report.share(f"{what}: taken for a fall by the observer", sum(one.known < math.inf for one in some), n)
+    report.share(f"{what}: taken for a fall by the rule", sum(one.rule < math.inf for one in some), n)
+    if some:
+        report.row(f"{what}: log of the odds, largest", max(one.odds for one in some), "nats", n=n)
+
+
+def reliability(report: Report, level: tuple[float, float], fallen: list[Seen], touches: list[Seen]) -> None:
+    """Of what is told with this probability, as much is true; falls and touches are made equally frequent."""
+    low, high = (math.log(p / (1.0 - p)) if p < 1.0 else math.inf for p in level)
+    true, false = (sum(low <= one.odds < high for one in some) for some in (fallen, touches))
+    shares = true / max(len(fallen), 1), false / max(len(touches), 1)
+    name = f"a fall is told with {100.0 * level[0]:g} to {100.0 * level[1]:g} %: it is one"
+    report.row(name, shares[0] / sum(shares) if sum(shares) > 0.0 else "no case", n=true + false)
+
+
+if __name__ == "__main__":
+    main("observer", measure)

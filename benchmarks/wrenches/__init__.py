@@ -1,0 +1,1 @@
+"""Whose force moves the arm: what the observer is measured against."""

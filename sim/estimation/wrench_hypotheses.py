@@ -1,0 +1,185 @@
+"""Hypotheses of what changed the wrench at the flange, and how likely each makes what followed (FD-19).
+
+The flange sensor measures what the flange exerts on its load. What the configured load needs beyond that is, in axes of F,
+
+    x = w_needed - w_sensor - bias = h + share p,
+
+with a hand's wrench h, the wrench p that the payload alone needs in the motion that is felt behind the sensor (by accelerometer
+and gyro), and the share of the payload that is gone. Looked at is what followed a change that took a tick at most; x0 is the mean
+of the `BEFORE` ticks ahead of it, i the age of a tick:
+
+    nobody          x(i) = c + e,                    a hand that was there let go
+    steady          x(i) = x0 + J + e,               a hand's force stays, within what it may change by in a tick
+    rising          x(i) = x0 + J + r (i + 1/2) + e, a force that rises as a hand's does: not at once
+    anything        x(i) = e',                       e' as large as a hand's force: what none of the others explains
+    payload lost    x(i) = x0 + s p(i) + c + e,      what touches the arm stays; s is 1 within what is known of the payload
+    lost and freed  x(i) = s p(i) + c + e,           and a hand lets go in the same moment
+    more payload    x(i) = x0 + s p(i) + c + e,      s is negative: as much may have come again
+    carried         as any of these three,           but it is a hand that takes the weight on: not at once
+
+Each is linear in what is not known of it (J, r, s, an offset c), which has a Gaussian prior. So its likelihood is a closed form.
+With noise of variance R in L ticks, a basis a(i), a prior (m, V), and sums over the ticks S of (x - a m)² / R, A of a a' / R and
+g of a (x - a m) / R, it is
+
+    log p = -(S - g' (V^-1 + A)^-1 g) / 2 - log det(1 + V A) / 2 - L log R / 2.
+
+A hypothesis with more freedom pays for it by its determinant (Bayes factors: Kass and Raftery, J. Am. Stat. Assoc. 90, 773,
+1995).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.estimate import GRAVITY
+from sim.compiled.kernel import kernel
+from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN
+
+Array = NDArray[np.float64]
+
+BEFORE = 4
+"""Ticks of which the mean is the wrench before a change."""
+
+HAND, RISE = 50.0, 5.0
+"""A hand's largest force [N] (FD-3), and the ticks that it takes at least to get there: 10 ms."""
+
+TOUCH = 0.5
+"""What a hand's force may be off that straight rise [N]."""
+
+LEVER = 0.1
+"""Lever of a hand's force about the flange [m]: torques of a hand are so many times its forces."""
+
+SURE = 1.0 / 2.576
+"""Standard deviation of the payload's mass [kg]: the activation sequence refuses 99 of 100 payloads that are wrong by 1 kg."""
+
+CENTRE = 0.006
+"""Standard deviation of the payload's centre in each direction [m]: bench `payload` draws it within 10 mm."""
+
+OFFSET = 0.3
+"""Standard deviation of what the bias is off [N]: the noise of the mean that it comes from, and the drift of a minute."""
+
+GAIN = WRENCH_GAIN + 2.0 * WRENCH_CROSS_TALK / 5.0
+"""Error of the sensor in share of what it measures, at most."""
+
+
+LATE = math.sqrt(0.5)
+"""Share of an angular acceleration at the bandwidth of its filter that is missed."""
+
+LOST, FREED, MORE = range(3)  # what became of the payload
+
+
+class Seen(NamedTuple):
+    """What followed a change, summed over its ticks, an axis each: of x, of the payload's p, and of their products."""
+
+    x: Array  # (6,)
+    xx: Array
+    later: Array  # of x times its age
+    p: Array
+    pp: Array
+    px: Array
+
+
+@kernel
+def noise(own, load, axis, late):
+    """Variance of x in a tick, beside a `load`: of sensor, accelerometer, and the share of a turn that comes `late`."""
+    return own.noise[axis] ** 2 + (own.shaking * load[axis]) ** 2 + (late * own.fastest * load[axis + 1]) ** 2
+
+
+@kernel
+def jump(own, steep, axis):
+    """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
+    return (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
+
+
+@kernel
+def hand(own, seen, change, late):
+    """Log likelihoods of a hand whose force rises, J + r (i + 1/2) from the wrench before, and of one that stays as it was."""
+    length, before, steep = change
+    count = float(length)
+    once = 0.5 * count * (count + 2.0)  # the sum of i + 1/2
+    square = count * (count + 1.0) * (2.0 * count + 1.0) / 6.0 + 0.5 * count * (count + 1.0) + 0.25 * count
+    rising = steady = 0.0
+    for axis in range(2):
+        R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else LEVER
+        sudden = jump(own, steep, axis)
+        rise = (0.5 * HAND / RISE * lever) ** 2
+        a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
+        determinant = a * c - b * b
+        rising -= 1.5 * (count * np.log(R) + np.log(determinant * sudden * rise))
+        steady -= 1.5 * (count * np.log(R) + np.log(a * sudden))
+        for k in range(3 * axis, 3 * axis + 3):
+            first = seen.x[k] - count * before[k]
+            later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
+            whole = seen.xx[k] - 2.0 * before[k] * seen.x[k] + count * before[k] ** 2
+            g, h = first / R, ((count + 0.5) * first - later) / R
+            rising -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / determinant)
+            steady -= 0.5 * (whole / R - g * g / a)
+    return rising, steady
+
+
+@kernel
+def nobody(own, seen, length, late):
+    """Log likelihood of an arm that nobody touches."""
+    likelihood = 0.0
+    for axis in range(2):
+        R, offset = noise(own, own.whole, axis, late), (OFFSET * (1.0 if axis == 0 else LEVER)) ** 2
+        likelihood -= 1.5 * (length * np.log(R) + np.log(1.0 + length * offset / R))
+        for k in range(3 * axis, 3 * axis + 3):
+            likelihood -= 0.5 * (seen.xx[k] - offset / (R + length * offset) * seen.x[k] ** 2) / R
+    return likelihood
+
+
+@kernel
+def anything(seen, length):
+    """Log likelihood of what none of the others explains: whatever a hand's wrench can be, in each tick by itself."""
+    likelihood = 0.0
+    for axis in range(2):
+        V = (0.5 * HAND * (1.0 if axis == 0 else LEVER)) ** 2
+        likelihood -= 1.5 * length * np.log(V)
+        for k in range(3 * axis, 3 * axis + 3):
+            likelihood -= 0.5 * seen.xx[k] / V
+    return likelihood
+
+
+@kernel
+def payload(own, seen, change, kind):
+    """Log likelihood of a payload that changed; how much less likely a hand is that comes to carry as much; the share gone.
+
+    Args:
+        own, seen: of `sim.estimation.external_wrench`.
+        change: its ticks; the wrench before (6,), and the square of its rise (2,).
+        kind: `LOST`, `FREED` or `MORE`.
+    """
+    length, before, steep = change
+    weight = own.mass * GRAVITY
+    mean, variance = (-0.5, 0.25) if kind == MORE else (1.0, (SURE / own.mass) ** 2)
+    xx, px, pp, determinants = 0.0, 0.0, 0.0, 0.0
+    for axis in range(2):
+        R, lever = noise(own, own.rest, axis, 0.0), 1.0 if axis == 0 else LEVER
+        offset = (GAIN * weight * lever) ** 2
+        if axis == 1:
+            offset += (CENTRE * weight) ** 2
+        if kind == FREED:
+            offset += (OFFSET * lever) ** 2
+        else:
+            offset += 4.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
+        determinants += 3.0 * (length * np.log(noise(own, own.whole, axis, 0.0)) + np.log(1.0 + length * offset / R))
+        known = offset / (R * (R + length * offset))
+        for k in range(3 * axis, 3 * axis + 3):
+            start = 0.0 if kind == FREED else before[k]
+            x = seen.x[k] - length * start
+            xx += (seen.xx[k] - 2.0 * start * seen.x[k] + length * start * start) / R - known * x * x
+            px += (seen.px[k] - start * seen.p[k]) / R - known * x * seen.p[k]
+            pp += seen.pp[k] / R - known * seen.p[k] ** 2
+    off = px - mean * pp
+    step = off / (1.0 / variance + pp)
+    # What the accelerometer adds to x and to p cancels, with a hand as well. So a payload has to fit within the noise of what is
+    # left at the flange, and that this noise is small says nothing.
+    square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, 6.0 * length), mean + step
+    carried = 0.0
+    for k in range(6):
+        way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)
+        carried += 0.5 * way * way / jump(own, steep, k // 3)
+    return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried, share
