@@ -197,11 +197,15 @@ def test_what_the_schema_forbids_is_refused_in_one_line(fields: dict[str, Any], 
     assert "\n" not in str(caught.value)
 
 
+LASTS = {"payload-by-itself": 42.0}
+"""Sessions that cannot be short [s]: the wrist goes through six postures, there and back, and stands in each."""
+
+
 @pytest.mark.parametrize("name", bundled("sessions"))
 def test_every_bundled_session_is_valid_and_can_fail(name: str) -> None:
     session = load(find(name), Session)
     prepare(session, name)
-    assert session.duration <= 12.0
+    assert session.duration <= LASTS.get(name, 12.0)
     assert session.expectations
 
 
