@@ -62,6 +62,9 @@ TRUTH = (
 )
 """/truth: what the physics knows and the controller does not."""
 
+LATER = frozenset({"touched", "monitored_motor_current", "limit_motor_current"})
+"""What recordings lack that were made before it came; it is not a number in each tick of them."""
+
 CODES = ("mode", "safety", "phase", "program", "step", "valid")
 """/state also has these, a byte each; `valid` has a bit for joints, wrench and acceleration."""
 

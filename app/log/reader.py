@@ -1,5 +1,6 @@
 """Reads log.mcap into numpy, also one that a killed process left without its end."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,7 +13,7 @@ from app.files.checked import ABSENT, BadInput
 from app.log.events_file import EventLine
 from app.log.foxglove import NANOSECONDS
 from app.log.integrity import MENDED, Contents, missing, refusal
-from app.log.layout import CODES, STATE, TRUTH, record, width
+from app.log.layout import CODES, LATER, STATE, TRUTH, Field, record
 from app.log.recorded_messages import FramesMessage, PendantMessage, SettingsMessage
 from app.log.scan import Scan, scanned
 from pendant.events.event import Kind
@@ -86,8 +87,8 @@ def _log(path: Path, scan: Scan) -> Log:
         if kinds[topic] != encoding:
             raise ValueError(f"{topic} is {kinds[topic]}, not {encoding}")
     run = scan.notes["run"]
-    ticks, state = _columns(scan.packed.get("/state", []), STATE, arm.n, CODES)
-    truth_ticks, truth = _columns(scan.packed.get("/truth", []), TRUTH, arm.n, ())
+    ticks, state = _columns(scan, "/state", STATE, arm.n, CODES)
+    truth_ticks, truth = _columns(scan, "/truth", TRUTH, arm.n)
     pictures = _decoded(scan, "/pendant", PendantMessage)
     frames = {time: each.poses() for time, each in _timed(scan, "/tf", FramesMessage)}
     events = _decoded(scan, "/events", EventLine)
@@ -131,18 +132,34 @@ def _decoded(scan: Scan, topic: str, kind: type[T]) -> list[T]:
 
 
 def _columns(
-    rows: list[bytes], fields: tuple[Any, ...], n: int, codes: tuple[str, ...]
+    scan: Scan, topic: str, fields: tuple[Field, ...], n: int, codes: tuple[str, ...] = ()
 ) -> tuple[NDArray[np.int64], dict[str, NDArray[Any]]]:
-    """Packed messages as arrays by name, with their ticks."""
-    whole = record(width(fields, n), len(codes))
+    """Packed messages of a topic as arrays by name, with their ticks. Which names they have their own schema says."""
+    rows, text = scan.packed.get(topic, []), _schema(scan, topic)
+    written = [(name, int(size or 1)) for size, name in re.findall(r"^float64(?:\[(\d{1,3})\])? (\w+)", text, re.MULTILINE)]
+    known = {name for name, _ in written}
+    sizes = {each.name: each.size or n for each in fields}
+    wanted = {name: size for name, size in sizes.items() if name not in LATER or name.lower() in known}
+    if written != [(name.lower(), size) for name, size in wanted.items()]:
+        raise ValueError(f"{topic} has other columns")
+    whole = record(sum(wanted.values()), len(codes))
     kind = np.dtype([(name, whole.fields[name][0]) for name in ("cdr", "tick", "numbers", "codes")])  # type: ignore[index]
     if any(len(row) != kind.itemsize for row in rows):
         raise ValueError("messages of another length")
     table = np.frombuffer(b"".join(rows), dtype=kind)
     numbers, columns, at = table["numbers"], {}, 0
-    for each in fields:
-        size = each.size or n
-        columns[each.name] = numbers[:, at] if size == 1 else numbers[:, at : at + size]
+    for name, size in sizes.items():
+        if name not in wanted:
+            columns[name] = np.full((len(rows), size)[: 1 if size == 1 else 2], np.nan)
+            continue
+        columns[name] = numbers[:, at] if size == 1 else numbers[:, at : at + size]
         at += size
     columns |= {name: table["codes"][:, i] for i, name in enumerate(codes)}
     return table["tick"].astype(np.int64), columns
+
+
+def _schema(scan: Scan, topic: str) -> str:
+    number = next(each.schema_id for each in scan.summary.channels.values() if each.topic == topic)
+    if number not in scan.summary.schemas:
+        raise ValueError(f"{topic} has no schema")
+    return scan.summary.schemas[number].data.decode()

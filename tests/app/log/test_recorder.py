@@ -3,6 +3,7 @@
 import importlib
 import math
 import random
+import re
 import threading
 import time
 from collections import Counter
@@ -14,11 +15,13 @@ import numpy as np
 import pytest
 from google.protobuf import json_format
 from mcap.reader import make_reader
+from mcap.writer import Writer
 from mcap_ros2.decoder import DecoderFactory
 
 from app.files.checked import BadInput, convert
 from app.log import foxglove
-from app.log.playback import Player
+from app.log.layout import LATER
+from app.log.playback import Player, snapshot_at
 from app.log.reader import Log, read
 from app.log.recorder import AHEAD, BLOCK, SLOW, Recorder
 from app.log.scan import repair
@@ -327,3 +330,53 @@ def test_a_disk_that_fills_up_ends_the_recording_alone(tmp_path: Path, monkeypat
         recorder.see(simulation, simulation.tick(IDLE))
     with pytest.raises(BadInput, match="could not be written to its end"):
         recorder.close()
+
+
+def _older(path: Path, copy: Path, absent: set[str]) -> None:
+    """The recording as it was before these columns came."""
+    with path.open("rb") as source, copy.open("wb") as target:
+        reader, writer = make_reader(source), Writer(target)
+        writer.start()
+        channels: dict[int, int] = {}
+        summary = reader.get_summary()
+        assert summary is not None
+        kept: dict[int, list[slice]] = {}
+        for number, channel in summary.channels.items():
+            schema = summary.schemas[channel.schema_id]
+            text, at, parts = "", 12, []  # behind CDR's head and the tick
+            for line in schema.data.decode().splitlines(keepends=True):
+                found = re.match(r"float64(?:\[(\d+)\])? (\w+)", line)
+                size = 8 * int(found[1] or 1) if found else 0
+                if found is None or found[2] not in absent:
+                    text += line
+                    parts.append(slice(at, at + size))
+                at += size
+            if schema.encoding == "ros2msg":
+                kept[number] = [slice(0, 12), *parts, slice(at, None)]
+            known = writer.register_schema(schema.name, schema.encoding, text.encode())
+            channels[number] = writer.register_channel(channel.topic, channel.message_encoding, known)
+        for each in reader.iter_attachments():
+            writer.add_attachment(each.create_time, each.log_time, each.name, each.media_type, each.data)
+        for each in reader.iter_metadata():
+            writer.add_metadata(each.name, each.metadata)
+        for _, channel, message in reader.iter_messages():
+            data = message.data
+            parts = kept.get(channel.id, [slice(None)])
+            data = b"".join(data[part] for part in parts)
+            writer.add_message(channels[channel.id], message.log_time, data, message.publish_time, message.sequence)
+        writer.finish()
+
+
+def test_a_recording_from_before_a_column_came_is_read_and_one_that_lacks_another_is_not(recorded: Path, tmp_path: Path) -> None:
+    old, copy, whole = tmp_path / "old.mcap", tmp_path / "other.mcap", read(recorded)
+    _older(recorded, old, set(LATER))
+    log = read(old)
+    assert np.isnan(log.truth["touched"]).all()
+    assert np.isnan(log.state["limit_motor_current"]).all()
+    for name in ("q", "configured_mass", "limit_joint_torque", "mode"):
+        np.testing.assert_array_equal(log.state[name], whole.state[name])
+    np.testing.assert_array_equal(log.truth["payload_mass"], whole.truth["payload_mass"])
+    assert not snapshot_at(log, 0, 0).truth_touched
+    _older(recorded, copy, {"payload_mass"})
+    with pytest.raises(BadInput, match="/truth has other columns"):
+        read(copy)
