@@ -87,7 +87,7 @@ def _log(path: Path, scan: Scan) -> Log:
         if kinds[topic] != encoding:
             raise ValueError(f"{topic} is {kinds[topic]}, not {encoding}")
     run = scan.notes["run"]
-    ticks, state = _columns(scan, "/state", STATE, arm.n, CODES)
+    ticks, state = _columns(scan, "/state", STATE, arm.n, codes=CODES)
     truth_ticks, truth = _columns(scan, "/truth", TRUTH, arm.n)
     pictures = _decoded(scan, "/pendant", PendantMessage)
     frames = {time: each.poses() for time, each in _timed(scan, "/tf", FramesMessage)}
@@ -132,7 +132,7 @@ def _decoded(scan: Scan, topic: str, kind: type[T]) -> list[T]:
 
 
 def _columns(
-    scan: Scan, topic: str, fields: tuple[Field, ...], n: int, codes: tuple[str, ...] = ()
+    scan: Scan, topic: str, fields: tuple[Field, ...], n: int, *, codes: tuple[str, ...] = ()
 ) -> tuple[NDArray[np.int64], dict[str, NDArray[Any]]]:
     """Packed messages of a topic as arrays by name, with their ticks. Which names they have their own schema says."""
     rows, text = scan.packed.get(topic, []), _schema(scan, topic)

@@ -211,7 +211,8 @@ def run_mutants(
             while waiting and len(running) < (workers or os.cpu_count() or 1):
                 place, mutant = waiting.pop(0)
                 running[place] = _started(context, mutant, product)
-            wait([run.told for run in running.values()], timeout=1.0)
+            left = min(run.until for run in running.values()) - time.monotonic()
+            wait([run.told for run in running.values()], timeout=min(1.0, max(0.0, left)))
             for place, run in list(running.items()):
                 if run.told.poll() or not run.process.is_alive() or time.monotonic() >= run.until:
                     trials[place] = running.pop(place).end()

@@ -21,16 +21,25 @@ from sim.arm.arm_file import Arm
 EVERY = "All topics"
 TOPICS = {
     "Free-drive begins": (
-        *("free-drive", "push-to-activate", "confirmed-by-push", "let-go-too-early", "right-payload"),
-        *("enabling-device", "bump-ignored"),
+        *("free-drive", "push-to-activate", "presses-in-a-row", "posture-by-hand", "postures-in-a-row", "confirmed-by-push"),
+        *("confirmed-within-the-check", "second-gesture", "let-go-too-early", "right-payload", "enabling-device", "bump-ignored"),
+        *("teach-first", "after-a-stop"),
     ),
-    "Free-drive is refused": ("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison"),
+    "Free-drive is refused": (
+        *("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison", "checked-current"),
+        *("payload-moves-the-arm", "payload-gains-speed", "payload-moves-into-a-wall"),
+    ),
     "Free-drive ends": ("left-alone", "short-press", "too-fast", "sensor-fails", "way-back"),
     "Limits, walls, locked axes": (
-        *("soft-limits", "dynamic-limits", "joint-limits", "wall-walked-down", "wall-made", "axis-locks", "only-the-elbow"),
+        *("soft-limits", "dynamic-limits", "joint-limits", "vertical-speed", "wall-walked-down", "wall-made", "wall-pushes-back"),
+        *("axis-locks", "only-the-elbow"),
     ),
     "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "zeroed", "hanging", "friction-warm-up"),
-    "Programs and contact": ("hold", "program", "touch-the-table", "network"),
+    "Programs and contact": (
+        *("hold", "program", "touch-the-table", "stops-at-contact", "waits-for-a-trigger", "tells-the-user", "touches-itself"),
+        *("contact-buffers", "contact-median", "contact-older-pairs", "contact-operating", "contact-commanded"),
+        *("control-current-limit", "network"),
+    ),
 }
 """What the scenarios teach, by the names of their files."""
 

@@ -75,6 +75,9 @@ class WallsTab:
         self.delete = gui.add_button("Delete", color="gray")
         self.undo = gui.add_button("Undo", color="gray")
         self.handles = WallHandles(server, guard, self._moved)
+        self._refresh()  # nothing is chosen yet
+        for control in (self.on, self.side, self.part, self.reaction, *self.size, *self.spot, self.here, self.delete, self.undo):
+            enable(control, False)
         self._connect()
         self._connect_values()
 
