@@ -99,7 +99,6 @@ class Simulation:
         self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
         self._estimate: Estimate | None = None
-        self._glance = Glance(self)
 
     @property
     def tick_count(self) -> int:
@@ -235,7 +234,7 @@ class Simulation:
 
     def glance(self) -> Glance:
         """What scoring reads of the last tick, in place."""
-        return self._glance
+        return Glance(self)  # one that is kept would keep what the simulation holds until Python looks for circles
 
     def snapshot(self) -> Snapshot:
         """What pictures and logs need of the last tick, copied.
