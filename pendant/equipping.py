@@ -86,7 +86,7 @@ class Equipping:
         return self._robot.turn is not None
 
     def limits(self, reduced: SpeedLimits | None) -> SpeedLimits | None:
-        """What the control law keeps the arm within, besides what holds in REDUCED."""
+        """What the control law keeps the arm within, in addition to what holds in REDUCED."""
         slower = SLOW if reduced is None else SpeedLimits(*map(min, SLOW, reduced))
         return slower if self.moving else reduced
 

@@ -135,7 +135,7 @@ def _situations() -> list[Claim]:
 
 
 def _embodiments() -> list[Claim]:
-    """What the sources name besides their claims: each by its requirement and a word."""
+    """What the sources name beyond their claims: each by its requirement and a word."""
     return [Claim(name, text, name.partition(" ")[0]) for name, text in _EMBODIMENTS.items()]
 
 

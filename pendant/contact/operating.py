@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from pendant.contact.settings import ContactUse
 
 FINENESS = 0.01
-"""Steps of the factor: thresholds are made anew for each other value."""
+"""Steps of the factor: each other value needs new thresholds."""
 
 
 class Operation(NamedTuple):

@@ -153,7 +153,7 @@ class Containment:
         return tuple([(border, place) for border, place in pairs if place is not None])
 
     def every_place(self, walls: WallSettings) -> tuple[tuple[AnyBorder, Place], ...]:
-        """What holds, and every area of the list besides, each with where its shape lies.
+        """What holds, and all other areas of the list, each with where its shape lies.
 
         Areas that do not hold yet and lie in a part of the arm are left out; one whose size follows the posture has its smallest.
         """

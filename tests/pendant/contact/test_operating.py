@@ -43,7 +43,7 @@ def test_they_multiply_and_lie_on_what_the_user_has_set() -> None:
 
 
 def test_the_same_settings_are_given_while_nothing_changes() -> None:
-    """A detector makes its thresholds anew for other settings: every percent of the factor."""
+    """A detector makes new thresholds for other settings: every percent of the factor."""
     use, sensitivity = made(**SHARES), OperatingSensitivity()
     first = sensitivity.step(use, Operation(force=10.0))
     assert sensitivity.step(use, Operation(force=10.04)) is first

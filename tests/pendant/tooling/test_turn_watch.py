@@ -19,7 +19,7 @@ def watching() -> TurnWatch:
 
 
 def felt(watch: TurnWatch, x: float, value: Estimate | None = None) -> str:
-    """A force along x besides the weight [N]."""
+    """A force along x in addition to the weight [N]."""
     return watch.step(value or estimate(), (x, WEIGHT[1], WEIGHT[2]))
 
 

@@ -136,7 +136,7 @@ def test_who_pays_for_the_motion_takes_a_wall_along_without_any_force_at_the_fla
     ("depth", "force"), [(0.021, 0.0), (0.02, 0.0), (0.015, 10.0), (0.01, 20.0), (0.0, 40.0), (-0.005, 60.0), (-0.1, 150.0)]
 )
 def test_a_wall_that_pushes_pushes_a_part_at_rest_the_harder_the_nearer(axis: Vector, depth: float, force: float) -> None:
-    """VW-7: 40 N at the border, none where the band of 20 mm begins; beyond it 4000 N/m besides, at most 150 N."""
+    """VW-7: 40 N at the border, none where the band of 20 mm begins; beyond it 4000 N/m more, at most 150 N."""
     area = Area(name="a", shape=HalfSpace(normal=axis), band=0.02, push=40.0)
     barrier = Barrier(area, Stage.OPERATION)
     barrier.step(around(scaled(axis, -0.1)))
