@@ -17,6 +17,7 @@ from app.api import session, stepped
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.runs.runner import simulate
+from app.runs.warm_up import warm_up
 from app.session.prepare import prepare
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
@@ -80,12 +81,30 @@ HOSTILE = (
     "x = get_inverse_kin(p[{n}, 0, 0, 0, 0, 0])",
     "while True:\n  x = get_inverse_kin_has_solution(p[{n}, 0, 0, 0, 0, 0])\nend",
     "x = struct(a=1)\nwhile True:\n  x = struct(a=x, b=x)\nend",
+    "while True:\n  x = get_forward_kin()\n  y = {n}\nend",
+    "while True:\n  x = get_actual_tool_flange_pose()\n  y = get_jacobian_time_derivative()\n  z = {n}\nend",
+    "while True:\n  x = inv([[1, 2], [3, {n}]])\nend",
+    "x = {n}" + " + 1" * 5000,
+    "x = " + "not " * 5000 + "({n} > 1)",
+    "x = [{n}]\ny = x" + "[0]" * 5000,
+    "if True:\n" * 150 + "x = {n}\n" + "end\n" * 150,
+    "if True:\n" * 1000 + "x = {n}\n" + "end\n" * 1000,
     "a = make_list(1000, 1.5)\nb = [a]\nwhile True:\n  b = inv([[1, 2], [3, {n}]])\nend",
 )
 """Each with several numbers in place of {n}."""
 
 LEVELS = "\n".join(f"def f{k}(x):\n  return f{k + 1}(x) + f{k + 1}(x)\nend" for k in range(30))
 DOUBLING = f"{LEVELS}\ndef f30(x):\n  return x\nend\nwhile True:\n  y = f0({{n}})\nend"
+LONG = "def f():\n" + "\n".join(f"  movej([{k}e-6, -1.2, 1.5, -1.87, -1.57, 0.0], a=1.4, v=1.05, r=0.01)" for k in range(9000))
+SHORT = "\n".join("x=1" for _ in range(90000))
+VAST = (
+    f"{LONG}\n  x = {{n}}\nend",
+    f"{LONG}\n  x = y{{n}}\nend",
+    f"{LONG}\n  x = ({{n}}",
+    f"{SHORT}\nx = {{n}}",
+    SHORT * 2 + "{n}",
+)
+"""Hundreds of thousands of characters: that run, that name what is not there, that have no end, of many lines, and too many."""
 MANY = "\n".join(f"v{k} = make_list(1000, {k}.5)" for k in range(2000)) + "\nx = {n}"
 
 
@@ -138,7 +157,7 @@ class Course:
 
 def hostile(count: int) -> Iterator[str]:
     """So many programs that are well formed, and mean no good."""
-    made = [*HOSTILE, DOUBLING, MANY]
+    made = [*HOSTILE, DOUBLING, MANY, *VAST]
     for k in range(count):
         yield made[k % len(made)].replace("{n}", str(2 + k // len(made)))
 
@@ -188,6 +207,7 @@ def beside_the_clock(report: Report, programs: list[tuple[str, float]]) -> None:
 
 def measure(report: Report) -> None:
     """Fill the report."""
+    warm_up()  # as the app does
     course, full = Course(), report.options.full
     for _ in range(3):
         course.run("x = 1")
@@ -205,7 +225,7 @@ def measure(report: Report) -> None:
         report.row(f"{name} scripts: longest part of a tick", max(each.longest for each in ended), "ms", n=len(ended))
         report.notes += sorted({each.surprise for each in wrong})
     sent = [(text, 0.05) for text in damaged(1000 if full else 50, report.options.seed + 1)]
-    beside_the_clock(report, [*sent, *((text, PATIENCE) for text in hostile(200 if full else 27))])
+    beside_the_clock(report, [*sent, *((text, PATIENCE) for text in hostile(200 if full else 41))])
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     report.row("memory that all of them took", grown, "MB", at_most=400.0)
 

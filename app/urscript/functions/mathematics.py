@@ -52,7 +52,7 @@ def of_numbers(seed: int) -> Iterator[Builtin]:
     yield builtin("make_list", _make_list, Taken("length", count), Taken("initial_value", anything), Taken("capacity", count, 0))
     yield builtin("integer_to_binary_list", _bits, Taken("x", integer))
     yield builtin("binary_list_to_integer", _from_bits, Taken("l", items))
-    yield builtin("inv", _inverse, Taken("m", anything))
+    yield builtin("inv", _inverse, Taken("m", anything), cost=20)
     yield builtin("transpose", _transposed, Taken("m", items))
 
 

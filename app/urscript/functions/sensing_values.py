@@ -34,6 +34,9 @@ Array = NDArray[np.float64]
 SEARCH = 300
 """What a step of a search for joint angles counts as, in steps of the evaluator."""
 
+OF_MODEL = 100
+"""What a look at the arm's model counts as, likewise."""
+
 STEADY = 0.01
 """Joint speed below which the arm counts as steady [rad/s]."""
 HISTORY = 500
@@ -191,11 +194,11 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         Taken("maxOrientationError", number, 1e-10),
         tcp,
     )
-    yield builtin("get_forward_kin", forward, joints, tcp)
-    yield builtin("get_actual_tool_flange_pose", flange)
+    yield builtin("get_forward_kin", forward, joints, tcp, cost=OF_MODEL)
+    yield builtin("get_actual_tool_flange_pose", flange, cost=OF_MODEL)
     yield builtin("get_inverse_kin", inverse, *given)
     yield builtin("get_inverse_kin_has_solution", lambda *all_: found(*all_) is not None, *given)
-    yield builtin("is_within_safety_limits", lambda x: _within(robot, arm, x), Taken("pose", any_value))
+    yield builtin("is_within_safety_limits", lambda x: _within(robot, arm, x), Taken("pose", any_value), cost=OF_MODEL)
 
     def q_now(q: Value) -> Array:
         return np.array(robot.record.get("actual_q") if q is None else q)
@@ -230,10 +233,10 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         return matrix((ahead - behind) / (2.0 * step))
 
     speeds = Taken("qd", optional(numbers(6)), None)
-    yield builtin("get_jacobian", jacobian, joints, tcp)
-    yield builtin("get_jacobian_time_derivative", jacobian_rate, joints, speeds, tcp)
-    yield builtin("get_mass_matrix", mass, joints, Taken("include_rotors_inertia", any_value, False))
-    yield builtin("get_coriolis_and_centrifugal_torques", coriolis, joints, speeds)
+    yield builtin("get_jacobian", jacobian, joints, tcp, cost=OF_MODEL)
+    yield builtin("get_jacobian_time_derivative", jacobian_rate, joints, speeds, tcp, cost=OF_MODEL)
+    yield builtin("get_mass_matrix", mass, joints, Taken("include_rotors_inertia", any_value, False), cost=OF_MODEL)
+    yield builtin("get_coriolis_and_centrifugal_torques", coriolis, joints, speeds, cost=OF_MODEL)
 
 
 def _tool_point(value: Value) -> tuple[float, ...] | None:

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from lark import Token
 
+from app.urscript.language.trouble import ScriptTrouble, Spot
+
 GRAMMAR = r"""
 start: _block
 _block: _NL* _statement*
@@ -114,15 +116,22 @@ WORDS = {
 """How errors call what was expected."""
 
 
+MOST_TOKENS = 400_000
+"""Of a script: words, numbers and signs. 10 000 motions have so many."""
+
+
 class LineEnds:
-    """Leaves out the ends of lines that go on in the next one."""
+    """Leaves out the ends of lines that go on in the next one, and counts what is left."""
 
     always_accept = ("_NL",)
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        """What the parser gets of the lexer's stream."""
+        """What the parser gets of the lexer's stream. Raises ScriptTrouble: it is too long."""
         depth, before = 0, ""
-        for token in stream:
+        for number, token in enumerate(stream):
+            if number == MOST_TOKENS:
+                place = Spot(token.line or 1, token.column or 1)
+                raise ScriptTrouble(place, f"the script has more than {MOST_TOKENS} words, numbers and signs")
             kind = token.type
             if kind in OPENING:
                 depth += 1

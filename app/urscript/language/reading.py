@@ -14,7 +14,10 @@ LONGEST = 1 << 20
 """Of a script [bytes]."""
 
 DEEPEST = 60
-"""Brackets, blocks and signs within one another."""
+"""Brackets within one another."""
+
+DEEPEST_TREE = 200
+"""Blocks, operators and parts within one another: what walks the tree recurses."""
 
 POSE_ITEMS = 6
 
@@ -187,7 +190,7 @@ def read_script(text: str) -> list[tree.Node]:
     _shallow(text)
     parser = _parser()
     try:
-        return parser.parse(text)  # pyright: ignore[reportReturnType]: the transformer's, not Lark's tree
+        body: list[tree.Node] = parser.parse(text)  # pyright: ignore[reportAssignmentType]: the transformer's, not Lark's tree
     except VisitError as error:
         if isinstance(error.orig_exc, ScriptTrouble):
             raise error.orig_exc from None
@@ -203,10 +206,14 @@ def read_script(text: str) -> list[tree.Node]:
         raise ScriptTrouble(_at(token), f"syntax error: unexpected {shown}{expected(set(error.expected))}") from None
     except UnexpectedInput as error:
         raise ScriptTrouble(Spot(error.line, error.column), "syntax error") from None
+    for depth, level in enumerate(tree.levels(body)):
+        if depth == DEEPEST_TREE:
+            raise ScriptTrouble(level[0].place, f"blocks and operators within one another, more than {DEEPEST_TREE}")
+    return body
 
 
 def _shallow(text: str) -> None:
-    """Raise ScriptTrouble where brackets, blocks or signs are nested too deeply: what walks the tree recurses."""
+    """Raise ScriptTrouble where brackets are nested too deeply, or a line is too long."""
     depth, deepest = 0, DEEPEST
     for number, line in enumerate(text.splitlines(), 1):
         if len(line) > 1 << 15:

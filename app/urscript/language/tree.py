@@ -1,6 +1,8 @@
 """The tree of a script."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 from app.urscript.language.trouble import Spot
 
@@ -12,6 +14,7 @@ class Node:
     """Base of all."""
 
     place: Spot
+    size: int = field(default=0, init=False, repr=False, compare=False)  # nodes of an expression, once they have been counted
 
 
 @dataclass(slots=True)
@@ -154,3 +157,33 @@ class Function(Node):
     name: str
     parameters: list[FunctionParameter]
     body: list[Node] = field(default_factory=list)
+
+
+def levels(body: list[Node]) -> Iterator[list[Node]]:
+    """All nodes of a tree: those on top, then those that these consist of, and so on."""
+    level = list(body)
+    while level:
+        yield level
+        level = [part for node in level for part in _parts(node)]
+
+
+def _parts(node: Node) -> Iterator[Node]:
+    for name in type(node).__slots__:
+        yield from _nodes(getattr(node, name))
+
+
+def _nodes(value: Any) -> Iterator[Node]:
+    if isinstance(value, Node):
+        yield value
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from _nodes(each)
+
+
+def let_go(body: list[Node]) -> None:
+    """Give a tree's memory back one node after the other: all at once it would hold up every other thread."""
+    kept = list(levels(body))
+    body.clear()
+    for level in kept:
+        while level:
+            level.pop()

@@ -162,42 +162,48 @@ def _lay_out(routine: Routine, shared: dict[str, int]) -> None:
 
 def calls(node: tree.Node) -> Iterator[tree.Call]:
     """All calls in an expression; what a thread is started with is called elsewhere."""
-    if isinstance(node, tree.Call):
-        yield node
-    for each in children(node):
-        yield from calls(each)
+    left = [node]
+    while left:
+        each = left.pop()
+        if isinstance(each, tree.Call):
+            yield each
+        left += children(each)
 
 
 def _who_takes_time(main: Routine, routines: dict[str, Routine], builtins: dict[str, Builtin]) -> None:
     """Find the functions that run within a statement: short, without loops, and calling only such."""
     state: dict[str, bool | None] = {}
-
-    def within(routine: Routine) -> bool:
-        known = state.get(routine.name, "new")
-        if known != "new":
-            return bool(known)  # None: it calls itself
-        state[routine.name] = None
-        cost, plain = 2, routine.kind == "def"
-        for each in statements(routine.body):
-            cost += 1 + sum(size(expression) for expression in expressions(each))
-            plain = plain and not isinstance(each, tree.While | tree.OnThread)
-            for call in (call for expression in expressions(each) for call in calls(expression)):
-                called = routines.get(call.name)
-                if called is not None:
-                    plain = len(state) < 200 and within(called) and plain
-                    cost += called.cost
-                elif call.name not in builtins or builtins[call.name].takes_time:
-                    plain = False
-        routine.cost = cost
-        routine.by_steps = not (plain and cost <= HEAVY)
-        state[routine.name] = not routine.by_steps
-        return not routine.by_steps
-
     for routine in routines.values():
-        within(routine)
+        _runs_within(routine, state, routines, builtins)
     main.by_steps = True
+
+
+def _runs_within(
+    routine: Routine, state: dict[str, bool | None], routines: dict[str, Routine], builtins: dict[str, Builtin]
+) -> bool:
+    known = state.get(routine.name, "new")
+    if known != "new":
+        return bool(known)  # None: it calls itself
+    state[routine.name] = None
+    cost, plain = 2, routine.kind == "def"
+    for each in statements(routine.body):
+        cost += 1 + sum(size(expression) for expression in expressions(each))
+        plain = plain and not isinstance(each, tree.While | tree.OnThread)
+        for call in (call for expression in expressions(each) for call in calls(expression)):
+            called = routines.get(call.name)
+            if called is not None:
+                plain = len(state) < 200 and _runs_within(called, state, routines, builtins) and plain
+                cost += called.cost
+            elif call.name not in builtins or builtins[call.name].takes_time:
+                plain = False
+    routine.cost = cost
+    routine.by_steps = not (plain and cost <= HEAVY)
+    state[routine.name] = not routine.by_steps
+    return not routine.by_steps
 
 
 def size(node: tree.Node) -> int:
     """Nodes of an expression."""
-    return 1 + sum(size(each) for each in children(node))
+    if not node.size:
+        node.size = 1 + sum(size(each) for each in children(node))
+    return node.size

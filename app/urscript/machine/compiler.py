@@ -11,14 +11,14 @@ from app.urscript.language import tree
 from app.urscript.language.calling import Given, bound
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.machine import expressions as make
-from app.urscript.machine.analysis import MAIN, Routine, ScriptOutline, calls, children, size
+from app.urscript.machine.analysis import MAIN, Routine, ScriptOutline, children, size
 from app.urscript.machine.expressions import Frame, Read
 from app.urscript.machine.held import Held
-from app.urscript.machine.limits import HEAVY, LONGEST_LIST
+from app.urscript.machine.limits import HEAVY
 from app.urscript.machine.signature import Builtin, NeededArgument
 from app.urscript.machine.statements import Statements
-from app.urscript.machine.values import UNSET, StructValue, Value, weight
-from app.urscript.machine.worked import as_it_is, kept, named_check, worked
+from app.urscript.machine.values import UNSET, Value
+from app.urscript.machine.worked import as_it_is, kept, named_check, structured, worked
 
 
 class Compiler:
@@ -29,6 +29,7 @@ class Compiler:
         self.routine = script.main
         self.held_slots = 0  # slots in use by the present statement
         self._temporary: dict[int, Read] = {}  # of nodes done beforehand, by id
+        self._stepped: dict[int, bool] = {}  # whether there are steps in a node, by id
         self._statements = Statements(self)
 
     def all(self) -> None:
@@ -44,7 +45,11 @@ class Compiler:
         return self._plain(node)
 
     def _steps_in(self, node: tree.Node) -> bool:
-        return any(self._by_steps(call) for call in calls(node))
+        found = self._stepped.get(id(node))
+        if found is None:
+            own = isinstance(node, tree.Call) and self._by_steps(node)
+            found = self._stepped[id(node)] = own or any(self._steps_in(each) for each in children(node))
+        return found
 
     def _by_steps(self, call: tree.Call) -> bool:
         routine = self.script.routines.get(call.name)
@@ -99,6 +104,7 @@ class Compiler:
         """A statement is compiled: what it kept is free."""
         self.held_slots = 0
         self._temporary.clear()
+        self._stepped.clear()
 
     def _plain(self, node: tree.Node) -> Read:
         done = self._temporary.get(id(node))
@@ -260,16 +266,7 @@ class Compiler:
     def _struct(self, node: tree.Call) -> Read:
         if node.arguments or not node.named:
             raise ScriptTrouble(node.place, "struct() has members by name")
-        parts = [(name, self._plain(value)) for name, value in node.named]
-        place = node.place
-
-        def made(f: Frame) -> Value:
-            found = StructValue({name: part(f) for name, part in parts})
-            if weight(found) > LONGEST_LIST:
-                raise ScriptTrouble(place, f"a struct of {weight(found)} values, allowed: {LONGEST_LIST}")
-            return found
-
-        return made
+        return structured([(name, self._plain(value)) for name, value in node.named], node.place)
 
     def _run(self, node: tree.Run) -> Read:
         routine = self.script.routines.get(node.call.name)

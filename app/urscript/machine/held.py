@@ -1,11 +1,36 @@
-"""What the steps of a script leave for the machine that runs them, and ask of it."""
+"""A thread of a script, and what its steps leave for the machine that runs them, and ask of it."""
 
+from collections.abc import Generator
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from app.urscript.language.trouble import Spot
+from app.urscript.language.trouble import NOWHERE, Spot
 from app.urscript.machine.analysis import Routine
 from app.urscript.machine.expressions import Frame
 from app.urscript.machine.values import Value
+
+
+class Halted(Exception):
+    """The script has come to `halt`."""
+
+
+@dataclass(slots=True, eq=False)
+class Strand:
+    """A thread of a script."""
+
+    number: int
+    routine: Routine
+    frame: Frame
+    pc: int = 0
+    callers: list[tuple[Routine, int, Frame, int]] = field(default_factory=list)
+    wait: Generator[None, None, Value] | None = None
+    slot: int = 0  # for the result of what it waits for
+    where: Spot = NOWHERE  # of what it waits for
+    function: str = ""  # that it waits in
+    joins: int = 0  # the thread that it waits for
+    ran: int = 0  # the tick in which it ran last
+    parent: int = 0  # the thread that started it
+    spent: int = 0  # steps since time passed for it
 
 
 class Held(Protocol):

@@ -1,10 +1,14 @@
 """How much a script may have and do. Each limit is a clear error; none of them is near what clients' programs need."""
 
 NODES_A_TICK = 3000
-"""Steps of the evaluator in one tick, of all threads together: a few tenths of a millisecond."""
+"""Steps of the evaluator in one tick, of all threads together: a few tenths of a millisecond. What one statement takes beyond
+is made up for in the ticks after it."""
 
 NODES_WITHOUT_TIME = 500 * NODES_A_TICK
 """Steps of one thread in a row in which no time passes for the robot: a second of its clock when it runs alone."""
+
+NODES_OF_START = 60
+"""Steps that the start of a thread counts, as long as it takes the evaluator."""
 
 HEAVY = 80
 """Steps that are done without looking at the clock; longer statements are done in parts."""

@@ -1,14 +1,13 @@
 """Runs a compiled script in the ticks of the robot: its threads take turns, and none can hold up a tick."""
 
-from collections.abc import Generator
-from dataclasses import dataclass, field
 from typing import Any
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import NOWHERE, Misuse, ScriptTrouble, Spot
+from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
 from app.urscript.machine.analysis import Routine, ScriptOutline, outline
 from app.urscript.machine.compiler import Compiler
 from app.urscript.machine.expressions import Frame
+from app.urscript.machine.held import Halted, Strand
 from app.urscript.machine.limits import (
     DEEPEST_CALLS,
     MEMORY_LOOK,
@@ -16,6 +15,7 @@ from app.urscript.machine.limits import (
     MOST_SLOTS,
     MOST_THREADS,
     NODES_A_TICK,
+    NODES_OF_START,
     NODES_WITHOUT_TIME,
 )
 from app.urscript.machine.operators import effort
@@ -25,29 +25,6 @@ from app.urscript.machine.values import UNSET, Value, safely_shown, weight
 
 TOO_LONG = "the program used too much time without instructing the robot what to do; use sleep() or sync() in long loops"
 """As a UR says it (ros-industrial/universal_robot#330)."""
-
-
-class Halted(Exception):
-    """The script has come to `halt`."""
-
-
-@dataclass(slots=True, eq=False)
-class Strand:
-    """A thread of a script."""
-
-    number: int
-    routine: Routine
-    frame: Frame
-    pc: int = 0
-    callers: list[tuple[Routine, int, Frame, int]] = field(default_factory=list)
-    wait: Generator[None, None, Value] | None = None
-    slot: int = 0  # for the result of what it waits for
-    where: Spot = NOWHERE  # of what it waits for
-    function: str = ""  # that it waits in
-    joins: int = 0  # the thread that it waits for
-    ran: int = 0  # the tick in which it ran last
-    parent: int = 0  # the thread that started it
-    spent: int = 0  # steps since time passed for it
 
 
 class Machine:
@@ -68,7 +45,14 @@ class Machine:
         self.joined: Value = 0
         self.script: ScriptOutline = outline(body, builtins)
         self.globals += [UNSET] * len(self.script.globals)
-        Compiler(self.script, builtins, self).all()
+        try:
+            Compiler(self.script, builtins, self).all()
+        except ScriptTrouble:
+            self.let_go()
+            raise
+        finally:
+            for routine in (self.script.main, *self.script.routines.values()):
+                routine.body = []
         main = self.script.main
         self._count = 1
         self._main = Strand(1, main, [UNSET] * main.size)
@@ -77,6 +61,7 @@ class Machine:
         self._ticks = 0
         self._inside = 0  # of critical parts
         self._fresh = 0  # numbers and characters made since the last look at what is held
+        self._owed = 0  # steps that were done beyond the budgets of the ticks so far
         self.ended = False
         self.trouble: ScriptTrouble | None = None  # why it cannot go on
 
@@ -95,6 +80,9 @@ class Machine:
         """Run until every thread waits, or the budget is used up. Returns whether it has ended, by itself or by an error."""
         if self.ended:
             return True
+        budget, self._owed = budget - self._owed, max(self._owed - budget, 0)
+        if budget <= 0:
+            return False
         try:
             self._turns(budget)
         except ScriptTrouble as trouble:
@@ -140,11 +128,19 @@ class Machine:
                 strand.wait.close()
         self._strands = []
 
+    def let_go(self) -> None:
+        """It has ended, and is used no more: what it consists of goes now, step by step, so that nobody has to look for it."""
+        for routine in (self.script.main, *self.script.routines.values()):
+            while routine.code:
+                routine.code.pop()
+                routine.places.pop()
+
     def start(self, routine: Routine, frame: Frame, place: Spot) -> int:
         """Start a thread; its number."""
         if len(self._strands) >= MOST_THREADS:
             raise ScriptTrouble(place, f"more than {MOST_THREADS} threads")
         self._count += 1
+        effort[0] += NODES_OF_START
         self._strands.append(Strand(self._count, routine, frame, parent=self._now.number))
         self._room(place)
         return self._count
@@ -274,5 +270,6 @@ class Machine:
         finally:
             strand.routine, strand.pc, strand.frame = routine, pc, frame
             strand.spent += begun - budget
+            self._owed += max(-budget, 0)
             if strand.spent > NODES_WITHOUT_TIME and budget <= 0:
                 raise ScriptTrouble(routine.places[pc], TOO_LONG)

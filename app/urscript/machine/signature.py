@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from app.urscript.language.trouble import Misuse
+from app.urscript.machine.operators import effort
 from app.urscript.machine.values import PoseValue, Value, kind
 
 Check = Callable[[Value], Value]
@@ -38,9 +39,17 @@ class Builtin(NamedTuple):
     takes_time: bool = False
 
 
-def builtin(name: str, work: Callable[..., Value], *parameters: Taken, takes_time: bool = False) -> Builtin:
-    """A function of the language."""
-    return Builtin(name, parameters, work, takes_time)
+def builtin(name: str, work: Callable[..., Value], *parameters: Taken, takes_time: bool = False, cost: int = 0) -> Builtin:
+    """A function of the language; `cost`: what a call takes beyond that of a short function, in steps of the evaluator."""
+    return Builtin(name, parameters, _counted(work, cost) if cost else work, takes_time)
+
+
+def _counted(work: Callable[..., Value], cost: int) -> Callable[..., Value]:
+    def counted(*given: Value) -> Value:
+        effort[0] += cost
+        return work(*given)
+
+    return counted
 
 
 def anything(value: Value) -> Value:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+from weakref import proxy
 
 from app.urscript.language import tree
 from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
@@ -23,7 +24,7 @@ class Statements:
     """Adds the steps of statements to the function that is being compiled."""
 
     def __init__(self, compiler: Compiler) -> None:
-        self._compiler = compiler
+        self._compiler: Compiler = proxy(compiler)  # which has this: no circle, so that both go with their last user
         self._loops: list[tuple[int, list[int]]] = []  # of each loop that is open: its first step, and who leaves it
 
     @property

@@ -1,10 +1,11 @@
-"""Calls of the language's own functions, within an expression."""
+"""Calls of the language's own functions, and structs, within an expression."""
 
 from collections.abc import Callable
 
 from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
 from app.urscript.machine.expressions import Frame, Read
-from app.urscript.machine.values import Value
+from app.urscript.machine.limits import LONGEST_LIST
+from app.urscript.machine.values import StructValue, Value, weight
 
 
 def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Callable[[Value], Value]]], place: Spot) -> Read:
@@ -54,6 +55,18 @@ def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Ca
             raise failed(misuse) from None
 
     return several
+
+
+def structured(parts: list[tuple[str, Read]], place: Spot) -> Read:
+    """A struct of these members."""
+
+    def made(f: Frame) -> Value:
+        found = StructValue({name: part(f) for name, part in parts})
+        if weight(found) > LONGEST_LIST:
+            raise ScriptTrouble(place, f"a struct of {weight(found)} values, allowed: {LONGEST_LIST}")
+        return found
+
+    return made
 
 
 def kept(slot: int) -> Read:

@@ -93,6 +93,20 @@ class ScriptRobot:
         elif word == "external_sensor" and values["enable"]:
             raise Misuse("an external force sensor is not simulated; the robot's own is used")
 
+    def taken(self) -> Inputs:
+        """What the script asked of the robot besides motion, for the tick that begins."""
+        if not self.asks and self.tool is None:
+            return NOTHING
+        inputs = NOTHING
+        asks, self.asks = self.asks, []
+        for ask in asks:
+            inputs = joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
+        if self.tool is not None:
+            made, self.tool = self.tool, None
+            table = tuple(each for each in self.simulation.tools if each.name != made.name)
+            inputs = joined(inputs, Inputs(tools=(*table, made), tool=made.name))
+        return inputs
+
     def _payload(self, mass: float, cog: Any, inertia: Any, transition: float) -> None:
         """What UR calls payload is the tool and what it carries; the tool in use keeps its part."""
         fitting = self.simulation.supervisor.fitting

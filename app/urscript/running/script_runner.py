@@ -9,6 +9,7 @@ from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
 from app.urscript.functions.library_of_functions import builtins_of
 from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.functions.sensing_values import HISTORY
+from app.urscript.language import tree
 from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
@@ -17,7 +18,7 @@ from app.urscript.running.script_arm import ScriptArm
 from app.urscript.running.script_robot import OfferedScript, ScriptRobot, joined
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
-from pendant.inputs import NOTHING, Inputs
+from pendant.inputs import NOTHING
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 
@@ -44,6 +45,7 @@ class ScriptRunner:
         self._next: OfferedScript | None = None
         self._stop = False
         self._waiting: list[OfferedScript] = []  # secondary programs
+        self._over: deque[OfferedScript] = deque()  # scripts that are used no more
         self._beside: list[tuple[OfferedScript, int]] = []  # and how many ticks each has run
         self._running: OfferedScript | None = None
         self._listeners: tuple[Callable[[Told], None], ...] = ()
@@ -90,6 +92,7 @@ class ScriptRunner:
         outline = script.machine.script
         with self._lock:
             if not outline.secondary:
+                self._drop_next()
                 self._next = script
             elif len(self._waiting) + len(self._beside) < MOST_WAITING:
                 self._waiting.append(script)
@@ -100,7 +103,8 @@ class ScriptRunner:
     def stop(self) -> None:
         """End the script that runs, and the one that waits."""
         with self._lock:
-            self._next, self._stop = None, True
+            self._drop_next()
+            self._stop = True
 
     def pause(self) -> None:
         """Let it wait; the arm comes to rest."""
@@ -151,11 +155,21 @@ class ScriptRunner:
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
         robot = ScriptRobot(self.cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self.cabinet.simulation.scenario.seed)
-        with uncollected():
+        while self._over:
+            self._over.popleft().machine.let_go()
+        with uncollected(len(text)):
             body = read_script(text)
             secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
-            machine = Machine(body, builtins_of(robot, self._history, secondary))
+            try:
+                machine = Machine(body, builtins_of(robot, self._history, secondary))
+            finally:
+                tree.let_go(body)
         return OfferedScript(machine, robot, text)
+
+    def _drop_next(self) -> None:
+        if self._next is not None:
+            self._over.append(self._next)
+        self._next = None
 
     # on the loop's thread
 
@@ -166,14 +180,14 @@ class ScriptRunner:
         running = self._running
         if running is not None and not (self.paused or self.arm.halted):
             over = running.machine.tick()
-            inputs = self._taken(running.robot)
+            inputs = running.robot.taken()
             if over:
                 self._end(running.machine.trouble, whole=running.machine.trouble is None)
             elif running.robot.watchdog is not None:
                 self._watch(running.robot)
         for k, (script, age) in enumerate(self._beside):
             over = script.machine.tick()
-            inputs = joined(inputs, self._taken(script.robot))
+            inputs = joined(inputs, script.robot.taken())
             if not over and age >= SECONDARY_TICKS:
                 script.machine.trouble = ScriptTrouble(NOWHERE, "a secondary program must not take time")
                 over = True
@@ -226,20 +240,6 @@ class ScriptRunner:
             self.tell(Told(Telling.STARTED, "", next_.machine.script.name))
         self._beside += [(script, 0) for script in waiting]
 
-    def _taken(self, robot: ScriptRobot) -> Inputs:
-        """What its functions asked of the robot besides motion."""
-        if not robot.asks and robot.tool is None:
-            return NOTHING
-        inputs = NOTHING
-        asks, robot.asks = robot.asks, []
-        for ask in asks:
-            inputs = joined(inputs, Inputs(commands=ask.commands, settings=ask.settings, load=ask.load))
-        if robot.tool is not None:
-            made, robot.tool = robot.tool, None
-            table = tuple(each for each in self.cabinet.simulation.tools if each.name != made.name)
-            inputs = joined(inputs, Inputs(tools=(*table, made), tool=made.name))
-        return inputs
-
     def _watch(self, robot: ScriptRobot) -> None:
         """End or pause a script whose client is silent for longer than it said."""
         assert robot.watchdog is not None
@@ -269,5 +269,6 @@ class ScriptRunner:
     def _close(self, script: OfferedScript, trouble: ScriptTrouble | None) -> None:
         script.machine.stop()
         script.robot.sockets.end()
+        self._over.append(script)
         if trouble is not None:
             self.tell(Told(Telling.TROUBLE, printable(trouble.text), script.machine.script.name, trouble.place))
