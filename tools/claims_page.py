@@ -23,8 +23,8 @@ HEAD = """# Claims
 
 Written by `python -m tools.claims_page`. A claim is shown where its session meets what it expects, and does not with its
 switch off, nor with any of its mutants: the smallest changes of code that take away what the claim says (`assets/mutants/`).
-Behind each mutant stands the expectation that is not met with it, and what was seen in the last `make claims`. A row says `yes` in
-its last column if all of that was seen then, and `not run` where something of it is newer.
+Behind each mutant stands the expectation that is not met with it, and what was seen in the last `make claims`. A row says `yes`
+in its last column if all of that was seen then, and `not run` where something of it is newer.
 
 """
 
@@ -44,7 +44,8 @@ def page() -> str:
         for name, session in sessions.items():
             if claim.name in session.claims:
                 own = [mutant for mutant in mutants if mutant.session == name and claim.name in mutant.claims]
-                lines.append(_row(claim, name, checks[name], switch=session.switch, mutants=own, row=seen.get((claim.name, name))))
+                row = seen.get((claim.name, name))
+                lines.append(_row(claim, name, checks[name], switch=session.switch, mutants=own, row=row))
     return HEAD + "\n".join(lines) + "\n"
 
 

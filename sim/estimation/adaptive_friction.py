@@ -33,7 +33,7 @@ class Turning(NamedTuple):
     """What the joints do in a tick, as they are learned from."""
 
     speed: Array  # of the motors (n,) [rad/s]
-    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown; or by the deflection
+    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where tau_m is unknown; or by the deflection
     tau_dyn: Array  # torque that was taken off, of the rigid model or of the deflection (n,) [N·m]
     tau_J: Array  # transmission torque (n,) [N·m], for the load term
 
