@@ -11,6 +11,7 @@ from pendant.events.event import Kind
 from pendant.tick.modes import Mode
 from pendant.walls.definitions import Area
 from tests.e2e.cell import Cell
+from tests.e2e.finger import pointer, tap
 from tests.e2e.first_use import FirstUse
 from tests.e2e.hold import enter_free_drive
 from tests.e2e.test_everyday import open_tab
@@ -18,9 +19,6 @@ from tests.e2e.test_tasks import LATER, choose, click
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
-
-TOUCH = 1000
-"""Windows that are narrower are of a tablet [pixels]."""
 
 
 def plane(cell: Cell) -> Area:
@@ -30,20 +28,27 @@ def plane(cell: Cell) -> Area:
     return wall
 
 
+def pull(page: Page, at: tuple[float, float], by: float) -> None:
+    """Pull what is in the picture there by so many pixels downwards."""
+    (x, y), hand = at, pointer(page)
+    if not hand.touches:
+        page.mouse.move(x, y - 1.0)
+        page.mouse.move(x, y)
+        page.wait_for_timeout(700)
+    hand.down(at)
+    hand.move((x, y + by / 2), steps=4)
+    hand.move((x, y + by), steps=4)
+    page.wait_for_timeout(300)
+    hand.up()
+
+
 def pull_handle(page: Page, cell: Cell, by: float) -> None:
     """Pull the arrow along z of the plane's handles by so many pixels; a page that is drawn late is pulled again."""
     before = plane(cell).position
     for _ in range(6):
         p = np.array(plane(cell).position)
         x, y = cell.pixel(page, 0, p + np.array([0.0, 0.0, -0.75 * SCALE]))
-        page.mouse.move(x, y - 1.0)
-        page.mouse.move(x, y)
-        page.wait_for_timeout(700)
-        page.mouse.down()
-        page.mouse.move(x, y + by / 2, steps=4)
-        page.mouse.move(x, y + by, steps=4)
-        page.wait_for_timeout(300)
-        page.mouse.up()
+        pull(page, (x, y), by)
         page.wait_for_timeout(700)
         if plane(cell).position != before:
             return
@@ -53,7 +58,7 @@ def pull_handle(page: Page, cell: Cell, by: float) -> None:
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, height: int) -> None:
     """A plane 100 mm below the tool, pulled up by its handle; the hand cannot lead the tool through it."""
-    page = visit(width, height, touch=width < TOUCH)
+    page = visit(width, height)
     tab = cell.served.docks.walls
     open_tab(page, "Walls")
     click(page, "Plane")
@@ -82,13 +87,12 @@ def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, h
 
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) -> None:
-    page = visit(width, height, touch=width < TOUCH)
+    page = visit(width, height)
     open_tab(page, "Axes")
     click(page, "All locked")
     cell.wait(lambda: not cell.loop.settings.joints.j3, "all are locked")
     elbow = page.get_by_role("checkbox", name="Elbow", exact=True)
-    elbow.scroll_into_view_if_needed()
-    elbow.click()
+    tap(elbow)
     cell.wait(lambda: cell.loop.settings.joints.j3, "the elbow is free")
     start = cell.loop.latest().truth_q.copy()
 
@@ -104,7 +108,7 @@ def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) 
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_change_the_arm(visit: Visit, cell: Cell, width: int, height: int) -> None:
     """The server goes on, and so does the page of a second window."""
-    page, other = visit(width, height, touch=width < TOUCH), visit(width, height)
+    page, other = visit(width, height), visit(width, height)
     open_tab(page, "Lab")
     click(page, "Set-up")
     choose(page, "Arm", "ur10e")
@@ -114,8 +118,8 @@ def test_change_the_arm(visit: Visit, cell: Cell, width: int, height: int) -> No
     for each in (page, other):
         each.get_by_text("Universal Robots UR10e").first.wait_for(timeout=60_000)
         each.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)
-    other.get_by_role("button", name="EMERGENCY STOP").click()
+    tap(other.get_by_role("button", name="EMERGENCY STOP"))
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped from the other window")
-    page.get_by_role("button", name="Reset", exact=True).click()
+    tap(page.get_by_role("button", name="Reset", exact=True))
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
     enter_free_drive(page, cell)
