@@ -153,7 +153,7 @@ class Simulation:
         before = None if self._decision is None else self._decision.law
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
-        learn = before is _FOLLOW
+        learn = before is _FOLLOW and not references.commanding
         bias = self._decision.baseline if before is _FREE and self._decision is not None else None
         estimate = estimator.update(sample, done, refusal, use=use, answered=references.answered, learn=learn, bias=bias)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)

@@ -25,4 +25,6 @@ def warm_up() -> None:
         with Recorder(out / "log.mcap", simulation, session.title) as recorder:
             run(session, prepared, simulation, out, see=lambda decision: recorder.see(simulation, decision))
     simulation.snapshot()
+    seen = simulation.estimate
+    simulation.estimator.friction.parts(seen.theta_d, seen.tau_J)  # of direct_torque, which no session's step does
     read_script("")

@@ -18,6 +18,9 @@ LOOKAHEAD = (0.03, 0.2)
 GAIN = (100.0, 2000.0)
 """Of servoj [1/s²] (URScript manual)."""
 
+SCALE = (0.0, 1.0)
+"""Of direct_torque's friction (URScript manual)."""
+
 MOST_MOMENT = 10.0
 """That a script may twist with [N·m]: within the sensor's range."""
 
@@ -104,6 +107,24 @@ class SpeedTool(Move, tag="speedl", frozen=True, forbid_unknown_fields=True, kw_
         _finite(*self.speed, *self.turning, self.acceleration, self.turning_acceleration, self.time)
 
 
+class DirectTorque(Move, tag="direct_torque", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """Joint torques for one tick, besides those against gravity; without new ones in the next tick the arm comes to rest.
+
+    Source: URScript manual 5.25, direct_torque.
+    """
+
+    torque: tuple[float, ...]  # (n,) of the joints on the arm [N·m]
+    viscous: tuple[float, ...]  # (n,) share of the friction that grows with the speed which the motors bear
+    coulomb: tuple[float, ...]  # (n,) share of the friction that does not
+
+    def __post_init__(self) -> None:
+        _finite(*self.torque)
+        for share in self.viscous:
+            _within("viscous_scale", share, SCALE)
+        for share in self.coulomb:
+            _within("coulomb_scale", share, SCALE)
+
+
 class Guided(HandGuide, tag="freedrive_mode", frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The arm is guided by hand, after the activation sequence, along and about the free axes of a frame."""
 
@@ -120,6 +141,7 @@ ScriptedMove = (
     | ServoTool
     | SpeedJoints
     | SpeedTool
+    | DirectTorque
     | GentleStop
     | Guided
 )

@@ -25,8 +25,9 @@ class Controller:
     """Turns estimates and decisions into motor currents, n joints (AF-5, AF-8).
 
     Tracking (HOLD, BRAKE, FOLLOW) is feed-forward + torque feedback + feedback of state errors, each a module of its own, fed
-    by different references. A program's motion gets the friction estimate as feed-forward on top (AF-7). FREE is the
-    free-drive law, without any feedback of position. OFF is no current at all.
+    by different references. A program's motion gets the friction estimate as feed-forward on top (AF-7). Torques that a script
+    commands are followed without any feedback, as long as there are new ones in every tick. FREE is the free-drive law, without
+    any feedback of position. OFF is no current at all.
 
     Args:
         arm: the arm's numbers.
@@ -87,6 +88,8 @@ class Controller:
             if self._law is not _FREE:
                 self.free_drive.start(estimate, self._torque)
             torque = self.free_drive.torque(estimate, decision, jacobian, friction=friction, with_friction=use.friction)
+        elif (commanded := self.references.commanded(estimate, decision)) is not None:
+            torque = self.feed_forward.commanded(commanded, estimate, friction)
         else:
             torque = self._track(estimate, decision, friction=friction, stiffer=stiffer, use=use)
         if blind:

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.motion.script_requests import DirectTorque
+from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
@@ -69,6 +71,7 @@ class FeedForward:
         self._speed = own["speed"]
         self._no_friction = np.zeros(arm.n)
         self._fed = False  # friction was fed forward in the last tick
+        self._commanded = False  # torques were commanded in it
         self.tau_J = np.zeros(arm.n)
 
     def torque(
@@ -91,7 +94,7 @@ class FeedForward:
             push: with which the joints push against the outside besides (n,) [N·m].
             fresh: the reference started again, nothing is known of the bristles.
         """
-        torque = np.empty_like(self._no_friction)
+        torque, self._commanded = np.empty_like(self._no_friction), False
         if not motion:
             self.tau_J = self._dynamics.gravity(reference.q).copy()
             _add(self._record, (reference.qdd, self._no_friction, self.tau_J), (0.0, 0.0), torque)
@@ -107,6 +110,28 @@ class FeedForward:
         self._fed = friction is not None
         _add(self._record, (reference.qdd, total, self.tau_J), (1.0, share), torque)
         return torque
+
+    def commanded(self, move: DirectTorque, estimate: Estimate, friction: AdaptiveFriction) -> Array:
+        """Motor torque (n,) [N·m] of torques that a script commands: those, gravity, and its shares of the friction.
+
+        The motors' friction turns round with their measured motion, within the way over which bristles bend: by the sign of the
+        speed it would drive a joint at rest to and fro. A share below 1 drives no joint that nobody moves.
+
+        Args:
+            move: what is commanded.
+            estimate: of this tick.
+            friction: its estimate.
+        """
+        own, gravity = self._record[0], self._dynamics.gravity(estimate.q)
+        if not self._commanded:
+            own["direction"] = 0.0
+        self._speed[:] = estimate.theta_d
+        coulomb, viscous = friction.parts(estimate.theta_d, estimate.tau_J)
+        total = move.coulomb * coulomb + move.viscous * viscous
+        size = coulomb + viscous  # by which the bristles bend, whatever is made up for
+        _bend(self._record, size)
+        self._fed, self._commanded = False, True
+        return gravity + move.torque + total * own["direction"]
 
 
 @kernel

@@ -121,6 +121,12 @@ class AdaptiveFriction:
         _slide(self.record, speed, tau_J, total)
         return total
 
+    def parts(self, speed: Array, tau_J: Array) -> tuple[Array, Array]:
+        """Friction at a speed, each (n,) [N·m], 0 or more: what is there at any speed, and what grows with it."""
+        coulomb, viscous = np.empty_like(speed), np.empty_like(speed)
+        _part(self.record, (speed, tau_J), coulomb, viscous)
+        return coulomb, viscous
+
 
 @kernel
 def _step(friction, turning, temperature, free) -> None:
@@ -198,3 +204,14 @@ def _slide(friction, speed, tau_J, total) -> None:
         size, w = abs(speed[i]), terms[i]
         value = warmth[i] * (w[0] + w[1] * size / (size + KNEE) + w[2] * size) + w[3] * abs(tau_J[i])
         total[i] = value if speed[i] >= 0.0 else -value
+
+
+@kernel
+def _part(friction, moving, coulomb, viscous) -> None:
+    own = friction[0]
+    speed, tau_J = moving
+    warmth, terms = own.warmth, own.terms
+    for i in range(speed.size):
+        size, w = abs(speed[i]), terms[i]
+        coulomb[i] = warmth[i] * w[0] + w[3] * abs(tau_J[i])
+        viscous[i] = warmth[i] * (w[1] * size / (size + KNEE) + w[2] * size)

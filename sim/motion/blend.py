@@ -5,7 +5,7 @@ import copy
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.motion.script_requests import ScriptedJoints, ScriptedProcess
+from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, ScriptedLine, ScriptedProcess
 from pendant.program.steps import LinearMove
 from sim.motion.moves import Reference, Stop
 from sim.motion.planned import JointTrajectory, LinearTrajectory
@@ -14,6 +14,9 @@ from sim.motion.process import ProcessTrajectory
 Array = NDArray[np.float64]
 
 Planned = JointTrajectory | LinearTrajectory | ProcessTrajectory
+
+Joined = ScriptedJoints | ScriptedLine | ScriptedArc | ScriptedProcess
+"""Motions of a script that may go over into the next."""
 
 LOOKS = 20
 """Places at which the speeds of both together are looked at."""

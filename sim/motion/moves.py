@@ -7,6 +7,7 @@ import numpy as np
 import ruckig
 from numpy.typing import NDArray
 
+from pendant.haptics import Shake
 from pendant.tick.modes import TICK
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import LATENCY
@@ -20,6 +21,8 @@ SHORTEST_STOP = 0.08  # [s]; about the period of the arms' lowest modes, to leav
 BRAKING_SHARE = 0.7  # of a joint's torque that a stop plans with; the rest is for the feedback
 LEAST_BRAKING = 0.1  # of it, where gravity takes all of that
 MOVING_SHARE = 0.75  # of a joint's torque that a move plans with; friction, a wrong payload and the feedback need the rest
+TOO_FAST = 1.05  # times a joint's speed limit, from where its motor drives no further (sim.control.motor_controller)
+REACTION = (DELAY + 2) * TICK  # until joints brake on what was measured: the pendant hears of it a tick later [s]
 GLANCE = 0.02  # between the times of a move whose torques are looked at [s]
 LOOKS = 24  # of them, at least
 
@@ -30,6 +33,15 @@ class Reference(NamedTuple):
     q: Array
     qd: Array
     qdd: Array
+
+
+def shaken(reference: Reference, shake: Shake) -> Reference:
+    """The reference with the last joint's part in haptic feedback (HF-1)."""
+    q, qd, qdd = (values.copy() for values in reference)
+    q[-1] += shake.angle
+    qd[-1] += shake.speed
+    qdd[-1] += shake.acceleration
+    return Reference(q, qd, qdd)
 
 
 class Motion(Protocol):
@@ -65,6 +77,25 @@ class Strength(NamedTuple):
     dynamics: Dynamics
     rotor: Array  # inertia referred to the output (n,) [kg·m²]
     torque: Array  # limits (n,) [N·m]
+
+    def broken(self, now: Reference, limits: tuple[Array, Array, Array]) -> str:
+        """Which limit joints that no reference leads have broken, or can no longer keep when they brake; "" for none.
+
+        Args:
+            now: where they are, and how fast.
+            limits: their speed, acceleration and position (±), each (n,).
+        """
+        q, qd, _ = now
+        speed, _, position = limits
+        joint = int(np.argmax(np.abs(qd) / speed))
+        if abs(qd[joint]) > TOO_FAST * speed[joint]:
+            return f"joint {joint + 1} moves at {abs(qd[joint]):.2f} rad/s, allowed {speed[joint]:.2f}"
+        length = max(SHORTEST_STOP, stop_time(self.dynamics, q, qd, rotor=self.rotor, torque=self.torque))
+        stop = q + qd * (0.5 * length + REACTION)
+        joint = int(np.argmax(np.abs(stop) / position))
+        if abs(stop[joint]) > position[joint]:
+            return f"joint {joint + 1} would stop at {stop[joint]:.2f} rad, allowed ±{position[joint]:.4f}"
+        return ""
 
     def left(self, trajectory: ruckig.Trajectory) -> float:
         """By which factor the accelerations fit: 1 or more where every joint has enough all the way."""

@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.haptics import Shake
 from pendant.motion.script_requests import (
+    DirectTorque,
     ForceMode,
     GentleStop,
-    ScriptedArc,
     ScriptedJoints,
-    ScriptedLine,
     ScriptedProcess,
     ServoJoints,
     ServoTool,
@@ -24,12 +22,12 @@ from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunSc
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
-from sim.motion.blend import Blended, Planned, leaves, lengthened
+from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory
 from sim.motion.line import Line
-from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, stop_time
+from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, shaken, stop_time
 from sim.motion.pace import Pace
 from sim.motion.planned import JointTrajectory, LinearTrajectory
 from sim.motion.process import ProcessTrajectory
@@ -47,10 +45,6 @@ GONE = 0.01  # [N·m]
 ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
 
-Joined = ScriptedJoints | ScriptedLine | ScriptedArc | ScriptedProcess
-"""Motions of a script that may go over into the next."""
-
-
 class References:
     """One reference a tick under HOLD, BRAKE and FOLLOW; free-drive has none, and what comes after it starts again.
 
@@ -60,6 +54,7 @@ class References:
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
+        commanding: in this tick the joints had torques that a script commands.
         push: torque (n,) with which the joints push against the outside besides [N·m], None for none.
     """
 
@@ -84,12 +79,26 @@ class References:
         self.move_done = 0
         self.refusal = ""
         self.push: Array | None = None
+        self.commanding = False
 
     def skip(self) -> None:
         """A tick without a reference: free-drive."""
         self._law = Law.FREE
         self.refusal = ""
         self._past.clear()
+        self.commanding = False
+
+    def commanded(self, estimate: Estimate, decision: Decision) -> DirectTorque | None:
+        """A script's torques of this tick, refused from the next on where they break a limit; None: a reference is followed."""
+        move = decision.move
+        if decision.law is not Law.FOLLOW or not isinstance(move, DirectTorque) or move is self._move:
+            return None
+        self.skip()
+        self.now = Reference(estimate.q.copy(), estimate.qd.copy(), self._standing)
+        self._move, self._compliance, self._leaving, self.push = move, None, False, None
+        self.move_done, self.commanding = move.id, True
+        self.refusal = self._strength.broken(self.now, self._limits)
+        return move
 
     @property
     def answered(self) -> Reference | None:
@@ -103,7 +112,7 @@ class References:
     def step(self, estimate: Estimate, decision: Decision) -> Reference:
         """The reference of this tick."""
         law = decision.law
-        self.refusal = ""
+        self.refusal, self.commanding = "", False
         self.fresh = self.now is None or self._law is Law.FREE
         if self.now is None or self._law is Law.FREE:
             self._stop(estimate.q, estimate.qd)
@@ -127,7 +136,7 @@ class References:
         if law is Law.FOLLOW and decision.force is not None:
             self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
         self.push = self._pushing(self._motion, self.now)
-        answer = self.now if decision.shake is None else _shaken(self.now, decision.shake)
+        answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
         self._past.append(answer)
         if law is Law.FOLLOW and self._move is not None and not self.refusal:
             self._leaving = not self._motion.done and self._near_its_end(self._motion, self._move, motion)
@@ -268,12 +277,3 @@ class References:
         if isinstance(before, ToolStream):
             return before.renew(move)
         return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=limits, pace=pace)
-
-
-def _shaken(reference: Reference, shake: Shake) -> Reference:
-    """The reference with the last joint's part in haptic feedback (HF-1)."""
-    q, qd, qdd = (values.copy() for values in reference)
-    q[-1] += shake.angle
-    qd[-1] += shake.speed
-    qdd[-1] += shake.acceleration
-    return Reference(q, qd, qdd)

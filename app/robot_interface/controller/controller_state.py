@@ -13,6 +13,7 @@ from app.robot_interface.controller.robot_words import (
 )
 from pendant.decision import Decision
 from pendant.events.event import Kind
+from pendant.motion.script_requests import DirectTorque
 from pendant.program.steps import ApplyForce, ProgramState
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
 
@@ -49,6 +50,7 @@ class ControllerState:
     program_state: ProgramState = ProgramState.NONE
     program: str = ""  # name of the loaded one, without .urp
     forcing: bool = False  # a step pushes with a force
+    torques: bool = False  # a script commands the joints' torques
     stopped_at: int = 0  # tick in which the protective stop began
     tick: int = 0
     idle: bool = False  # drives on, brakes still closed, or will be once the drives were off
@@ -70,7 +72,7 @@ class ControllerState:
         if self.stopped and not before:
             self.stopped_at = tick
         self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
-        self.forcing = isinstance(decision.move, ApplyForce)
+        self.forcing, self.torques = isinstance(decision.move, ApplyForce), isinstance(decision.move, DirectTorque)
         self.idle = self.idle and self.powerless
         if decision.mode in (Mode.TEACH, Mode.NORMAL):
             self.remote = False
@@ -124,6 +126,8 @@ class ControllerState:
         """What the joints are controlled by."""
         if self.mode is Mode.FREE_DRIVE:
             return ControlMode.TEACH
+        if self.torques:
+            return ControlMode.TORQUE
         return ControlMode.FORCE if self.forcing else ControlMode.POSITION
 
     @property

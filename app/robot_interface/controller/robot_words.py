@@ -56,6 +56,7 @@ class ControlMode(IntEnum):
     POSITION = 0
     TEACH = 1
     FORCE = 2
+    TORQUE = 3
 
 
 class OperationalMode(IntEnum):
@@ -79,7 +80,7 @@ SAFETY_BITS = {
 }
 """`safety_status_bits` of RTDE; bit 10 says that the robot is stopped because of safety."""
 
-VERSION = (5, 25, 1, 130250)
+VERSION = (5, 26, 0, 140462)
 """Of the controller that is told: clients choose what they ask for by it."""
 
 SERIAL = "20265500001"

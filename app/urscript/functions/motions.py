@@ -23,7 +23,7 @@ from app.urscript.machine.signature import (
 )
 from app.urscript.machine.values import PoseValue, Value, kind
 from pendant.motion.script_requests import (
-    ForceMode,
+    DirectTorque,
     GentleStop,
     ScriptedArc,
     ScriptedJoints,
@@ -36,13 +36,16 @@ from pendant.motion.script_requests import (
     SpeedTool,
 )
 from pendant.tick.modes import TICK_RATE
-from pendant.tick.pose import Quaternion, Vector, rotation
+from pendant.tick.pose import Quaternion, Vector
 
 Doing = Generator[None, None, Value]
 
 MOST = 1e6
 POSITIVE = within(number, 1e-6, MOST)
 ZERO_UP = within(number, 0.0, MOST)
+
+VISCOUS_SCALE, COULOMB_SCALE = (0.9, 0.9, 0.8, 0.9, 0.9, 0.9), (0.8, 0.8, 0.7, 0.8, 0.8, 0.8)
+"""Of direct_torque (URScript manual)."""
 
 
 def target(value: Value) -> tuple[float, ...] | PoseValue:
@@ -153,16 +156,21 @@ def _stopping(until_done: Callable[[ScriptedMove], Doing], of: Literal["joints",
     return lambda a, turning: until_done(GentleStop(of=of, deceleration=a))
 
 
+def for_ticks(arm: ArmSide, move: ScriptedMove, count: int) -> Doing:
+    """Do a motion that takes so many ticks, whatever becomes of it."""
+    with controlling(arm):
+        arm.ask(move)
+        for _ in range(count):
+            yield
+
+
 def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     """servoj, servoc, speedj, speedl: commands that are given again and again."""
 
     arm = Kinematics(robot)
 
     def for_time(move: ScriptedMove, seconds: float) -> Doing:
-        with controlling(robot.arm):
-            robot.arm.ask(move)
-            for _ in range(max(round(min(seconds, MOST) * TICK_RATE), 1)):
-                yield
+        return for_ticks(robot.arm, move, max(round(min(seconds, MOST) * TICK_RATE), 1))
 
     def servoj(*given: Value) -> Doing:
         q, _, _, t, lookahead, gain = given
@@ -210,60 +218,35 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
     )
     yield builtin("speedj", speedj, Taken("qd", numbers(6)), a, t, takes_time=True)
     yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), takes_time=True)
-    scales = (Taken(f"{of}_scale", optional(numbers(6)), None) for of in ("viscous", "coulomb"))
-    yield builtin("direct_torque", _no_torques, q._replace(name="torque"), Taken("friction_comp", boolean, True), *scales)
 
 
-def _no_torques(*_: Value) -> None:
-    raise Misuse("torques of a script are not simulated")
+def of_torques(robot: RobotSide) -> Iterator[Builtin]:
+    """direct_torque (URScript manual 5.25)."""
+    told: list[str] = []
 
-
-TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")
-"""What the frame of force_mode does, by its type 1 to 3."""
-
-
-def of_force(robot: RobotSide) -> Iterator[Builtin]:
-    """force_mode and tool_contact."""
-    gain: list[float] = [1.0]
-    damping: list[float | None] = [None]  # both are kept until they are set again
-
-    def force_mode(frame: PoseValue, *given: Value) -> None:
-        selection, wrench, type_, limits = given
-        if any(each not in (0, 1) for each in selection):
-            raise Misuse("selection_vector: expected six of 0 and 1")
-        position, turned = placed(frame)
-        free = tuple(bool(each) for each in selection)
+    def direct_torque(torque: Value, viscous: Value, coulomb: Value, compensated: Value) -> Doing:
+        if type(viscous) is bool:  # the argument that was second before there were scales
+            viscous, compensated = None, viscous
+        if compensated is not None and not told:
+            told.append("direct_torque(): friction_comp is deprecated, use viscous_scale and coulomb_scale")
+            robot.say(told[0])
+        off = compensated is False and viscous is None and coulomb is None
+        shares = [
+            (0.0,) * 6 if off else usual if given is None else given
+            for given, usual in ((viscous, VISCOUS_SCALE), (coulomb, COULOMB_SCALE))
+        ]
         try:
-            force = ForceMode(
-                free=free,
-                wrench=wrench,
-                limits=limits,
-                origin=position,
-                R_BU=rotation(turned),
-                turns=TURNS[type_ - 1],
-                gain=gain[0],
-                damping=damping[0],
-            )
+            move = DirectTorque(torque=torque, viscous=shares[0], coulomb=shares[1])
         except ValueError as error:
             raise Misuse(str(error)) from None
-        robot.arm.push(force)
-
-    def scale(scaling: float) -> None:
-        gain[0] = scaling
-
-    def damp(share: float) -> None:
-        damping[0] = share
+        return for_ticks(robot.arm, move, 1)
 
     yield builtin(
-        "force_mode",
-        force_mode,
-        Taken("task_frame", pose),
-        Taken("selection_vector", numbers(6)),
-        Taken("wrench", numbers(6)),
-        Taken("type", within(integer, 1, 3)),
-        Taken("limits", numbers(6)),
+        "direct_torque",
+        direct_torque,
+        Taken("torque", numbers(6)),
+        Taken("viscous_scale", optional(lambda value: value if type(value) is bool else numbers(6)(value)), None),
+        Taken("coulomb_scale", optional(numbers(6)), None),
+        Taken("friction_comp", optional(boolean), None),
+        takes_time=True,
     )
-    yield builtin("end_force_mode", lambda: robot.arm.push(None))
-    yield builtin("force_mode_set_damping", damp, Taken("damping", within(number, 0.0, 1.0)))
-    yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
-    yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))

@@ -1,14 +1,27 @@
-"""Functions that set the robot up: payload, tool centre point, sensor, watchdog, stops, guiding (URScript, module motion)."""
+"""Functions that set the robot up, and how it gives way: payload, tool, sensor, stops, guiding, force (URScript manual)."""
 
 from collections.abc import Iterator
+from typing import Literal
 
-from app.urscript.functions.motions import ZERO_UP
+from app.urscript.functions.motions import ZERO_UP, placed
 from app.urscript.functions.pose_algebra import quaternion
 from app.urscript.functions.robot_side import RobotSide
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.signature import Builtin, Taken, any_value, boolean, builtin, items, number, numbers, pose, within
-from app.urscript.machine.values import Value
-from pendant.motion.script_requests import Guided
+from app.urscript.machine.signature import (
+    Builtin,
+    Taken,
+    any_value,
+    boolean,
+    builtin,
+    integer,
+    items,
+    number,
+    numbers,
+    pose,
+    within,
+)
+from app.urscript.machine.values import PoseValue, Value
+from pendant.motion.script_requests import ForceMode, Guided
 from pendant.tick.pose import rotation
 
 
@@ -79,3 +92,54 @@ def _guided(robot: RobotSide) -> None:
 
 def _centre(value: Value) -> Value:
     return None if value is None else numbers(3)(value)
+
+
+TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")
+"""What the frame of force_mode does, by its type 1 to 3."""
+
+
+def of_force(robot: RobotSide) -> Iterator[Builtin]:
+    """force_mode and tool_contact."""
+    gain: list[float] = [1.0]
+    damping: list[float | None] = [None]  # both are kept until they are set again
+
+    def force_mode(frame: PoseValue, *given: Value) -> None:
+        selection, wrench, type_, limits = given
+        if any(each not in (0, 1) for each in selection):
+            raise Misuse("selection_vector: expected six of 0 and 1")
+        position, turned = placed(frame)
+        free = tuple(bool(each) for each in selection)
+        try:
+            force = ForceMode(
+                free=free,
+                wrench=wrench,
+                limits=limits,
+                origin=position,
+                R_BU=rotation(turned),
+                turns=TURNS[type_ - 1],
+                gain=gain[0],
+                damping=damping[0],
+            )
+        except ValueError as error:
+            raise Misuse(str(error)) from None
+        robot.arm.push(force)
+
+    def scale(scaling: float) -> None:
+        gain[0] = scaling
+
+    def damp(share: float) -> None:
+        damping[0] = share
+
+    yield builtin(
+        "force_mode",
+        force_mode,
+        Taken("task_frame", pose),
+        Taken("selection_vector", numbers(6)),
+        Taken("wrench", numbers(6)),
+        Taken("type", within(integer, 1, 3)),
+        Taken("limits", numbers(6)),
+    )
+    yield builtin("end_force_mode", lambda: robot.arm.push(None))
+    yield builtin("force_mode_set_damping", damp, Taken("damping", within(number, 0.0, 1.0)))
+    yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
+    yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))

@@ -114,6 +114,19 @@ def test_streams_of_poses(arm: RTDEControlInterface, seen: RTDEReceiveInterface)
     home(arm, seen)
 
 
+def test_torques_turn_a_joint_until_there_are_no_more(arm: RTDEControlInterface, seen: RTDEReceiveInterface) -> None:
+    """2 N·m are some more than the last joint's friction, of which the client lets nothing be made up for: it turns slowly."""
+    home(arm, seen)
+    before = seen.getActualQ()
+    assert arm.directTorque([0.0, 0.0, 0.0, 0.0, 0.0, 2.0])
+    until(lambda: seen.getActualQ()[5] - before[5] > 0.05)
+    assert np.allclose(seen.getActualQ()[:5], before[:5], atol=5e-3)
+    assert arm.directTorque(STILL)
+    settled(seen)
+    assert arm.isProgramRunning()
+    home(arm, seen)
+
+
 def test_jogging_and_the_stop_of_the_tool(arm: RTDEControlInterface, seen: RTDEReceiveInterface) -> None:
     height = seen.getActualTCPPose()[2]
     assert arm.jogStart([0.0, 0.0, 0.03, 0.0, 0.0, 0.0])

@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.motion.script_requests import (
+    DirectTorque,
     ForceMode,
     GentleStop,
     Guided,
@@ -218,6 +219,7 @@ def test_what_is_not_finite_is_refused(value: float) -> None:
         lambda: ScriptedJoints(q=(value,) * 6, acceleration=1.0, speed=1.0),
         lambda: ServoJoints(q=(value,) * 6, time=0.002),
         lambda: SpeedJoints(qd=(value,) * 6, acceleration=1.0),
+        lambda: DirectTorque(torque=(value,) * 6, viscous=(0.0,) * 6, coulomb=(0.0,) * 6),
         lambda: SpeedTool(speed=(value, 0.0, 0.0), turning=(0.0,) * 3, acceleration=1.0, turning_acceleration=1.0),
     ):
         with pytest.raises(ValueError, match="is not a finite number"):
@@ -237,6 +239,21 @@ def test_servo_commands_keep_to_the_ranges_of_the_manual(name: str, value: float
     else:
         with pytest.raises(ValueError, match=rf"{name}: .*, allowed: "):
             ServoJoints(q=(0.0,) * 6, time=0.002, **{name: value})
+
+
+@pytest.mark.parametrize(
+    ("viscous", "coulomb", "told"),
+    [(0.0, 1.0, ""), (1.0, 0.0, ""), (1.01, 0.5, "viscous_scale: 1.01"), (0.5, -0.01, "coulomb_scale: -0.01")],
+)
+def test_torques_keep_to_the_ranges_of_the_manual(viscous: float, coulomb: float, told: str) -> None:
+    def made() -> DirectTorque:
+        return DirectTorque(torque=(1.0,) * 6, viscous=(0.5,) * 5 + (viscous,), coulomb=(0.5,) * 5 + (coulomb,))
+
+    if told:
+        with pytest.raises(ValueError, match=f"{told}, allowed: 0 .. 1"):
+            made()
+    else:
+        assert (made().viscous[5], made().coulomb[5]) == (viscous, coulomb)
 
 
 def test_a_stop_of_a_script_is_as_hard_as_the_arm_can_unless_it_says_so() -> None:
