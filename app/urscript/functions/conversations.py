@@ -13,6 +13,9 @@ TIMEOUT = Taken("timeout", number, 2.0)
 MOST_READ = 30
 """Numbers that are read at once (URScript manual, socket_read_binary_integer)."""
 
+MOST_IN_A_ROW = 4
+"""Reads of what has come already with no tick between them: a client that floods a program neither ends nor blocks it."""
+
 Reading = Generator[None, None, Value]
 
 
@@ -40,9 +43,14 @@ def of_sockets(sockets: ScriptSockets) -> Iterator[Builtin]:
                 connection.look()
                 found = take(connection)
             if found is not None:
+                connection.in_a_row += 1
+                if connection.in_a_row > MOST_IN_A_ROW:
+                    connection.in_a_row = 0
+                    yield
                 return found
             if connection.broken:
                 return failed
+            connection.in_a_row = 0
             yield
         return failed
 

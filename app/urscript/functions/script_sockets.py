@@ -23,6 +23,7 @@ class ScriptSocket:
         self.open = False
         self.broken = False
         self.data = bytearray()  # came, and was not read
+        self.in_a_row = 0  # reads without a tick between them
         self._out = bytearray()  # was sent, and has not left
 
     def connected(self, address: tuple[str, int]) -> bool:

@@ -33,7 +33,7 @@ for name in ("axis-locks", "program", "wall-resists", "felt", "touch-the-table")
         record(load(find(name), Session), prepare(load(find(name), Session), name), Path(out))
 limits = "[0.1,0.1,0.03,0.2,0.2,0.2]"
 push = f"def push():\\n force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,-5,0,0,0], 2, {limits})\\n sleep(0.1)\\nend"
-torque = "def turn():\n i = 0\n while i < 20:\n  i = i + 1\n  direct_torque([0,0,0,0,0,1])\n end\nend"
+torque = "def turn():\\n i = 0\\n while i < 20:\\n  i = i + 1\\n  direct_torque([0,0,0,0,0,1])\\n end\\nend"
 for text in (push, torque):
     simulated = run(session({"title": "push", "duration": 2.0, "timeline": [{"at": 0.5, "do": "script", "text": text}]}))
     assert simulated.passed, simulated

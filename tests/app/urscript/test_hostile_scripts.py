@@ -2,6 +2,7 @@
 
 import gc
 import itertools
+import socket
 from contextlib import suppress
 
 import pytest
@@ -14,6 +15,7 @@ from app.urscript.machine.machine import Machine
 from app.urscript.machine.signature import builtin
 from app.urscript.running import script_runner
 from benchmarks.script_hostile import Course, damaged, hostile
+from tests.app.urscript.script_bench import ScriptBench
 
 
 @pytest.fixture(scope="module")
@@ -134,3 +136,25 @@ def test_no_garbage_is_looked_for_while_a_script_is_read(course: Course, text: s
         assert text.endswith("(")
     assert seen == [False]
     assert gc.isenabled()
+
+
+def test_who_floods_a_program_neither_ends_it_nor_holds_its_threads_up() -> None:
+    """The UR client library's example of tool contact writes its speeds as fast as it can."""
+    server = socket.create_server(("127.0.0.1", 0))
+    text = (
+        f'h = socket_open("127.0.0.1", {server.getsockname()[1]}, "a")\nglobal i = 0\nglobal n = 0\n'
+        "thread t():\n  while True:\n    i = i + 1\n    sync()\n  end\nend\nh = run t()\n"
+        'while True:\n  enter_critical\n  x = socket_read_binary_integer(1, "a")\n  n = n + x[0]\n  exit_critical\nend'
+    )
+    bench = ScriptBench()
+    with server:
+        bench.runner.offer(text)
+        bench.robot.step(3)
+        client, _ = server.accept()
+        with client:
+            client.sendall(b"\0\0\0\1" * 8000)
+            bench.robot.step(700)
+            seen = bench.runner.variables()
+    assert bench.runner.trouble is None
+    assert int(seen["n"]) > 1000
+    assert int(seen["i"]) > 600
