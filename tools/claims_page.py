@@ -34,7 +34,7 @@ NOT_RUN = "not run"
 def page() -> str:
     """The page."""
     sessions, mutants = claiming(), declared()
-    checks = {name: _checks(session, name) for name, session in sessions.items()}
+    expected = {name: checks(session, name) for name, session in sessions.items()}
     seen = {(row["name"], row["session"]): row for row in msgspec.json.decode(SEEN.read_bytes())}
     lines = [
         "| claim | to show | ids | session | it expects | switch | mutants, and what was seen | shown |",
@@ -45,11 +45,12 @@ def page() -> str:
             if claim.name in session.claims:
                 own = [mutant for mutant in mutants if mutant.session == name and claim.name in mutant.claims]
                 row = seen.get((claim.name, name))
-                lines.append(_row(claim, name, checks[name], switch=session.switch, mutants=own, row=row))
+                lines.append(_row(claim, name, expected[name], switch=session.switch, mutants=own, row=row))
     return HEAD + "\n".join(lines) + "\n"
 
 
-def _checks(session: Session, name: str) -> list[str]:
+def checks(session: Session, name: str) -> list[str]:
+    """What a session expects, in words."""
     joints = prepare(session, name).arm.chain.joints
     return [watch(expectation, joints).expected() for expectation in session.expectations]
 
