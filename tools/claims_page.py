@@ -34,8 +34,9 @@ NOT_RUN = "not run"
 def page() -> str:
     """The page."""
     sessions, mutants = claiming(), declared()
-    checks = {name: _checks(session, name) for name, session in sessions.items()}
-    seen = {(row["name"], row["session"]): row for row in msgspec.json.decode(SEEN.read_bytes())}
+    expected = {name: checks(session, name) for name, session in sessions.items()}
+    rows: list[dict[str, Any]] = msgspec.json.decode(SEEN.read_bytes())
+    seen: dict[tuple[str, str], dict[str, Any]] = {(row["name"], row["session"]): row for row in rows}
     lines = [
         "| claim | to show | ids | session | it expects | switch | mutants, and what was seen | shown |",
         "|---|---|---|---|---|---|---|---|",
@@ -45,11 +46,12 @@ def page() -> str:
             if claim.name in session.claims:
                 own = [mutant for mutant in mutants if mutant.session == name and claim.name in mutant.claims]
                 row = seen.get((claim.name, name))
-                lines.append(_row(claim, name, checks[name], switch=session.switch, mutants=own, row=row))
+                lines.append(_row(claim, name, expected[name], switch=session.switch, mutants=own, row=row))
     return HEAD + "\n".join(lines) + "\n"
 
 
-def _checks(session: Session, name: str) -> list[str]:
+def checks(session: Session, name: str) -> list[str]:
+    """What a session expects, in words."""
     joints = prepare(session, name).arm.chain.joints
     return [watch(expectation, joints).expected() for expectation in session.expectations]
 
@@ -58,7 +60,8 @@ def _row(
     claim: Claim, name: str, checks: list[str], *, switch: str | None, mutants: list[Mutant], row: dict[str, Any] | None
 ) -> str:
     link = f"[{name}](../../assets/sessions/{name}.yaml)"
-    seen = {} if row is None else {(mutant["what"], mutant["file"]): mutant for mutant in row["mutants"]}
+    tried: list[dict[str, Any]] = [] if row is None else row["mutants"]
+    seen: dict[tuple[str, str], Any] = {(mutant["what"], mutant["file"]): mutant for mutant in tried}
     told = [_told(mutant, seen.get((mutant.what, mutant.file))) for mutant in mutants]
     cells = [claim.name, claim.text, claim.ids, link, "<br>".join(checks), switch or "-", "<br>".join(told) or "-"]
     cells.append(_shown(mutants, row, seen, checks))
@@ -66,7 +69,7 @@ def _row(
 
 
 def _told(mutant: Mutant, seen: dict[str, Any] | None) -> str:
-    return f"{mutant.what} (`{mutant.file}`) - {NOT_RUN if seen is None else seen['seen']}"
+    return f"{mutant.what} (`{mutant.file}`) - not met: {mutant.fails}" + ("" if seen is None else f"; seen: {seen['seen']}")
 
 
 def _shown(mutants: list[Mutant], row: dict[str, Any] | None, seen: dict[tuple[str, str], Any], checks: list[str]) -> str:

@@ -39,6 +39,12 @@ def test_a_mutant_fits_the_code_and_is_code(mutant: Mutant) -> None:
     assert set(mutant.claims) <= set(SESSIONS[mutant.session].claims)
 
 
+def test_what_a_mutant_breaks_is_among_what_its_session_expects() -> None:
+    expected = {name: claims_page.checks(SESSIONS[name], name) for name in {mutant.session for mutant in MUTANTS}}
+    unknown = [m for m in MUTANTS if not m.fails or not any(m.fails in line for line in expected[m.session])]
+    assert unknown == []
+
+
 def test_every_claim_has_a_mutant() -> None:
     tried = {claim for mutant in MUTANTS for claim in mutant.claims}
     assert [name for name in CLAIMS if name not in tried] == []

@@ -230,6 +230,17 @@ def test_a_snap_fit_breaks_at_its_force_and_gives_way_by_its_travel() -> None:
     assert force > 40.0, "at the end of its travel it resists again"
 
 
+@pytest.mark.parametrize("rest", [0.0, 0.2, 0.5, 1.0])
+def test_a_snap_fit_resists_with_its_rest_while_it_gives_way(rest: float) -> None:
+    item = below(0.1, SnapFit, force=30.0, travel=0.004, rest=rest)
+    plant = Plant(UR5E, Scenario(posture=LOW, tool=PROBE, world=[item]))
+    slide = plant.model.joint("snap/thing")
+    for at, share in ((0.0, 1.0), (0.002, rest)):
+        plant.data.qpos[slide.qposadr[0]] = at
+        plant.world.advance()
+        assert plant.model.dof_frictionloss[slide.dofadr[0]] == pytest.approx(share * 30.0)
+
+
 def test_a_moving_object_follows_its_sine() -> None:
     size, sway = [0.1] * 3, [0.0, 0.2, 0.0]
     item = Moving(name="cart", position=[1.0, 1.0, 1.0], rpy=[0.0, 0.0, 1.0], size=size, amplitude=sway, period=2.0)
