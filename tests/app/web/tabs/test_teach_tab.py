@@ -131,8 +131,8 @@ def test_what_was_taught_is_saved_and_loaded(served: Served, join: Join) -> None
     upload(client, teach.load._impl.uuid, content)
     until(lambda: len(teach.lesson.waypoints) == 2, "loaded")
     upload(client, teach.load._impl.uuid, b"waypoints: <b>no</b>")
-    until(lambda: "File refused" in teach.message.shown, "refused")
-    assert "<b>no" not in teach.message.shown
+    until(lambda: "File refused" in teach.filed.shown, "refused")
+    assert "<b>no" not in teach.filed.shown
     assert len(teach.lesson.waypoints) == 2
 
 
