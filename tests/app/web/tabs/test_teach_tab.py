@@ -173,7 +173,7 @@ def test_steps_are_inserted_changed_moved_deleted_and_all_of_it_undone(served: S
     assert not steps.fields["way"].visible
     client.set(steps.fields["seconds"]._impl.uuid, value=2.0)
     client.set(steps.choice._impl.uuid, value="1. Move to P1")
-    until(lambda: steps.kind.value == "Move to", "the fields are the chosen step's")
+    until(lambda: steps.kind.value == "Move to" and not steps.fields["seconds"].visible, "the fields are the chosen step's")
     client.set(steps.kind._impl.uuid, value="Wait")
     until(lambda: steps.fields["seconds"].visible, "its field is there again")
     client.set(steps.fields["seconds"]._impl.uuid, value=2.0)
