@@ -1,0 +1,157 @@
+"""The payload wizard turns the wrist by itself: what it stops for, and what not (STRUCK and JOLTED of its turn_watch).
+
+Loads of up to 5 kg that nobody entered, random postures and mountings. Nobody touches the arm; a hand pushes the flange while it
+turns; something stands in the way of a wrist link, before the sensor. Truth is read for scoring alone.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from app.files.library import load_arm
+from benchmarks.common import Report, main, spread
+from benchmarks.hold import IDLE, MOUNTINGS
+from benchmarks.payload import ARM, postures
+from pendant.all_settings import Settings
+from pendant.events.event import Event, Kind
+from pendant.inputs import Command, Inputs
+from pendant.tick.modes import TICK_RATE, Law
+from sim.arm.scenario import Load, Scenario
+from sim.exchange.desk import Wishes
+from sim.plant.touch import Push
+from sim.simulation import Simulation
+
+GRIDS = ("untouched", "pushed", "in the way")
+RUN = Wishes(Inputs(commands=(Command.WIZARD_RUN,)), (), ())
+SETTLE = 1.0  # [s] before it begins
+LONGEST = 60.0  # [s] that it may take
+PUSHES = (15.0, 30.0)  # of a hand, which rises within RISE [N]
+RISE = 0.1  # [s]
+GROWS = 400.0  # what stands in the way pushes back so fast: 0.2 m/s against 2000 N/m [N/s]
+HAND = 140.0  # quasi-static force on a hand, ISO/TS 15066 [N]
+MASS_ERROR = 0.046  # docs/guide/tools.md [kg]
+WAITS = (0.1, 0.6)  # after the arm began to turn [s]
+ENDS = {Kind.WIZARD_STOPPED, Kind.WIZARD_FINISHED, Kind.WIZARD_REFUSED}
+
+
+class Case(NamedTuple):
+    """One run of the wizard."""
+
+    number: int
+    seed: int
+    mounting: str
+    posture: tuple[float, ...]
+    mass: float  # [kg]
+    grid: str
+
+
+class Result(NamedTuple):
+    """What came of it."""
+
+    end: str  # the event's kind; "" for none in time
+    reason: str
+    error: float  # of the mass that was found [kg], nan for none
+    force: float  # of hand or obstacle as it stopped [N]
+    delay: float  # from its beginning [s], nan where nothing touched
+
+
+def measure_case(case: Case) -> Result:
+    """From the command until it ends."""
+    rng = np.random.default_rng([case.seed, case.number, GRIDS.index(case.grid)])
+    centre = rng.uniform([-0.03, -0.03, 0.0], [0.03, 0.03, 0.1])
+    device = Simulation(
+        load_arm(ARM),
+        Scenario(
+            mounting=list(MOUNTINGS[case.mounting]),
+            posture=list(case.posture),
+            payload_true=Load(mass=case.mass, com=centre.tolist()),
+            seed=case.seed + case.number,
+        ),
+        Settings(),
+    )
+    for _ in range(round(SETTLE * TICK_RATE)):
+        device.tick(IDLE)
+    way = rng.normal(size=3)
+    way /= np.linalg.norm(way)
+    most, wait = float(rng.uniform(*PUSHES)), float(rng.uniform(*WAITS))
+    turned, since, force, decision = 0, 0, 0.0, device.tick(RUN)
+    before = device.snapshot().truth_links[-2, :3].copy()
+    events: list[Event] = list(decision.events)
+    for _ in range(round(LONGEST * TICK_RATE)):
+        if any(event.kind in ENDS for event in events):
+            break
+        turned += decision.law is Law.FOLLOW
+        touches: tuple[Push, ...] = ()
+        if case.grid != "untouched" and turned > wait * TICK_RATE:
+            since += 1
+            passed = since / TICK_RATE
+            if case.grid == "pushed":
+                force = most * min(passed / RISE, 1.0)
+                touches = (Push("flange", (0.0, 0.0, 0.0), _triple(force * way)),)
+            else:
+                force = GROWS * passed
+                touches = (Push("wrist_3", (0.0, 0.0, 0.0), _triple(-force * way)),)
+        elif case.grid == "in the way":
+            now = device.snapshot().truth_links[-2, :3].copy()
+            speed, before = now - before, now
+            if float(np.linalg.norm(speed)) > 1e-6:
+                way = speed / np.linalg.norm(speed)
+        decision = device.tick(Wishes(IDLE.inputs, touches, ()))
+        events += decision.events
+    end = next((event for event in events if event.kind in ENDS), None)
+    found = decision.wizard.finding
+    return Result(
+        "" if end is None else end.kind.value,
+        "" if end is None else str(end.values.get("reason", "")),
+        math.nan if found is None else abs(found.mass - case.mass),
+        force,
+        since / TICK_RATE if since else math.nan,
+    )
+
+
+def _triple(vector: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z
+
+
+def draw(seed: int, count: int, grid: str) -> list[Case]:
+    """`count` postures, each with a mounting and a load of its own."""
+    rng = np.random.default_rng([seed, GRIDS.index(grid), 5])
+    found, _ = postures(count, rng)
+    mountings = list(MOUNTINGS)
+    return [
+        Case(number, seed, mountings[number % len(mountings)], posture, float(rng.uniform(0.0, 5.0)), grid)
+        for number, posture in enumerate(found)
+    ]
+
+
+def measure(report: Report) -> None:
+    """Fill the report."""
+    count = 100 if report.options.full else 12
+    results = {grid: spread(measure_case, draw(report.options.seed, count, grid)) for grid in GRIDS}
+    calm = [r for r in results["untouched"] if r.end != Kind.WIZARD_REFUSED.value]
+    finished = [r for r in calm if r.end == Kind.WIZARD_FINISHED.value]
+    felt = [r for r in calm if r.end == Kind.WIZARD_STOPPED.value and "hands off" in r.reason]
+    report.share("nobody touches: stopped for a force or a torque", len(felt), len(calm), at_most=0.01)
+    report.share("nobody touches: finished", len(finished), len(calm))
+    errors = [r.error for r in finished if not math.isnan(r.error)]
+    report.row("nobody touches: error of the mass, worst", max(errors, default=math.nan), "kg", at_most=MASS_ERROR, n=len(errors))
+    pushed = [r for r in results["pushed"] if not math.isnan(r.delay)]
+    stopped = [r for r in pushed if r.end == Kind.WIZARD_STOPPED.value]
+    report.share(f"pushed with {PUSHES[0]:g} to {PUSHES[1]:g} N at the flange: stopped", len(stopped), len(pushed), at_least=0.95)
+    delays = [r.delay for r in stopped]
+    report.row("pushed: delay, 95 %", float(np.quantile(delays, 0.95)) if delays else math.nan, "s", n=len(delays))
+    barred = [r for r in results["in the way"] if not math.isnan(r.delay)]
+    forces = [r.force for r in barred if r.end == Kind.WIZARD_STOPPED.value]
+    report.share("something in the way of a wrist link: stopped", len(forces), len(barred), at_least=0.95)
+    worst = float(np.quantile(forces, 0.95)) if forces else math.nan
+    report.row("in the way: force as it stops, 95 %", worst, "N", at_most=HAND, n=len(forces))
+    for grid in GRIDS:
+        for r in results[grid]:
+            if (grid == "untouched") == (r.end != Kind.WIZARD_FINISHED.value):
+                report.notes.append(f"{grid}: {r.end or 'no end'}, {r.reason}, {r.force:.0f} N")
+
+
+if __name__ == "__main__":
+    main("wizard", measure)
