@@ -16,8 +16,8 @@ SHORTEST = 0.06
 LONGEST = 0.4
 """Length of the arrow of a force [m]."""
 
-SMALLEST, LARGEST = 0.04, 0.12
-"""Radius of the arrow of a torque [m]."""
+SMALLEST, LARGEST = 0.09, 0.14
+"""Radius of the arrow of a torque [m]: it goes round the link that is turned."""
 
 TURN = 1.5 * math.pi
 PIECES = 24
