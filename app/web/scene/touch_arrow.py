@@ -80,6 +80,7 @@ def arc(point: Array, torque: Array) -> Array:
     across = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
     across = across / np.linalg.norm(across)
     radius = min(max(size * METRES_PER_NEWTON_METRE, SMALLEST), LARGEST)
-    angles = np.linspace(0.0, TURN, PIECES + 1)[:, None]
-    points = point + radius * (np.cos(angles) * across + np.sin(angles) * np.cross(axis, across))
+    angles = np.arange(PIECES + 1, dtype=np.float64)[:, None] * (TURN / PIECES)
+    round_it = np.cos(angles) * across + np.sin(angles) * np.cross(axis, across)
+    points = np.asarray(point + radius * round_it, dtype=np.float64)
     return np.stack([points[:-1], points[1:]], axis=1)
