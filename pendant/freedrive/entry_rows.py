@@ -40,7 +40,7 @@ ENTRY: dict[Kind, EventRow] = {
     ),
     # Entry (FD-9)
     Kind.TEACH_FIRST: EventRow(
-        Effect.TO_TEACH, Severity.INFO, "Mode TEACH", "It was {from}. Free-drive leads back to TEACH.", ("from",)
+        Effect.TO_TEACH, Severity.INFO, "Mode TEACH", "The mode before was {from}. Free-drive leads back to TEACH.", ("from",)
     ),
     Kind.ENTERED: EventRow(
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")

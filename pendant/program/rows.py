@@ -67,7 +67,7 @@ COMMANDS = {
 
 PROGRAM: dict[Kind, EventRow] = {
     # Mode and program
-    Kind.MODE_CHANGED: info("Mode {to}", "It was {from}.", ("from", "to")),
+    Kind.MODE_CHANGED: info("Mode {to}", "The mode before was {from}.", ("from", "to")),
     Kind.COMMAND_REFUSED: denied("{command} is not possible in {mode}", "{reason}.", ("command", "mode", "reason"))._replace(
         words=COMMANDS
     ),

@@ -86,7 +86,7 @@ class Remembered:
             if self.stop is None or STOPPING[row.effect] > STOPPING[TABLE[self.stop.kind].effect]:
                 self.stop = event
             return
-        if row.effect in ENDED or event.kind is Kind.ACTIVATION_STARTED:
+        if row.effect in ENDED or event.kind in (Kind.ACTIVATION_STARTED, Kind.PROGRAM_STARTED):
             self.note = None
         worth = row.effect is not Effect.INFO or row.severity >= Severity.NOTICE or event.kind is Kind.ACTIVATION_CANCELLED
         if worth and row.effect is not Effect.TRY:
@@ -111,7 +111,8 @@ class Remembered:
         if row.clears is Clears.RESET:
             return decision.mode is not Mode.STOP
         if row.effect is Effect.INFO:
-            return self.tick - note.tick > PASSING
+            refused_in = note.values["mode"] if note.kind is Kind.COMMAND_REFUSED else decision.mode
+            return self.tick - note.tick > PASSING or decision.mode != refused_in
         if decision.mode is Mode.STOP or (decision.mode is Mode.RUN and decision.program is ProgramState.RUNNING):
             return True
         return decision.mode is Mode.FREE_DRIVE and row.effect is not Effect.ENTER

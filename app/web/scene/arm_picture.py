@@ -12,6 +12,7 @@ from trimesh.visual.material import PBRMaterial
 
 from app.web.scene.arm_marks import ball_radius
 from app.web.scene.stage import DARK, LIGHT, lay
+from app.web.scene.touch_arrow import TouchArrow
 from app.web.scene.wall_pictures import WallPictures
 from sim.arm.arm_file import Arm
 from sim.arm.frames import matrix_from_quaternion
@@ -23,12 +24,6 @@ Array = NDArray[np.float64]
 STEP = 2e-5
 """Changes smaller than this are not sent [m, and 1 for quaternions]."""
 
-METRES_PER_NEWTON = 0.004
-METRES_PER_NEWTON_METRE = 0.03
-SHORTEST = 0.06
-LONGEST = 0.4
-"""Length of the arrows of touches [m]."""
-
 TOOL = "/arm/tool"
 """Name of the tool's node."""
 
@@ -38,8 +33,6 @@ BELIEVED_APART = 0.05
 TOUCHES = 4
 """Touches shown at once."""
 
-FORCE_COLOUR = (25, 113, 194)
-TORQUE_COLOUR = (156, 54, 181)
 GREY = (173, 181, 189)
 WORLD_COLOURS = {Pad: (150, 190, 160), SnapFit: (190, 170, 140), TwoFrictions: (170, 170, 200)}
 
@@ -76,8 +69,7 @@ class Scene:
             "/believed", radius=1.0, color=(25, 113, 194), opacity=0.35, visible=False, cast_shadow=False
         )
         self._believed_label = server.scene.add_label("/believed label", "", visible=False, anchor="top-center")
-        self._arrows = [self._arrow(i) for i in range(TOUCHES)]
-        self._shown: list[tuple[float, ...]] = [()] * TOUCHES
+        self.arrows = [TouchArrow(server.scene, i) for i in range(TOUCHES)]
         self.walls = WallPictures(server)
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -157,45 +149,18 @@ class Scene:
         return moved or changed
 
     def _show_touches(self, snapshot: Snapshot) -> bool:
-        changed = False
-        for i, (arrow, label) in enumerate(self._arrows):
-            shown: tuple[float, ...] = ()
-            if i < len(snapshot.touches):
-                _, point, force, torque = snapshot.touches[i]
-                shown = tuple(np.round([*point, *force, *torque], 3))
-            if shown == self._shown[i]:
-                continue
-            changed = True
-            self._shown[i] = shown
-            arrow.visible = label.visible = bool(shown)
-            if shown:
-                self._draw(arrow, label, np.array(shown))
-        return changed
-
-    def _draw(self, arrow: viser.ArrowsHandle, label: viser.LabelHandle, touch: Array) -> None:
-        point, force, torque = touch[:3], touch[3:6], touch[6:]
-        turning = float(np.linalg.norm(force)) < 1e-9
-        vector, size, unit = (torque, METRES_PER_NEWTON_METRE, "N·m") if turning else (force, METRES_PER_NEWTON, "N")
-        amount = float(np.linalg.norm(vector))
-        length = min(max(amount * size, SHORTEST), LONGEST)
-        tip = point + (vector / amount * length if amount > 0.0 else 0.0)
-        arrow.points = np.array([[point, tip]], dtype=np.float32)
-        arrow.colors = np.array(TORQUE_COLOUR if turning else FORCE_COLOUR, dtype=np.uint8)
-        label.position = tip
-        label.text = f"{amount:.1f} {unit}" if turning else f"{amount:.0f} {unit}"
-
-    def _arrow(self, i: int) -> tuple[viser.ArrowsHandle, viser.LabelHandle]:
-        nothing = np.zeros((1, 2, 3), dtype=np.float32)
-        arrow = self._server.scene.add_arrows(
-            f"/touch/{i}/arrow", nothing, FORCE_COLOUR, shaft_radius=0.006, head_radius=0.016, head_length=0.04, visible=False
-        )
-        return arrow, self._server.scene.add_label(f"/touch/{i}/label", "", visible=False, anchor="bottom-center")
+        touches = [touch[1:] for touch in snapshot.touches[:TOUCHES]]
+        changed = [arrow.show(touches[i] if i < len(touches) else None) for i, arrow in enumerate(self.arrows)]
+        return any(changed)
 
     def _add_tool(self, scenario: Scenario) -> None:
         tool = scenario.tool
         if tool is None or tool.length <= 0.0:
             return
-        shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
+        if tool.length > 2.0 * tool.radius:  # as it is in the simulation
+            shape = trimesh.creation.capsule(tool.length - 2.0 * tool.radius, tool.radius, count=[24, 16])
+        else:
+            shape = trimesh.creation.cylinder(tool.radius, tool.length, sections=32)
         shape.apply_translation([0.0, 0.0, tool.length / 2])
         shape.visual = TextureVisuals(
             material=PBRMaterial(baseColorFactor=[38, 42, 48, 255], metallicFactor=0.0, roughnessFactor=0.5)

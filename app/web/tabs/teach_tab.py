@@ -56,6 +56,7 @@ class Teach:
             self.record = gui.add_checkbox("Record a path", False)
         self.save = gui.add_button("Save as file", color="gray")
         self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
+        self.filed = Html(gui)  # what became of the file, beside its button
         self._connect()
         self._refresh()
 
@@ -191,11 +192,11 @@ class Teach:
                 if len(waypoint.q) != self._arm.n:
                     raise BadInput(name, f"waypoints[{number}].q", waypoint.q, f"{self._arm.n} joint angles")
         except BadInput as refusal:
-            self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
+            self.filed.show(svg.note("File refused", str(refusal), Colour.AMBER))
             return
         self.edits.to(lesson)
         self._refresh()
-        self.message.show(svg.note("File loaded", f"{len(lesson.waypoints)} waypoints, {len(lesson.plan)} steps.", Colour.GREEN))
+        self.filed.show(svg.note("File loaded", f"{len(lesson.waypoints)} waypoints, {len(lesson.plan)} steps.", Colour.GREEN))
 
     def _edit(self) -> None:
         name = self.choice.value

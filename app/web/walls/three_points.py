@@ -57,34 +57,41 @@ class ThreePoints:
             self._forget()
             self._tell()
 
+    def show(self, locked: bool) -> bool:
+        """Make the plane of three points, once walls may be changed; True if it was made."""
+        found = None if locked or len(self._points) < WANTED else plane_through(self._points)
+        if found is None:
+            return False
+        self._forget()
+        self._tell()
+        self._made(*found)
+        return True
+
     def _take(self) -> None:
         at = self._tool()
         self._points.append(at)
         name = f"{ROOT}/point {len(self._points)}"
         self._balls.append(self._scene.add_icosphere(name, radius=BALL, color=BLUE, position=at.p, cast_shadow=False))
-        if len(self._points) < WANTED:
-            self._tell()
-            return
-        found = plane_through(self._points)
-        self._forget()
-        if found is None:
+        if len(self._points) == WANTED and plane_through(self._points) is None:
+            self._forget()
             text = f"They lie nearly in one line: bring the tool at least {1000.0 * LOWEST:.0f} mm away from it."
             self.said.show(svg.note("No plane", text, Colour.AMBER))
             return
         self._tell()
-        self._made(*found)
 
     def _forget(self) -> None:
         for ball in self._balls:
             ball.remove()
         self._points, self._balls = [], []
-        self.again.disabled = True
+        self.again.disabled, self.take.disabled = True, False
 
     def _tell(self) -> None:
         count = len(self._points)
-        self.again.disabled = count == 0
-        told = f"{count} of {WANTED} points taken. " if count else ""
-        self.said.show(svg.fine_print(f"{told}Bring the tool to a point of the plane, then take it. The tool's side is allowed."))
+        self.again.disabled, self.take.disabled = count == 0, count == WANTED
+        what = "Bring the tool to a point of the plane, then take it. The tool's side is allowed."
+        if count == WANTED:
+            what = "The plane is made as soon as the arm is neither free nor runs."
+        self.said.show(svg.fine_print(f"{count} of {WANTED} points taken. {what}" if count else what))
 
 
 def plane_through(points: list[Pose]) -> tuple[Vector, Quaternion] | None:

@@ -115,6 +115,7 @@ class WallsTab:
         for control in (self.side, self.here, *self.size, *self.spot):
             changed |= enable(control, area is not None and not locked)
         changed |= enable(self.undo, bool(self._before) and not locked)
+        changed |= self.points.show(locked)
         held = self._asked is not None  # the handles stay where they were let go until the robot has answered
         return changed or (not held and self.handles.show(area if self.shown.value and not locked else None, self._place))
 

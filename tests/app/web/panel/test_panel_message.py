@@ -34,6 +34,21 @@ def test_in_stop_the_cause_stays_until_reset(loop: FakeLoop, still: Served) -> N
     assert "Stopped" not in headline(loop, still)
 
 
+def test_a_refused_command_is_told_until_the_mode_is_another(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.COMMAND_REFUSED, command="start_program", mode="TEACH", reason="the arm still moves")
+    assert headline(loop, still) == "Starting the program is not possible in TEACH"
+    loop.mode = Mode.NORMAL
+    assert headline(loop, still) == HINTS[Mode.NORMAL].headline
+
+
+def test_a_program_that_starts_ends_what_was_told_of_the_last_one(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.PROGRAM_FAILED, name="taught", step=2, reason="no contact within 200 mm")
+    assert headline(loop, still) == "Program taught stopped at step 2"
+    loop.mode, loop.program = Mode.RUN, ProgramState.RUNNING
+    loop.note(Kind.PROGRAM_STARTED, name="taught")
+    assert headline(loop, still) == HINTS[Mode.RUN].headline
+
+
 def test_a_graver_stop_is_the_cause_and_a_lesser_one_is_not(loop: FakeLoop, still: Served) -> None:
     stop_by_limit(loop)
     headline(loop, still)

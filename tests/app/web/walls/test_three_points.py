@@ -9,6 +9,7 @@ import pytest
 from app.web.server import Served
 from app.web.walls.made_walls import made, moved
 from app.web.walls.three_points import LOWEST, plane_through
+from pendant.tick.modes import Mode
 from pendant.tick.pose import Pose, Rotation, from_rpy, seen_from
 from pendant.walls.barrier import placed
 from pendant.walls.definitions import AnyBorder, Area
@@ -76,6 +77,22 @@ def test_three_points_make_a_wall_on_the_page(served: Served, join: Join, loop: 
 
     wished(loop, level, "the plane")
     until(lambda: tab.choice.value == "plane 1" and tab.points.again.disabled, "chosen, and no points are left")
+
+
+def test_of_points_taken_by_hand_the_plane_is_made_when_free_drive_is_over(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, tab = join(), served.docks.walls
+    poses = iter(tools(DOWN))
+    tab.points._tool = lambda: next(poses)
+    loop.mode = Mode.FREE_DRIVE
+    until(lambda: tab.add.visible and loop.advance() is None and tab.undo.disabled, "free")
+    for count in (1, 2, 3):
+        client.set(tab.points.take._impl.uuid, value=True)
+        until(lambda count=count: f"{count} of 3" in tab.points.said.shown, "taken")
+    assert tab.points.take.disabled
+    loop.advance()
+    assert loop.wishes[-1].inputs.borders is None
+    loop.mode = Mode.TEACH
+    wished(loop, lambda walls: [wall.name for wall in walls] == ["plane 1"], "the plane")
 
 
 def test_points_are_forgotten_and_a_line_is_refused_in_words(served: Served, join: Join, loop: FakeLoop) -> None:
