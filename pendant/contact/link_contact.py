@@ -194,7 +194,8 @@ class LinkWatch:
         felt, bound = self._felt_now(new, limit, signals)
         largest = float((np.abs(felt) / bound)[: elbow + 1].max())
         if not self._count.step(min(int(largest), HEAVIEST), use.slow_count, use.misses):
-            self._rest += FOLLOW * (new - self._rest)
+            if largest < 1.0:
+                self._rest += FOLLOW * (new - self._rest)
             return None
         change = np.abs(felt)
         told = np.flatnonzero((change >= SURE * bound) & (change >= SHARE * change.max()))
