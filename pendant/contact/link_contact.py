@@ -221,9 +221,9 @@ class LinkWatch:
         self._calm = self._calm + 1 if left < gone else 0
         if self._calm < GONE or self.touched is None:
             return None
-        link, old = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
+        link, touched = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
         self._over()
-        return self._reported(Change.LOST, link, new, old)
+        return self._reported(Change.LOST, link, new, touched)
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0

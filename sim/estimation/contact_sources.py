@@ -87,7 +87,6 @@ class ContactSources:
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
         self._out, self._started = own["signals"], False
-        self._with_sensor: bool | None = None  # in the last tick
         self._elbow = elbow
         self._out[:, EFFECTIVE_MASS] = 1.4  # until the arm has been weighed
         self.set_load(dynamics.load)
@@ -100,6 +99,7 @@ class ContactSources:
     def set_zero(self, zero: Array) -> None:
         """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
         self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
+        self._momentum.forget()
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.
@@ -114,9 +114,7 @@ class ContactSources:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
-        # Torques with the sensor's share and without it are no continuation of each other.
-        links = use.links and sample.joints_valid and self._with_sensor in (sample.wrench_valid, None)
-        self._with_sensor = sample.wrench_valid
+        links = use.links and sample.joints_valid and self._momentum.ready
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
         motion = (sample.values, estimate.qd, estimate.qdd)

@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 BANDWIDTH = 40.0
 """Of the observer and of the filter behind it [Hz]: above the swing of an arm on its gears (10 to 25 Hz), and so low that the
 output encoder's noise, which is differentiated twice, makes a newton metre of it at the most."""
+READY = 25
+"""Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
 FLOOR = 0.004
 """Deviation of what model, gear and encoders leave within some tenths of a second, relative to a joint's torque limit."""
 OFFSET_WALK = 0.05  # of the gear's offset, relative to the ripple's torque [1/sqrt(s)]
@@ -85,7 +87,7 @@ class MomentumObserver:
             output_share=(),  # of friction
             floor=(n,),
             ripple=(n,),  # torque of the output encoder's ripple [N·m]
-            count="i8",  # ticks in a row, at most 2
+            count="i8",  # ticks in a row, at most `READY`
             q=(n,),  # a tick ago
             p=(n,),  # momentum, a tick ago [N·m·s]
             drive=(n,),  # of it, a tick ago
@@ -111,6 +113,15 @@ class MomentumObserver:
         own["covariance"][:, 0], own["covariance"][:, 2] = STIFFNESS**2 / 3.0, own["ripple"] ** 2  # of a uniform error
         self._with_sensor = False
 
+    @property
+    def ready(self) -> bool:
+        """What it says counts: it has followed the arm for `READY` ticks."""
+        return bool(self._own["count"] == READY)
+
+    def forget(self) -> None:
+        """What was before counts no more: a tick is missing, or the flange sensor tells something else from now on."""
+        self._own["count"] = 0
+
     def update(self, driven: tuple[Array, ...], *, with_sensor: bool, valid: bool, learn: bool) -> None:
         """One tick.
 
@@ -121,7 +132,7 @@ class MomentumObserver:
             learn: planned motion moves the arm.
         """
         if not valid or with_sensor is not self._with_sensor:
-            self._own["count"] = 0
+            self.forget()
         self._with_sensor = with_sensor
         if valid:
             _update(self.record, self._rigid.record, driven, (with_sensor, learn))
@@ -163,7 +174,7 @@ def _update(observer, model, driven, state) -> None:
         for i in range(n):
             if driven.use[1, i]:
                 _learn(own, i)
-    own.count = min(own.count + 1, 2)
+    own.count = min(own.count + 1, READY)
 
 
 @kernel
