@@ -13,9 +13,10 @@ from app.files.taught_program import Lesson
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import Setup
 from pendant.all_settings import Settings, describe, value_of
+from pendant.equipment.tools import Tool
 from pendant.walls.definitions import AnyBorder
 from sim.arm.arm_file import Arm
-from sim.arm.scenario import Scenario
+from sim.arm.scenario import Scenario, ToolModel, table
 
 OFTEN = 1.0
 """What changes is written at most once in this time [s]."""
@@ -28,15 +29,15 @@ class Kept(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     taught: Lesson
 
 
-def setup_of(arm: Arm, scenario: Scenario, settings: Settings, walls: tuple[AnyBorder, ...]) -> Setup:
-    """A configuration that begins with this arm, scenario, settings, walls and areas."""
+def setup_of(arm: Arm, scenario: Scenario, settings: Settings, *, walls: tuple[AnyBorder, ...], tools: tuple[Tool, ...]) -> Setup:
+    """A configuration that begins with this arm, scenario, settings, walls and areas, and table of tools."""
     changed = {row.name: value_of(settings, row.name) for row in describe() if value_of(settings, row.name) != row.default}
     return Setup(
         robot=arm.name,
         mounting=scenario.mounting,
         posture=scenario.posture,
-        tool=scenario.tool,
-        tools=scenario.tools,
+        tool=_framed(scenario.tool, tools),
+        tools=_besides(scenario, tools),
         payload_true=scenario.payload_true,
         payload_configured=scenario.payload_configured,
         settings=changed,
@@ -47,6 +48,20 @@ def setup_of(arm: Arm, scenario: Scenario, settings: Settings, walls: tuple[AnyB
         world=scenario.world,
         walls=list(walls),
     )
+
+
+def _framed(tool: ToolModel | None, tools: tuple[Tool, ...]) -> ToolModel | None:
+    """The tool at the flange, which is as it is, with its tool centre point as the table has it."""
+    told = next((each for each in tools if tool is not None and each.name == tool.name), None)
+    return tool if tool is None or told is None else msgspec.structs.replace(tool, tcp=told.tcp, rpy=told.rpy)
+
+
+def _besides(scenario: Scenario, tools: tuple[Tool, ...]) -> list[ToolModel]:
+    """The tools to choose from: as they were, or those of an edited table beside the one at the flange."""
+    if list(tools) == table(scenario):
+        return scenario.tools
+    models = [tool for tool in tools if isinstance(tool, ToolModel)]
+    return [tool for tool in models if scenario.tool is None or tool.name != scenario.tool.name]
 
 
 def text_of(value: msgspec.Struct) -> str:
@@ -98,17 +113,19 @@ class Keeper:
         settings: Settings,
         *,
         walls: tuple[AnyBorder, ...],
+        tools: tuple[Tool, ...],
         now: float | None = None,
     ) -> None:
-        """Write what has changed since it was seen first; `walls` are all of them as they are, `now` is the clock [s]."""
+        """Write what has changed since it was seen first: all `walls` and `tools` as they are; `now` is the clock [s]."""
         clock = time.monotonic() if now is None else now
-        seen = (lesson, scenario, settings, walls)
+        seen = (lesson, scenario, settings, walls, tools)
         if self._seen is None:
             self._seen = seen
         if self.problem or all(a is b for a, b in zip(seen, self._seen, strict=True)) or clock < self._written + OFTEN:
             return
         self._seen, self._written = seen, clock
-        self.problem = written(self.path, text_of(Kept(setup=setup_of(arm, scenario, settings, walls), taught=lesson)))
+        setup = setup_of(arm, scenario, settings, walls=walls, tools=tools)
+        self.problem = written(self.path, text_of(Kept(setup=setup, taught=lesson)))
 
 
 def written(path: Path, text: str) -> str:

@@ -70,7 +70,7 @@ class ServedRobot:
         if self._setup is not None:
             path = self._folder / "setup.yaml"
             path.write_text(json.dumps(self._setup), encoding="utf-8")
-        for host in itertools.islice(_addresses(), TRIES):
+        for host in itertools.islice(free_addresses(), TRIES):
             self.host = host
             setup = None if path is None else str(path)
             self._pid = _NURSERY.order(folder=str(self._folder), setup=setup, host=host, token=self._token)
@@ -255,7 +255,7 @@ _NURSERY = _Nursery()
 _OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # no proxy of the user's for this machine
 
 
-def _addresses() -> Iterator[str]:
+def free_addresses() -> Iterator[str]:
     """Loopback addresses drawn by chance, whose usual ports are free now."""
     while True:
         host = f"127.{1 + secrets.randbelow(254)}.{secrets.randbelow(256)}.{1 + secrets.randbelow(254)}"

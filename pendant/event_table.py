@@ -16,4 +16,6 @@ def render(event: Event) -> tuple[str, str]:
     guidance = row.guidance
     if row.variant is not None and event.values[row.variant[0]]:
         guidance = row.variant[1]
-    return row.headline.format_map(event.values), guidance.format_map(event.values)
+    values = {name: row.words.get(value, value) if isinstance(value, str) else value for name, value in event.values.items()}
+    headline, guidance = row.headline.format_map(values), guidance.format_map(values)
+    return headline, guidance[:1].upper() + guidance[1:]

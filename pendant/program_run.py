@@ -98,19 +98,25 @@ class ProgramRun:
                     self._steer(command, estimate.tick, events)
         self._jogging.step(estimate, inputs, settings, events, changing=changing)
         if robot.mode is not _FREE_DRIVE and (sequencer.braked or (move is not None and sequencer.move is move)):
-            tool_on, outputs = sequencer.tool_on, sequencer.outputs
+            before, tool_on, outputs = len(events), sequencer.tool_on, sequencer.outputs
             self._go_on(estimate, monitor, settings, events)
-            if sequencer.tool_on is not tool_on:
-                events.append(Event(Kind.TOOL_SWITCHED, estimate.tick, {"state": "on" if sequencer.tool_on else "off"}))
-            if sequencer.telling is not None:
-                says: Values = {"name": robot.program_name, "text": sequencer.telling.text, "tone": sequencer.telling.tone}
-                events.append(Event(Kind.PROGRAM_TELLS, estimate.tick, says))
-                sequencer.telling = None
-            for number in sorted(outputs ^ sequencer.outputs):
-                state = "on" if number in sequencer.outputs else "off"
-                events.append(Event(Kind.OUTPUT_SWITCHED, estimate.tick, {"number": number, "state": state}))
+            events[before:before] = self._did(estimate.tick, tool_on, outputs)  # the last step comes before the end
         if move is not None and sequencer.scripted:
             self._follow_script(estimate, inputs, settings, events)
+
+    def _did(self, tick: int, tool_on: bool, outputs: frozenset[int]) -> list[Event]:
+        """What the step of this tick has switched, from what was on before, and what it tells."""
+        sequencer, events = self._robot.sequencer, list[Event]()
+        if sequencer.tool_on is not tool_on:
+            events.append(Event(Kind.TOOL_SWITCHED, tick, {"state": "on" if sequencer.tool_on else "off"}))
+        if sequencer.telling is not None:
+            says: Values = {"name": self._robot.program_name, "text": sequencer.telling.text, "tone": sequencer.telling.tone}
+            events.append(Event(Kind.PROGRAM_TELLS, tick, says))
+            sequencer.telling = None
+        for number in sorted(outputs ^ sequencer.outputs):
+            state = "on" if number in sequencer.outputs else "off"
+            events.append(Event(Kind.OUTPUT_SWITCHED, tick, {"number": number, "state": state}))
+        return events
 
     def _follow_script(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event]) -> None:
         """One tick of a step that is a script; without its word the arm comes to rest, also a guided one."""

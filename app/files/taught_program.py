@@ -19,6 +19,7 @@ from pendant.program.steps import (
     Program,
     SetOutput,
     SwitchTool,
+    Tell,
     Wait,
     WaitForContact,
     WaitForInput,
@@ -31,6 +32,9 @@ Name = Annotated[str, Meta(min_length=1, max_length=40)]
 
 MOST = 200
 """Waypoints, and steps, in one file."""
+
+LONGEST = 120
+"""Of what the user is told by a step [characters]."""
 
 JOINT_SPEED, LINE_SPEED, TOUCH_SPEED = 0.33, 0.25, 0.05
 """At full speed: of a joint move, as a share of the joints' limits; of a line, and of a line until contact [m/s]."""
@@ -46,6 +50,7 @@ OTHERS = {
     "tool on": "Tool on",
     "tool off": "Tool off",
     "zero": "Zero the force sensor",
+    "tell": "Tell the user",
 }
 THEN: dict[str, Literal["contact_pose", "retract", "stop"]] = {"stay": "contact_pose", "retreat": "retract", "go on": "stop"}
 """What follows a contact that ends a move, with what the program calls it."""
@@ -79,6 +84,7 @@ Do = Literal[
     "tool on",
     "tool off",
     "zero",
+    "tell",
 ]
 
 
@@ -96,6 +102,7 @@ class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
     speed: Annotated[float, Meta(ge=0.001, le=0.25)] = 0.03  # [m/s]
     then: Literal["stay", "retreat", "go on"] = "stay"
     back: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.05  # of a retreat [m]
+    says: Annotated[str, Meta(min_length=1, max_length=LONGEST)] = "Ready"  # what the user is told
     when: InputLevel | None = None  # else it is left out
 
     def __post_init__(self) -> None:
@@ -121,6 +128,8 @@ class TaughtStep(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
             return f"Wait until input {self.number} is {level(self.high)}"
         if self.do in ("output on", "output off"):
             return f"Output {self.number} {self.do.removeprefix('output ')}"
+        if self.do == "tell":
+            return f"Tell “{self.says}”"
         return OTHERS[self.do]
 
 
@@ -227,6 +236,8 @@ def _move(lesson: Lesson, step: TaughtStep) -> AnyStep:
         return Wait(duration=step.seconds)
     if step.do == "zero":
         return ZeroSensor()
+    if step.do == "tell":
+        return Tell(text=step.says)
     if step.do == "contact":
         return WaitForContact()
     if step.do == "input":

@@ -66,7 +66,7 @@ class Docks:
         with self._upper.add_tab("Lab"):
             self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
         with self._upper.add_tab("Tools"):
-            self.tools = ToolsTab(gui, loop, arm)
+            self.tools = ToolsTab(server, guard, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
             self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
@@ -112,6 +112,9 @@ class Docks:
             self.walls.here,
             self.walls.delete,
             self.walls.undo,
+            self.walls.points.take,
+            self.walls.points.again,
+            self.tools.editor.undo,
             self.contacts.export,
             self.recording.export,
             self.recording.replay.leave,
@@ -159,6 +162,14 @@ class Docks:
         keeper = self._keeper
         if keeper is None or keeper.problem:
             return
-        keeper.see(self.teach.lesson, self._arm, self._loop.scenario, self._loop.settings, walls=self._loop.walls, now=now)
+        keeper.see(
+            self.teach.lesson,
+            self._arm,
+            self._loop.scenario,
+            self._loop.settings,
+            walls=self._loop.walls,
+            tools=self._loop.tools,
+            now=now,
+        )
         if keeper.problem:
             self.teach.message.show(svg.note("Not kept for the next start", keeper.problem, Colour.AMBER))

@@ -196,6 +196,7 @@ class Served(Site):
         self.panel.let_go(client)
         self.docks.jog.let_go(client)
         self.docks.walls.let_go(client)
+        self.docks.tools.frame.handles.let_go(client)
         self.guard.operator.engage(client, False, self.guard.now())
 
     def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:

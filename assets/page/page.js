@@ -24,6 +24,8 @@
     setTimeout(() => { button.removeEventListener("click", heard); if (!clicked) button.click(); }, 80); };
   addEventListener("pointerdown", (event) => { const button = freeDrive(); if (button && event.button === 0 && button.contains(event.target)) pressed = button; }, true);
   for (const name of ["pointerup", "pointercancel"]) addEventListener(name, lift, true);
+  // A finger that holds a button asks for no menu.
+  addEventListener("contextmenu", (event) => { if (event.target.closest && event.target.closest("button,canvas")) event.preventDefault(); });
 
   // Space and Enter hold the free-drive button as a finger does; leaving the page lets go.
   let key = null;
@@ -85,6 +87,9 @@
     for (const input of all("input:not([type=hidden])")) if (!input.labels || !input.labels.length) set(input, "aria-label", input.placeholder || labelled(input));
     for (const group of all(".mantine-Button-root[data-size=compact-xs]")) { const text = group.textContent.trim();
       if (text.length < 2) set(group, "aria-label", `${labelled(group)}: ${{ "↑": "up", "↓": "down", "✕": "delete" }[text] || text}`); }
+    // viser greets each file before anybody has looked into it: what became of it stands beside the button.
+    for (const note of all(".mantine-Notification-description")) { const text = note.firstChild;
+      if (text && text.nodeValue === "File uploaded successfully.") text.nodeValue = "The file has arrived. What became of it stands beside the button."; }
     for (const close of all(".mantine-Notification-closeButton")) set(close, "aria-label", "Close this message");
     all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Connection and view" : "Command palette"));
     for (const head of all('[style*="cursor: pointer"]')) { const next = head.nextElementSibling; if (head.tagName !== "DIV" || !next || !at("svg", head) || head.querySelector("input,button") || !/^(button)?$/.test(head.getAttribute("role") || "") || head.closest("[role=tablist]")) continue;

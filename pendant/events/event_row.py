@@ -1,6 +1,8 @@
 """A row of the event table: effect on the mode, severity, texts, and what clears it."""
 
+from collections.abc import Mapping
 from enum import IntEnum, StrEnum
+from types import MappingProxyType
 from typing import NamedTuple
 
 from pendant.tick.limit_engine import Excess
@@ -54,6 +56,7 @@ class EventRow(NamedTuple):
     cool_down: bool = False  # starts the cool-down (FD-12c)
     variant: tuple[str, str] | None = None  # a value of the event, and the guidance instead of the other where it is true
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
+    words: Mapping[str, str] = MappingProxyType({})  # what the texts call a value that is a name of the program's own
 
 
 WALL = ("wall", "part", "distance", "way", "x", "y", "z", "px", "py", "pz")

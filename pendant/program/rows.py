@@ -30,15 +30,47 @@ def _touched(headline: str) -> EventRow:
         Effect.INFO,
         Severity.NOTICE,
         headline,
-        "Force change {force:.1f} N, seen within {steps} ticks of 2 ms by rule {rule}. Action: {action}.",
+        "Force change {force:.1f} N, noticed by rule {rule}. Action: {action}.",
         keys,
     )
 
 
+COMMANDS = {
+    "emergency_stop": "An emergency stop",
+    "emergency_stop_released": "Releasing the emergency stop",
+    "protective_stop": "A protective stop",
+    "power_off": "Switching the drives off",
+    "reset": "A reset",
+    "safeguard_open": "Opening the safeguard",
+    "safeguard_closed": "Closing the safeguard",
+    "reduced_on": "Switching to reduced mode",
+    "reduced_off": "Switching out of reduced mode",
+    "leave_free_drive": "Leaving free-drive",
+    "restart_period": "Restarting the period of free-drive",
+    "register_waypoint": "Registering a waypoint",
+    "normal": "Switching to NORMAL",
+    "teach": "Switching to TEACH",
+    "remote": "Switching to REMOTE",
+    "start_program": "Starting the program",
+    "start_remotely": "Starting the program remotely",
+    "pause_program": "Pausing the program",
+    "resume_program": "Going on with the program",
+    "stop_program": "Stopping the program",
+    "wizard_measure": "Measuring this posture",
+    "wizard_run": "Measuring the payload",
+    "wizard_apply": "Taking the measured payload",
+    "wizard_clear": "Ending the measurement",
+    "zero_sensor": "Zeroing the force sensor",
+    "detection": "Switching contact detection",
+}
+"""What each command asks for, in words."""
+
 PROGRAM: dict[Kind, EventRow] = {
     # Mode and program
     Kind.MODE_CHANGED: info("Mode {to}", "It was {from}.", ("from", "to")),
-    Kind.COMMAND_REFUSED: denied("Not possible in {mode}: {command}", "{reason}.", ("command", "mode", "reason")),
+    Kind.COMMAND_REFUSED: denied("{command} is not possible in {mode}", "{reason}.", ("command", "mode", "reason"))._replace(
+        words=COMMANDS
+    ),
     Kind.PROGRAM_LOADED: info("Program {name} loaded", "{steps} steps.", ("name", "steps")),
     Kind.PROGRAM_REFUSED: denied("Program {name} refused", "{reason}.", ("name", "reason")),
     Kind.PROGRAM_STARTED: info("Program {name} started", "", ("name",)),

@@ -15,19 +15,34 @@ from app.session.session_file import Session, Setup, bundled, find, opened
 from pendant.all_settings import Settings, apply
 from pendant.walls.definitions import Area
 from pendant.walls.shapes import Box
+from sim.arm.scenario import table
 
 ARM = load_arm("ur5e")
 PREPARED = prepare(Setup(world="table", tool="gripper", mounting="wall", seed=4), "test")
+SCENARIO = PREPARED.scenario
+TABLE = tuple(table(SCENARIO))
 SETTINGS = apply(Settings(), {"free_drive.period": 7.0, "contact.on": True})
 WALL = Area(name="box 1", shape=Box(size=(0.4, 0.4, 0.4)), on=False)
 LESSON = Lesson(steps=[TaughtStep(do="wait", seconds=2.0)], repeat=0)
 
 
 def test_a_set_up_comes_back_from_its_file_as_it_was() -> None:
-    setup = setup_of(ARM, PREPARED.scenario, SETTINGS, tuple(PREPARED.scenario.walls))
+    setup = setup_of(ARM, SCENARIO, SETTINGS, walls=tuple(SCENARIO.walls), tools=TABLE)
     assert setup.settings == {"free_drive.period": 7.0, "contact.on": True}
     again = handed_in("setup.yaml", text_of(setup).encode(), ARM)
     assert (again.scenario, again.settings) == (PREPARED.scenario, SETTINGS)
+
+
+def test_the_frames_of_tools_come_back_as_they_were_edited_and_what_is_on_the_arm_as_it_is() -> None:
+    first, second, *rest = TABLE
+    edited = (replace(first, tcp=[0.01, 0.0, 0.2], rpy=[0.0, 0.5, 0.0], mass=9.0), replace(second, mass=1.5), *rest)
+    again = handed_in("setup.yaml", text_of(setup_of(ARM, SCENARIO, SETTINGS, walls=(), tools=edited)).encode(), ARM).scenario
+    assert again.tool == replace(first, tcp=[0.01, 0.0, 0.2], rpy=[0.0, 0.5, 0.0])
+    assert replace(second, mass=1.5) in again.tools
+    bare = prepare(Setup(), "test").scenario
+    frame = replace(table(bare)[0], tcp=[0.0, 0.0, 0.1])
+    kept = setup_of(ARM, bare, SETTINGS, walls=(), tools=(frame, *table(bare)[1:]))
+    assert table(prepare(kept, "test").scenario)[0] == frame
 
 
 @pytest.mark.parametrize("name", bundled("sessions"))
@@ -35,7 +50,8 @@ def test_every_bundled_session_has_a_set_up_that_comes_back(name: str) -> None:
     prepared = prepare(opened(find(name), Session), name)
     if not prepared.arm.name.startswith("ur5e"):
         return
-    setup = setup_of(prepared.arm, prepared.scenario, prepared.settings, tuple(prepared.scenario.walls))
+    scenario = prepared.scenario
+    setup = setup_of(prepared.arm, scenario, prepared.settings, walls=tuple(scenario.walls), tools=tuple(table(scenario)))
     again = prepare(parse(text_of(setup), Setup, name), name)
     assert (again.scenario, again.settings) == (prepared.scenario, prepared.settings)
 
@@ -62,19 +78,19 @@ def test_a_file_that_makes_no_sense_is_refused_in_a_line(content: bytes, said: s
 
 def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_path: Path) -> None:
     keeper, scenario, settings, lesson = Keeper(tmp_path / "new", "ur5e"), PREPARED.scenario, Settings(), Lesson()
-    keeper.see(lesson, ARM, scenario, settings, walls=(), now=0.0)
-    keeper.see(lesson, ARM, scenario, settings, walls=(), now=10.0)
+    keeper.see(lesson, ARM, scenario, settings, walls=(), tools=TABLE, now=0.0)
+    keeper.see(lesson, ARM, scenario, settings, walls=(), tools=TABLE, now=10.0)
     assert keeper.read() is None
-    keeper.see(LESSON, ARM, scenario, settings, walls=(), now=20.0)
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), now=20.0 + 0.9 * OFTEN)
+    keeper.see(LESSON, ARM, scenario, settings, walls=(), tools=TABLE, now=20.0)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), tools=TABLE, now=20.0 + 0.9 * OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert (kept.taught, kept.setup.settings) == (LESSON, {})
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), now=20.0 + OFTEN)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(), tools=TABLE, now=20.0 + OFTEN)
     kept = keeper.read()
     assert kept is not None
     assert prepare(kept.setup, "kept").settings == SETTINGS
-    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(WALL,), now=30.0)
+    keeper.see(LESSON, ARM, scenario, SETTINGS, walls=(WALL,), tools=TABLE, now=30.0)
     kept = keeper.read()
     assert kept is not None
     assert prepare(kept.setup, "kept").scenario.walls == [WALL]
@@ -84,8 +100,8 @@ def test_what_changes_is_written_and_read_again_and_what_does_not_is_not(tmp_pat
 def test_what_cannot_be_written_is_said_and_not_tried_again(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     keeper = Keeper(tmp_path / "file", "ur5e")
-    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, walls=(), now=0.0)
-    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, walls=(), now=5.0)
+    keeper.see(Lesson(), ARM, PREPARED.scenario, SETTINGS, walls=(), tools=TABLE, now=0.0)
+    keeper.see(LESSON, ARM, PREPARED.scenario, SETTINGS, walls=(), tools=TABLE, now=5.0)
     assert "cannot be written" in keeper.problem
 
 
@@ -94,8 +110,8 @@ def test_the_next_start_begins_with_what_was_kept(tmp_path: Path, capsys: pytest
     before, keeper, lesson = as_kept(shipped, tmp_path)
     assert (before, lesson) == (shipped, None)
     assert keeper is not None
-    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, walls=(), now=0.0)
-    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, walls=(), now=5.0)
+    keeper.see(Lesson(), ARM, shipped.scenario, shipped.settings, walls=(), tools=TABLE, now=0.0)
+    keeper.see(LESSON, ARM, replace(shipped.scenario, tool=load_tool("sphere")), SETTINGS, walls=(), tools=TABLE, now=5.0)
     after, _, lesson = as_kept(shipped, tmp_path)
     assert (lesson, after.settings) == (LESSON, SETTINGS)
     assert after.scenario.tool == load_tool("sphere")

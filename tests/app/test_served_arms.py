@@ -18,12 +18,12 @@ from app.runs.runner import simulate
 from app.serving import ServedArms
 from app.session.prepare import prepare
 from app.session.session_file import Setup
+from app.testing import free_addresses
 from pendant.all_settings import Settings, apply
 from sim.run.loop import Loop
 from tests.app.web.raw_client import until
 
 UR5E = prepare(Setup(), "test")
-OFFSET = 21_700
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def asked(interfaces: RobotInterfaces, line: str) -> str:
 
 def test_another_arm_runs_and_answers_at_the_same_ports(loop: Loop, tmp_path: Path) -> None:
     recording = LiveRecording(loop, tmp_path)
-    arms = ServedArms(loop, recording, network=Network(offset=OFFSET))
+    arms = ServedArms(loop, recording, network=Network(next(free_addresses())))
     first = arms.open(UR5E)
     try:
         assert first is not None
@@ -74,7 +74,7 @@ def test_a_network_that_cannot_be_opened_again_has_ended_and_it_is_said(
     loop: Loop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As for an arm of seven joints, which these protocols cannot tell."""
-    arms = ServedArms(loop, LiveRecording(loop, tmp_path), network=Network(offset=OFFSET + 100))
+    arms = ServedArms(loop, LiveRecording(loop, tmp_path), network=Network(next(free_addresses())))
     assert arms.open(UR5E) is not None
 
     def refuse(*_: object) -> RobotInterfaces:

@@ -15,6 +15,7 @@ from pendant.events.event import Kind
 from pendant.tick.modes import TICK_RATE
 from sim.arm.frames import matrix_from_quaternion
 from sim.run.loop import Loop
+from tests.e2e.finger import pointer
 
 Array = NDArray[np.float64]
 
@@ -81,10 +82,12 @@ class Cell:
         The page draws late what it is told: a press before it shows that the pointer is on the arm would turn the camera.
         """
         x, y = self.pixel(page, client, point)
-        self.wait(lambda: self._on_the_arm(page, x, y), "the pointer is on the arm")
-        page.mouse.down()
-        page.mouse.move(x + by[0] / 4, y + by[1] / 4)
-        page.mouse.move(x + by[0], y + by[1], steps=6)
+        hand = pointer(page)
+        if not hand.touches:  # a finger hovers over nothing: it turns the camera then, and the drag is tried again
+            self.wait(lambda: self._on_the_arm(page, x, y), "the pointer is on the arm")
+        hand.down((x, y))
+        hand.move((x + by[0] / 4, y + by[1] / 4))
+        hand.move((x + by[0], y + by[1]), steps=6)
 
     def _on_the_arm(self, page: Page, x: float, y: float) -> bool:
         page.mouse.move(x + 1.0, y)

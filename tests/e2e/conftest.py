@@ -82,11 +82,14 @@ def visit(browser: Browser, cell: Cell) -> Iterator[Callable[..., Page]]:
     """Opens the page in a window of its own, and waits until it is there.
 
     A window of another size has it from the beginning: after a change of size, viser's panels glide at the next change of theirs.
+    An upright one is a tablet's, with fingers in place of the mouse.
     """
     pages: list[Page] = []
 
-    def open_page(width: int = 1280, height: int = 800, touch: bool = False) -> Page:
-        page = browser.new_context(viewport=ViewportSize(width=width, height=height), has_touch=touch).new_page()
+    def open_page(width: int = 1280, height: int = 800, touch: bool | None = None) -> Page:
+        touch = width < height if touch is None else touch
+        size = ViewportSize(width=width, height=height)
+        page = browser.new_context(viewport=size, has_touch=touch, is_mobile=touch).new_page()
         pages.append(page)
         page.goto(f"{cell.served.url}/{COARSE}")
         page.get_by_role("button", name="EMERGENCY STOP").wait_for(timeout=60_000)

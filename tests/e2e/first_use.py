@@ -11,6 +11,7 @@ from playwright.sync_api import Locator, Page
 from pendant.events.event import Event, Kind
 from pendant.tick.modes import Mode
 from tests.e2e.cell import Array, Cell
+from tests.e2e.finger import pointer, tap
 from tests.e2e.hold import COOL_DOWN, enter_free_drive, hold_free_drive, hold_until
 
 WEIGHT = 2.0
@@ -72,7 +73,7 @@ class FirstUse:
             cell.pass_time(0.3)
             self.register(number)
         self.be_free()
-        page.get_by_role("button", name="Leave free-drive").click()
+        tap(page.get_by_role("button", name="Leave free-drive"))
         cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left")
         self.see("registered")
 
@@ -82,7 +83,7 @@ class FirstUse:
         if cell.loop.latest().decision.mode is Mode.FREE_DRIVE:
             return
         if cell.loop.latest().decision.mode is Mode.STOP:
-            self.page.get_by_role("button", name="Reset").click()
+            tap(self.page.get_by_role("button", name="Reset"))
             cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
         cell.pass_time(COOL_DOWN)
         enter_free_drive(self.page, cell)
@@ -91,7 +92,7 @@ class FirstUse:
         """The waypoints, one after the other."""
         cell, page = self.cell, self.page
         end = cell.position("wrist_3")
-        page.get_by_role("button", name="Run", exact=True).first.click()
+        tap(page.get_by_role("button", name="Run", exact=True).first)
         cell.wait(lambda: cell.loop.latest().decision.step == 2, "the second step", 30.0)
         page.get_by_text("running", exact=True).wait_for()
         self.see("running")
@@ -101,12 +102,12 @@ class FirstUse:
     def be_refused(self) -> None:
         """Two kilograms that the controller does not know of: refused, with a reason in numbers."""
         cell, page = self.cell, self.page
-        page.get_by_role("tab", name="Lab").click()
+        tap(page.get_by_role("tab", name="Lab"))
         self.fill(self.number(cell.served.lab.true), f"{WEIGHT:g}")
         page.get_by_text(f"+{WEIGHT:.1f} kg wrong").wait_for()
         hold_until(page, cell, lambda: cell.happened(Kind.REFUSED_PAYLOAD), "refused")
         page.get_by_text("Consistent with").or_(page.get_by_text("kg more than configured")).first.wait_for()
-        page.mouse.up()
+        pointer(page).up()
         assert 1.0 < float(self.first(Kind.REFUSED_PAYLOAD).values["mass"]) < 3.0
         self.see("refused")
 
@@ -120,7 +121,7 @@ class FirstUse:
             cell.pass_time(COOL_DOWN)
             known = len(cell.loop.events(0))
             hold_free_drive(page, cell)
-            page.mouse.up()
+            pointer(page).up()
             self.see("corrected")
             cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left alone, it ends")
             # A page that stalls while the button is held lets go and takes hold again, and a short press leaves.
@@ -135,8 +136,8 @@ class FirstUse:
         """A ready-made program touches the table: the contact is in the log, and in the file."""
         cell, page = self.cell, self.page
         cell.served.lab.scenarios.choice.value = "Down onto the table until it touches"
-        page.get_by_role("button", name="Play").click()
-        page.get_by_role("tab", name="Contacts").click()
+        tap(page.get_by_role("button", name="Play"))
+        tap(page.get_by_role("tab", name="Contacts"))
         cell.wait(lambda: cell.happened(Kind.CONTACT_GAINED), "the table", 60.0)
         low = cell.position("wrist_3")[2]
         event = self.first(Kind.CONTACT_GAINED)
@@ -146,7 +147,7 @@ class FirstUse:
         assert 0.04 < cell.position("wrist_3")[2] - low < 0.06
         self.see("contact")
         with page.expect_download() as download:
-            page.get_by_role("button", name="Export CSV").click()
+            tap(page.get_by_role("button", name="Export CSV"))
         text = download.value.path().read_text()
         row = next(csv.DictReader(io.StringIO(text)))
         assert row["kind"] == "contact_gained"
@@ -174,7 +175,7 @@ class FirstUse:
                     break
                 held |= touched
                 self.page.wait_for_timeout(20)
-            self.page.mouse.up()
+            pointer(self.page).up()
         pytest.fail(f"dragged in vain: {what}; {cell.told()}")
 
     def away(self, before: Array) -> float:
@@ -187,12 +188,12 @@ class FirstUse:
 
     def register(self, number: int) -> None:
         """Register waypoint `number`."""
-        self.page.get_by_role("button", name="Register waypoint").click()
+        tap(self.page.get_by_role("button", name="Register waypoint"))
         self.cell.wait(lambda: len(self.cell.served.docks.teach.lesson.waypoints) == number, f"waypoint {number}")
 
     def let_go(self) -> None:
         """Release the arm."""
-        self.page.mouse.up()
+        pointer(self.page).up()
         self.cell.wait(lambda: not self.cell.loop.desk._touches, "let go")
 
     def number(self, slider: object) -> Locator:

@@ -8,6 +8,7 @@ from playwright.sync_api import Page
 from pendant.events.event import Kind
 from pendant.tick.modes import Mode, Phase
 from tests.e2e.cell import Cell
+from tests.e2e.finger import middle, pointer
 
 IN_VAIN = frozenset({Kind.HOLD_SILENT, Kind.REFUSED_MOVING, Kind.ACTIVATION_CANCELLED, Kind.NOT_YET})
 """After these the button has to be pressed again."""
@@ -26,16 +27,14 @@ def hold_until(page: Page, cell: Cell, true: Callable[[], bool], what: str) -> N
     def vain() -> int:
         return sum(event.kind in IN_VAIN for event in cell.loop.events(0))
 
-    box = page.locator(f'[id="{cell.served.panel.free_drive._impl.uuid}"]').bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    at, hand = middle(page.locator(f'[id="{cell.served.panel.free_drive._impl.uuid}"]')), pointer(page)
     for _ in range(4):
         known = vain()
-        page.mouse.down()
+        hand.down(at)
         cell.wait(lambda known=known: true() or vain() > known, what)
         if true():
             return
-        page.mouse.up()
+        hand.up()
         cell.pass_time(COOL_DOWN)
     pytest.fail(f"held in vain, {what}: {cell.told()}")
 
@@ -49,6 +48,6 @@ def enter_free_drive(page: Page, cell: Cell) -> None:
     """Hold the free-drive button until free-drive is on, then let go."""
     hold_free_drive(page, cell)
     cell.pass_time(0.45)  # it may have been pressed again just now, and a short press leaves
-    page.mouse.up()
+    pointer(page).up()
     cell.wait(lambda: cell.loop.latest().decision.phase is not Phase.HELD, "the button let go")
     assert cell.loop.latest().decision.mode is Mode.FREE_DRIVE

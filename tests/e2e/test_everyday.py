@@ -11,8 +11,9 @@ from app.web.server import serve
 from pendant.events.event import Kind
 from pendant.tick.modes import Mode
 from tests.e2e.cell import SETTINGS, Cell
+from tests.e2e.finger import tap
 from tests.e2e.first_use import FirstUse
-from tests.e2e.test_tasks import LATER, SIZES, choose, click
+from tests.e2e.test_tasks import BY_FINGER, LATER, SIZES, choose, click
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
@@ -20,10 +21,10 @@ Visit = Callable[..., Page]
 
 def open_tab(page: Page, name: str) -> None:
     """Press a tab."""
-    page.get_by_role("tab", name=name, exact=True).click()
+    tap(page.get_by_role("tab", name=name, exact=True))
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES)
+@pytest.mark.parametrize(("width", "height"), BY_FINGER)
 def test_change_the_free_drive_period_and_undo_it(visit: Visit, cell: Cell, width: int, height: int) -> None:
     page = visit(width, height)
     open_tab(page, "Settings")
@@ -66,9 +67,9 @@ def test_zero_the_sensor(visit: Visit, cell: Cell, width: int, height: int) -> N
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_stop_from_a_second_window(visit: Visit, cell: Cell, width: int, height: int) -> None:
     first, second = visit(width, height), visit(width, height)
-    first.get_by_role("button", name="Take").click()
+    tap(first.get_by_role("button", name="Take"))
     second.get_by_text("Client 1 has control").wait_for()
-    second.get_by_role("button", name="EMERGENCY STOP").click()
+    tap(second.get_by_role("button", name="EMERGENCY STOP"))
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.STOP, "stopped")
     first.get_by_text("Emergency stop", exact=True).first.wait_for()
 
@@ -77,7 +78,7 @@ def test_stop_from_a_second_window(visit: Visit, cell: Cell, width: int, height:
 def test_save_a_program_restart_and_load_it(visit: Visit, cell: Cell, tmp_path: Path, width: int, height: int) -> None:
     """The page of another server knows nothing of it until the file is loaded; a file that is none gets a line."""
     page = visit(width, height)
-    page.get_by_role("button", name="Register waypoint").click()
+    tap(page.get_by_role("button", name="Register waypoint"))
     teach = cell.served.docks.teach
     cell.wait(lambda: len(teach.lesson.waypoints) == 1, "a waypoint")
     with page.expect_download() as saved:

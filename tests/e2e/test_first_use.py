@@ -14,7 +14,7 @@ Visit = Callable[..., Page]
 SIZES = ((1280, 800), (1024, 768))
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("size", [SIZES[0], pytest.param(SIZES[1], marks=pytest.mark.every_size)])
 def test_a_stranger_walks_through_the_first_use(visit: Visit, cell: Cell, size: tuple[int, int]) -> None:
     FirstUse(visit(*size), cell).walk()
 

@@ -21,7 +21,7 @@ MASS, ERROR = 2.0, 0.046
 
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_measure_the_payload(visit: Callable[..., Page], cell: Cell, width: int, height: int) -> None:
-    page = visit(width, height, touch=width < height)
+    page = visit(width, height)
     cell.loop.desk.change(AttachPayload(load=Load(mass=MASS, com=[0.02, 0.0, 0.06])))
     cell.pass_time(2.0)
     open_tab(page, "Tools")

@@ -10,6 +10,7 @@ from playwright.sync_api import Page
 from app.log.playback import Player
 from app.log.reader import read
 from tests.e2e.cell import Cell
+from tests.e2e.finger import pointer, tap
 from tests.e2e.test_everyday import open_tab
 from tests.e2e.test_tasks import LATER, click
 
@@ -29,13 +30,13 @@ def record_a_push(page: Page, cell: Cell) -> None:
     """The arm is pushed between two clicks."""
     open_tab(page, "Record")
     switch = page.get_by_label("Record", exact=True).first
-    switch.click()
+    tap(switch)
     cell.wait(lambda: cell.loop.watch is not None, "it records")
     page.get_by_text("recording-2").first.wait_for()
     cell.drag(page, 0, cell.position("wrist_3"), (-40.0, -60.0))
     cell.pass_time(0.5)
-    page.mouse.up()
-    switch.click()
+    pointer(page).up()
+    tap(switch)
     page.get_by_text("saved").wait_for()
 
 

@@ -12,6 +12,7 @@ from sim.arm.frames import matrix_from_quaternion
 from sim.arm.scenario import BoxObject
 from sim.simulation import Simulation
 from tests.e2e.cell import SETTINGS, Cell
+from tests.e2e.finger import middle, pointer, tap
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
@@ -28,13 +29,15 @@ def endings(cell: Cell) -> list[str]:
 def choose(page: Page, label: str, option: str) -> None:
     """Choose from a list with the pointer."""
     box = page.get_by_role("textbox", name=label, exact=True).or_(page.get_by_label(label, exact=True)).first
-    box.scroll_into_view_if_needed()
-    box.click()
-    page.get_by_role("option", name=option, exact=True).click()
+    tap(box)
+    tap(page.get_by_role("option", name=option, exact=True))
 
 
 SIZES = [(1440, 900), pytest.param(820, 1180, marks=pytest.mark.every_size)]
-"""A desk's screen, and a tablet held upright."""
+"""A desk's screen, and a tablet held upright, where fingers take the place of the mouse."""
+
+BY_FINGER = [pytest.param(1440, 900, marks=pytest.mark.every_size), (820, 1180)]
+"""The same, where `make test` has the tablet."""
 
 LATER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1440, 900), (820, 1180))]
 """Of what `make test` leaves to `make e2e-full`."""
@@ -43,8 +46,7 @@ LATER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1440, 9
 def click(page: Page, name: str) -> None:
     """Press a button with the pointer."""
     button = page.get_by_role("button", name=name, exact=True).first
-    button.scroll_into_view_if_needed()
-    button.click()
+    tap(button)
 
 
 def fill(page: Page, label: str, value: str) -> None:
@@ -58,11 +60,11 @@ def teach_three(page: Page, cell: Cell) -> None:
     """Three waypoints; between them the wrist is jogged."""
     teach, jog = cell.served.docks.teach, cell.served.docks.jog
     for number in (1, 2, 3):
-        page.get_by_role("tab", name="Teach").click()
-        page.get_by_role("button", name="Register waypoint").click()
+        tap(page.get_by_role("tab", name="Teach"))
+        tap(page.get_by_role("button", name="Register waypoint"))
         cell.wait(lambda number=number: len(teach.lesson.waypoints) == number, f"waypoint {number}")
         if number < 3:
-            page.get_by_role("tab", name="Jog").click()
+            tap(page.get_by_role("tab", name="Jog"))
             if jog.steps.value != "10 mm, 10°":
                 choose(page, "One press", "10 mm, 10°")
                 cell.wait(lambda: jog.steps.value == "10 mm, 10°", "the step is chosen")
@@ -72,15 +74,12 @@ def teach_three(page: Page, cell: Cell) -> None:
 def hold_jog(page: Page, cell: Cell, name: str) -> None:
     """Hold a jog button until it has done its step."""
     button = page.get_by_role("button", name=name, exact=True)
-    button.scroll_into_view_if_needed()
-    box = button.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    at, hand = middle(button), pointer(page)
     for _ in range(PRESSES):
         before = len(endings(cell))
-        page.mouse.down()
+        hand.down(at)
         cell.wait(lambda before=before: len(endings(cell)) > before, "the jog has ended")
-        page.mouse.up()
+        hand.up()
         cell.pass_time(0.6)
         if endings(cell)[-1] == "done":
             return
@@ -114,7 +113,7 @@ def test_insert_a_wait(visit: Visit, cell: Cell, width: int, height: int) -> Non
     page = visit(width, height)
     teach = cell.served.docks.teach
     teach_three(page, cell)
-    page.get_by_role("radio", name="1. Move to P1").click()
+    tap(page.get_by_role("radio", name="1. Move to P1"))
     cell.wait(lambda: teach.steps.chosen == 0, "the first step is chosen")
     choose(page, "Step", "Wait")
     cell.wait(lambda: teach.steps.fields["seconds"].visible, "how long")
@@ -155,27 +154,24 @@ def test_move_down_until_contact(visit: Visit, cell: Cell, width: int, height: i
     assert abs(float(cell.position("flange")[2]) - 0.093) < 0.003
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES)
+@pytest.mark.parametrize(("width", "height"), BY_FINGER)
 def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: int, height: int) -> None:
     page = visit(width, height)
     tab = cell.served.docks.jog
-    page.get_by_role("tab", name="Jog").click()
+    tap(page.get_by_role("tab", name="Jog"))
     choose(page, "Move by", "Axes of the tool")
     cell.wait(lambda: tab.chosen == "tool", "the frame is chosen")
     choose(page, "One press", "50 mm, 50°")
     cell.wait(lambda: tab.steps.value == "50 mm, 50°", "the step is chosen")
     cell.pass_time(0.5)
     button = page.get_by_role("button", name="Z −", exact=True)
-    button.scroll_into_view_if_needed()
-    box = button.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    at, hand = middle(button), pointer(page)
     for _ in range(PRESSES):
         pose = cell.loop.latest().truth_links[-1].copy()
         before = len(endings(cell))
-        page.mouse.down()
+        hand.down(at)
         cell.wait(lambda before=before: len(endings(cell)) > before, "the jog has ended")
-        page.mouse.up()
+        hand.up()
         cell.pass_time(1.0)
         if endings(cell)[-1] == "done":
             axis = matrix_from_quaternion(pose[3:])[:, 2]

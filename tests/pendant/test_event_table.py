@@ -7,6 +7,9 @@ import pytest
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind, Values
 from pendant.events.event_row import LEAVING, Clears, Effect, EventRow, Severity
+from pendant.inputs import Command
+from pendant.program.rows import COMMANDS
+from pendant.tick.modes import Mode
 
 EXAMPLE: Values = {
     **dict.fromkeys(
@@ -179,8 +182,15 @@ def test_a_contact_is_told_with_force_rule_and_action() -> None:
     values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
     assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
         "Contact gained: tool",
-        "Force change 17.6 N, seen within 20 ticks of 2 ms by rule slow. Action: none.",
+        "Force change 17.6 N, noticed by rule slow. Action: none.",
     )
+
+
+def test_a_refused_command_is_told_in_words() -> None:
+    """Every command has its words, and the guidance is a sentence."""
+    assert set(COMMANDS) == set(Command)
+    values: Values = {"command": Command.START_PROGRAM, "mode": Mode.STOP, "reason": "reset first"}
+    assert render(Event(Kind.COMMAND_REFUSED, 0, values)) == ("Starting the program is not possible in STOP", "Reset first.")
 
 
 def test_severities_are_ordered() -> None:
@@ -190,6 +200,7 @@ def test_severities_are_ordered() -> None:
 
 LOGGED = {
     "tone",
+    "steps",
     "source",
     "acceleration",
     "ratio",
@@ -248,9 +259,9 @@ def test_whatever_acts_on_the_mode_has_guidance(kind: Kind) -> None:
 
 def test_limits_are_shown_with_numbers_and_units() -> None:
     values: Values = {"parameter": "user force", "part": "flange", "value": 12.34, "limit": 8.0, "unit": "N"}
-    assert render(Event(Kind.MANIPULATION, 0, values)) == ("The arm is guided", "user force, flange: 12.34 N, limit 8.00 N.")
+    assert render(Event(Kind.MANIPULATION, 0, values)) == ("The arm is guided", "User force, flange: 12.34 N, limit 8.00 N.")
     values = {"joint": "elbow", "value": 0.0123, "limit": 0.01, "time": 0.1}
     assert render(Event(Kind.REFUSED_MOVING, 0, values)) == (
         "Free-drive refused: the arm moves",
-        "elbow at 0.012 rad/s, limit 0.010 rad/s for 0.1 s. Hands off, then try again.",
+        "Elbow at 0.012 rad/s, limit 0.010 rad/s for 0.1 s. Hands off, then try again.",
     )

@@ -246,7 +246,7 @@ def test_a_step_zeroes_the_sensor_at_once_where_the_arm_has_stood() -> None:
     assert robot.kinds() == [Kind.PROGRAM_STARTED, Kind.SENSOR_ZEROED]
     assert robot.decision.zero == pytest.approx([-each for each in OFFSET])
     robot.run(1)
-    assert robot.kinds()[2:] == [Kind.PROGRAM_FINISHED, Kind.TOOL_SWITCHED]
+    assert robot.kinds()[2:] == [Kind.TOOL_SWITCHED, Kind.PROGRAM_FINISHED]
 
 
 def test_as_the_last_step_it_ends_the_program() -> None:

@@ -66,7 +66,8 @@ class LabSetup:
 
     def file(self) -> bytes:
         """The running set-up with its settings, as a configuration."""
-        return text_of(setup_of(self._arm, self._loop.scenario, self._loop.settings, self._loop.walls)).encode()
+        loop = self._loop
+        return text_of(setup_of(self._arm, loop.scenario, loop.settings, walls=loop.walls, tools=loop.tools)).encode()
 
     def read(self, name: str, content: bytes) -> None:
         """Begin with the set-up of a file, or say in a line why not."""

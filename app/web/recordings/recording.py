@@ -68,7 +68,8 @@ class RecordingSwitch:
         recording = self._recording
         if recording.failure:
             return svg.note("Not recorded", recording.failure, Colour.RED)
+        place = svg.fine_print(f"Recordings are kept in {recording.folder.resolve()}")
         if recording.path is None:
-            return svg.facts([("File", "none yet")])
+            return svg.facts([("File", "none yet")]) + place
         word = f"{recording.seconds:.1f} s" if recording.on else "saved"
-        return svg.facts([("Recorded" if recording.on else "Recording", word), ("File", recording.path.name)])
+        return svg.facts([("Recorded" if recording.on else "Recording", word), ("File", recording.path.name)]) + place

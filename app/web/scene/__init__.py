@@ -1,1 +1,1 @@
-"""The picture, and the hand in it."""
+"""The picture, and the hand in it. Uses web/access/."""

@@ -11,7 +11,7 @@ from app.files.checked import BadInput
 from app.web.running import Running
 from app.web.tuning.presets import as_file, changes, from_file, presets
 from app.web.tuning.setting_words import SAFETY, about, found, label, name_of, section_of, title_of, told
-from app.web.widgets import svg
+from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
 from pendant.all_settings import Settings, describe, find, limits_checksum, value_of
@@ -59,7 +59,8 @@ class SettingsTab:
         self.listed = Html(gui)
         self.take = gui.add_button("Take this preset", visible=False)
         self.save = gui.add_button("Save settings as file", color="gray", visible=False)
-        self.load = gui.add_upload_button("Load settings", mime_type=".yaml", color="gray", visible=False)
+        self.load = gui.add_upload_button("Load settings", mime_type=".yaml", color="gray")
+        self._hidden = Html(gui)
         self.search = gui.add_text("Search", "", hint="Words of a name, a text or a requirement")
         self.expert = gui.add_checkbox("Expert settings", False, hint="Without it: what most users need, and what was changed.")
         self.section = gui.add_dropdown("Section", tuple(map(title_of, BASIC)))
@@ -143,8 +144,9 @@ class SettingsTab:
         """Show the controls of the chosen view alone."""
         self.message.show("")
         self._chosen = self.view.value if self.view.value in VIEWS else VIEWS[0]
-        for control in (self.preset, self.take, self.save, self.load):
+        for control in (self.preset, self.take, self.save):
             control.visible = self._chosen == VIEWS[1]
+        self._hidden.show(style.shown(self.load._impl.uuid, self._chosen == VIEWS[1]))
         for control in (self.search, self.expert, self.section, self.defaults):
             control.visible = self._chosen == VIEWS[2]
 

@@ -6,7 +6,7 @@ from typing import Any, cast
 import viser
 from msgspec.structs import replace
 
-from app.files.taught_program import MOST, MOVES, OTHERS, Do, Lesson, TaughtStep, axis, level
+from app.files.taught_program import LONGEST, MOST, MOVES, OTHERS, Do, Lesson, TaughtStep, axis, level
 from app.web.widgets import svg
 from app.web.widgets.html import Html
 from pendant.program.steps import LINES, MOST_RUNS, InputLevel
@@ -33,6 +33,7 @@ FIELDS = {
     "input": ("number", "high"),
     "output on": ("number",),
     "output off": ("number",),
+    "tell": ("says",),
 }
 """What a kind of step has to be told."""
 
@@ -97,6 +98,7 @@ class StepEditor:
                 "seconds": gui.add_number("Seconds", 1.0, min=0.1, max=3600.0, step=0.1),
                 "number": gui.add_dropdown("Number", tuple(str(number) for number in range(LINES))),
                 "high": gui.add_dropdown("Level", (level(True), level(False))),
+                "says": gui.add_text("Text", "Ready", hint="What the panel says, with a tone"),
             }
             self.when = gui.add_dropdown("Only if", tuple(CONDITIONS))
             self.insert = gui.add_button_group("Insert it", ("Before", "After", "Replace"))
@@ -153,6 +155,8 @@ class StepEditor:
             )
         if do == "wait":
             return replace(step, seconds=float(values["seconds"].value))
+        if do == "tell":
+            return replace(step, says=values["says"].value.strip()[:LONGEST] or "Ready")
         return replace(step, number=int(values["number"].value), high=values["high"].value == level(True))
 
     def _see_fields(self) -> None:
@@ -179,6 +183,7 @@ class StepEditor:
             "seconds": step.seconds,
             "number": str(step.number),
             "high": level(step.high),
+            "says": step.says,
         }
         if step.to is not None:
             values["to"] = step.to

@@ -15,6 +15,7 @@ from app.web.tabs.step_editor import NO_WAYPOINT, Edits, StepEditor, waypoints_o
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
+from app.web.widgets.typed import Typed
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState, misfit
 from pendant.tick.modes import Mode
@@ -51,6 +52,7 @@ class Teach:
             self.edit = gui.add_button_group("Arm", ("Go to", "Re-teach"))
             self.order = gui.add_button_group("Order", ("↑", "↓", "✕"))
             self.name = gui.add_text("Name", "")
+            self._typed = Typed(self.name, self._rename)
             self.record = gui.add_checkbox("Record a path", False)
         self.save = gui.add_button("Save as file", color="gray")
         self.load = gui.add_upload_button("Load a file", mime_type=".yaml", color="gray")
@@ -130,7 +132,7 @@ class Teach:
             self.choice.options = names
         if self.choice.value != wanted:
             self.choice.value = wanted
-        self.name.value = "" if wanted == NO_WAYPOINT else wanted
+        self._typed.bring("" if wanted == NO_WAYPOINT else wanted)
         self.steps.refresh()
 
     def _hand_over(self, steps: list[TaughtStep], first: int | None, repeat: int = 1) -> None:
@@ -162,11 +164,6 @@ class Teach:
         async def _(event: viser.GuiEvent) -> None:
             if event.client_id is not None:
                 self.name.value = self.choice.value
-
-        @self.name.on_update
-        async def _(event: viser.GuiEvent) -> None:
-            if event.client_id is not None:
-                self._rename(self.name.value.strip())
 
         @self.save.on_click
         async def _(event: viser.GuiEvent) -> None:

@@ -13,6 +13,7 @@ from app.files.bodies import OVERLOAD, check_tools
 from app.files.checked import BadInput, parse
 from app.runs.runner import try_tool
 from app.web.running import Running
+from app.web.tabs.tool_frame import ToolPlace
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
@@ -38,6 +39,9 @@ FAR = MILLIMETRES.many * FARTHEST
 
 ADD, SET, DELETE = "Add", "Set", "✕"
 
+REMEMBERED = 50
+"""Edits that can be undone."""
+
 FULLEST = 402.0
 """Largest angle that the page takes [°]: as large as in files."""
 
@@ -57,7 +61,9 @@ class ToolEditor:
     def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
         self._loop, self._arm = loop, arm
         self._tool: Tool = BARE  # that the form was filled with
+        self._before: list[tuple[Tool, ...]] = []  # the table before each edit
         self.wanted = ""  # name of the tool that was asked for last
+        self.undo = gui.add_button("Undo", color="gray", disabled=True, hint="Of the table, also of what the handles moved")
         with gui.add_folder("Edit the table", expand_by_default=False):
             self.name = gui.add_text("Name", BARE.name)
             self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
@@ -84,7 +90,7 @@ class ToolEditor:
         turned = self.change.visible is locked
         if turned:
             self.change.visible = not locked  # viser knows no disabled group of buttons
-        return any([filled, turned, enable(self.load, not locked)])
+        return any([filled, turned, enable(self.load, not locked), enable(self.undo, bool(self._before) and not locked)])
 
     def entered(self) -> Tool:
         """What the form says; what was not touched is as it was."""
@@ -119,7 +125,7 @@ class ToolEditor:
             return
         new = {tool.name: tool for tool in tools}
         old = [new.pop(tool.name, tool) for tool in self._loop.tools]
-        self._loop.desk.tabulate((*old, *new.values()))
+        self._ask((*old, *new.values()))
         self.message.show(svg.note("File read", f"{len(tools)} tools.", Colour.GREEN))
 
     def _try(self, tools: Sequence[ShapedTool], where: str) -> None:
@@ -168,7 +174,29 @@ class ToolEditor:
                 return
         self.wanted = tool.name
         self.message.show("")
-        self._loop.desk.tabulate(table)
+        self._ask(table)
+
+    def place(self, name: str, there: ToolPlace) -> None:
+        """The tool centre point of a tool was moved in the picture."""
+        self._ask(
+            tuple(
+                msgspec.structs.replace(each, tcp=there.tcp, rpy=there.rpy) if each.name == name else each
+                for each in self._loop.tools
+            )
+        )
+
+    def _ask(self, table: tuple[Tool, ...]) -> None:
+        if table != self._loop.tools:
+            self._before = [*self._before, self._loop.tools][-REMEMBERED:]
+            self._loop.desk.tabulate(table)
+
+    def _undo(self) -> None:
+        """Ask for the table as it was before the last edit that was taken."""
+        while self._before:
+            table = self._before.pop()
+            if table != self._loop.tools:
+                self._loop.desk.tabulate(table)
+                return
 
     def _connect(self) -> None:
         def on(control: Any, act: Callable[[], None]) -> None:
@@ -177,6 +205,7 @@ class ToolEditor:
                 act()
 
         on(self.change, self._change)
+        on(self.undo, self._undo)
 
         @self.known.on_update
         async def _(_: viser.GuiEvent) -> None:

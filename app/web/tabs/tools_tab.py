@@ -5,8 +5,10 @@ from collections.abc import Callable, Sequence
 
 import viser
 
+from app.web.access.guard import Guard
 from app.web.running import Running
 from app.web.tabs.tool_editor import ToolEditor
+from app.web.tabs.tool_frame import ToolFrame
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
@@ -30,8 +32,8 @@ FARTHEST = 300.0
 class ToolsTab:
     """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
 
-    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
-        self._loop = loop
+    def __init__(self, server: viser.ViserServer, guard: Guard, loop: Running, arm: Arm) -> None:
+        self._loop, gui = loop, server.gui
         self._table: tuple[Tool, ...] = ()
         self._fitting: Fitting | None = None
         self.now = Html(gui)
@@ -60,7 +62,11 @@ class ToolsTab:
             self.tool: viser.GuiDropdownHandle[str] = gui.add_dropdown("Tool", names)
             self.about = Html(gui)
             self.use = gui.add_button("Use this tool", color="gray")
+            self.framed = gui.add_checkbox(
+                "Show the frame", False, hint="The tool centre point in the picture, with arrows and arcs that move and turn it"
+            )
             self.editor = ToolEditor(gui, loop, arm)
+        self.frame = ToolFrame(server, guard, lambda there: self.editor.place(self.tool.value, there))
         self._connect()
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -80,6 +86,7 @@ class ToolsTab:
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
             self.editor.show(self._chosen(), locked),
+            self.frame.show(self._chosen() if self.framed.value else None, snapshot, fixed=locked or turning),
             enable(self.use, not locked and not turning),
             enable(self.enter, not locked and not turning),
             enable(self.run, idle and not locked),

@@ -1,18 +1,22 @@
 """Areas as they are made on the page: where a new one lies, its sizes, its words, and how it is moved."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import cast
 
 import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from app.web.widgets import svg
+from app.web.widgets.svg import Colour
 from pendant.tick.pose import Pose, Quaternion, Rotation, Vector, quaternion, rotation, turned
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder, Area
 from pendant.walls.settings import Reaction
 from pendant.walls.shapes import AnyShape, Box, Cylinder, HalfSpace, Sphere
+from sim.arm.frames import rotation_from_rpy
+from sim.exchange.snapshot import Snapshot
 
 Array = NDArray[np.float64]
 
@@ -28,7 +32,7 @@ SHAPES: dict[str, AnyShape] = {
 """What can be made, as it is at first: an arm can be guided for 100 or 200 mm until it is stopped."""
 
 SIDES = {"Stay inside": False, "Keep out": True}
-REACTIONS = {"Stop there": Reaction.STAY, "End free-drive": Reaction.LEAVE, "Protective stop": Reaction.STOP}
+REACTIONS = {"End free-drive": Reaction.LEAVE, "Stop there": Reaction.STAY, "Protective stop": Reaction.STOP}
 PARTS = {"Tool": "tcp", "Flange": "flange", "Elbow": "elbow"}
 
 SIZES: dict[type[AnyShape], tuple[str, ...]] = {
@@ -130,6 +134,14 @@ def tool_pose(p_BF: Array, R_BF: Array, tcp: Vector, R_FT: Array) -> Pose:
     return Pose((x, y, z), (a, b, c, d, e, f, g, h, i))
 
 
+def tool_now(snapshot: Snapshot) -> Pose:
+    """Of the tool centre point, in B, as the controller knows it."""
+    fitting, seen = snapshot.decision.fitting, snapshot.estimate
+    tcp, rpy = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if fitting is None else (fitting.tool.tcp, fitting.tool.rpy)
+    x, y, z = tcp
+    return tool_pose(seen.p_BF, seen.R_BF, (x, y, z), rotation_from_rpy(rpy))
+
+
 def inwards(area: Area) -> Vector:
     """From the plane of a half-space to its allowed side, in the shape's axes, of length 1."""
     assert isinstance(area.shape, HalfSpace)
@@ -145,6 +157,14 @@ def about(border: AnyBorder) -> str:
         return "off"
     side = word(SIDES, border.keep_out).lower() if isinstance(border, Area) else "round it"
     return f"{word(PARTS, border.part)}: {side}"
+
+
+def listed(borders: Sequence[AnyBorder], on: bool) -> str:
+    """All borders in a list, none of which holds while walls are not `on` at all."""
+    if not borders:
+        return ""
+    told = "" if on else svg.note("All walls are off", "Settings, Virtual walls and areas, switches them on.", Colour.AMBER)
+    return told + svg.facts([(border.name, about(border) if on else "off") for border in borders])
 
 
 def word(words: Mapping[str, object], value: object) -> str:

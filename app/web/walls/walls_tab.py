@@ -17,25 +17,26 @@ from app.web.walls.made_walls import (
     SHORTEST,
     SIDES,
     SIZES,
-    about,
     at_tool,
+    listed,
     made,
     moved,
     sized,
     sizes,
-    tool_pose,
+    tool_now,
     word,
 )
+from app.web.walls.three_points import ThreePoints
 from app.web.walls.wall_handles import WallHandles
 from app.web.widgets import svg
-from app.web.widgets.html import Html, enable
+from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
+from app.web.widgets.typed import Typed
 from pendant.events.event import Event, Kind
 from pendant.tick.modes import Mode, Phase
 from pendant.tick.pose import Pose, Quaternion, Vector, quaternion
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder, Area
-from sim.arm.frames import rotation_from_rpy
 from sim.exchange.snapshot import Snapshot
 
 NONE: str = "no wall yet"
@@ -61,6 +62,8 @@ class WallsTab:
         self.add = gui.add_button_group("Add", tuple(SHAPES))
         names: tuple[str, ...] = (NONE,)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen", names)
+        self.name = gui.add_text("Name", "")
+        self._typed = Typed(self.name, self._rename)
         self.on = gui.add_checkbox("On", True)
         self.side = gui.add_dropdown("Limit", tuple(SIDES))
         self.part = gui.add_dropdown("Watched", tuple(PARTS), hint="The point of the arm that the limit is for")
@@ -74,6 +77,7 @@ class WallsTab:
         self.here = gui.add_button("Bring it to the tool", color="gray")
         self.delete = gui.add_button("Delete", color="gray")
         self.undo = gui.add_button("Undo", color="gray")
+        self.points = ThreePoints(server, self._tool, self._through)
         self.handles = WallHandles(server, guard, self._moved)
         self._refresh()  # nothing is chosen yet
         for control in (self.on, self.side, self.part, self.reaction, *self.size, *self.spot, self.here, self.delete, self.undo):
@@ -105,8 +109,8 @@ class WallsTab:
         area = chosen if isinstance(chosen, Area) else None
         places = {border.name: place for border, place in snapshot.places}
         self._place = None if area is None else places.get(area.name)
-        changed |= self.list.show(svg.facts([(border.name, about(border)) for border in borders]) if borders else "")
-        for control in (self.on, self.reaction, self.part, self.delete):
+        changed |= self.list.show(listed(borders, self._loop.settings.walls.on))
+        for control in (self.name, self.on, self.reaction, self.part, self.delete):
             changed |= enable(control, chosen is not None and not locked)
         for control in (self.side, self.here, *self.size, *self.spot):
             changed |= enable(control, area is not None and not locked)
@@ -152,14 +156,16 @@ class WallsTab:
         values = () if area is None else sizes(area.shape)
         names = () if area is None else SIZES.get(type(area.shape), ())
         for place, control in enumerate(self.size):
-            _see(control, place < len(values))
+            reveal(control, place < len(values))
             if place < len(values):
-                _label(control, f"{names[place]} [mm]")
+                if control.label != (text := f"{names[place]} [mm]"):
+                    control.label = text
                 _bring(control, round(values[place], 1))
         for control in (self.side, self.here, self.shown, *self.spot):
-            _see(control, area is not None)
-        for control in (self.on, self.part, self.reaction, self.delete):
-            _see(control, border is not None)
+            reveal(control, area is not None)
+        for control in (self.name, self.on, self.part, self.reaction, self.delete):
+            reveal(control, border is not None)
+        self._typed.bring("" if border is None else border.name)
         if border is None:
             return
         _bring(self.on, border.on)
@@ -195,12 +201,21 @@ class WallsTab:
             self._change(moved(area, self._place, p, turn))
 
     def _tool(self) -> Pose:
-        """Of the tool centre point, in B, as the controller knows it."""
-        snapshot = self._loop.latest()
-        fitting, seen = snapshot.decision.fitting, snapshot.estimate
-        tcp, rpy = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if fitting is None else (fitting.tool.tcp, fitting.tool.rpy)
-        x, y, z = tcp
-        return tool_pose(seen.p_BF, seen.R_BF, (x, y, z), rotation_from_rpy(rpy))
+        return tool_now(self._loop.latest())
+
+    def _through(self, p: Vector, turn: Quaternion) -> None:
+        """A new plane, through points that the tool was brought to."""
+        plane = made("Plane", frozenset(border.name for border in self.borders), self._tool())
+        self._edit((*self.borders, moved(plane, None, p, turn)))
+        self.shown.value = True
+
+    def _rename(self, name: str) -> None:
+        border, names = self.chosen, [each.name for each in self.borders]
+        if border is None or not name or (name in names and name != border.name):
+            self.message.show(svg.note("Not renamed", "Each wall needs a name of its own.", Colour.AMBER))
+            self._refresh()
+            return
+        self._edit(tuple(replace(each, name=name) if each is border else each for each in self.borders))
 
     def _connect(self) -> None:
         @self.add.on_click
@@ -261,13 +276,3 @@ class WallsTab:
 def _bring(control: Any, value: object) -> None:
     if control.value != value:
         control.value = value
-
-
-def _see(control: Any, visible: bool) -> None:
-    if control.visible is not visible:
-        control.visible = visible
-
-
-def _label(control: Any, text: str) -> None:
-    if control.label != text:
-        control.label = text

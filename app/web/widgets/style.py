@@ -37,6 +37,11 @@ def beside(button: str) -> str:
     )
 
 
+def shown(button: str, visible: bool) -> str:
+    """Show the upload button with this id, or hide it: viser shows one always."""
+    return "" if visible else f'<style>div:has(>[id="{button}"]){{display:none}}</style>'
+
+
 def pairs(buttons: list[str]) -> str:
     """Put every two of these buttons beside each other, for a finger."""
     left, right = (",".join(f'[id="{button}"]' for button in buttons[k::2]) for k in (0, 1))

@@ -12,6 +12,7 @@ from pendant.program.steps import (
     LinearMove,
     SetOutput,
     SwitchTool,
+    Tell,
     Wait,
     WaitForContact,
     WaitForInput,
@@ -95,6 +96,7 @@ def test_steps_that_need_no_waypoint_say_what_they_do_and_become_it() -> None:
         TaughtStep(do="input", number=3, high=False),
         TaughtStep(do="output on", number=7),
         TaughtStep(do="output off", number=0, when=InputLevel(input=2, high=False)),
+        TaughtStep(do="tell", says="Turn the part"),
     ]
     assert [step.text for step in steps] == [
         "Until contact, base -Z, 200 mm, stay",
@@ -104,6 +106,7 @@ def test_steps_that_need_no_waypoint_say_what_they_do_and_become_it() -> None:
         "Wait until input 3 is low",
         "Output 7 on",
         "Output 0 off if input 2 is low",
+        "Tell “Turn the part”",
     ]
     made = program(Lesson(), steps, repeat=0)
     assert made.repeat == 0
@@ -117,6 +120,7 @@ def test_steps_that_need_no_waypoint_say_what_they_do_and_become_it() -> None:
         WaitForInput(level=InputLevel(input=3, high=False)),
         SetOutput(output=7, on=True),
         SetOutput(output=0, on=False, when=InputLevel(input=2, high=False)),
+        Tell(text="Turn the part"),
     )
 
 

@@ -14,7 +14,7 @@ def at(seen: RTDEReceiveInterface) -> np.ndarray:
     return np.array(seen.getActualQ())
 
 
-def until(true: Callable[[], bool], patience: float = 5.0) -> None:
+def until(true: Callable[[], bool], patience: float = 20.0) -> None:
     """Wait for it: a busy machine is late."""
     end = time.monotonic() + patience
     while not true():
@@ -22,7 +22,7 @@ def until(true: Callable[[], bool], patience: float = 5.0) -> None:
         time.sleep(0.01)
 
 
-def settled(seen: RTDEReceiveInterface, patience: float = 5.0) -> np.ndarray:
+def settled(seen: RTDEReceiveInterface, patience: float = 20.0) -> np.ndarray:
     """Joint angles when the arm stands."""
     until = time.monotonic() + patience
     while time.monotonic() < until:

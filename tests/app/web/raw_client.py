@@ -12,7 +12,7 @@ from websockets.sync.client import ClientConnection, connect
 from benchmarks.viewer import CAMERA, VERSION
 
 
-def until(true: Callable[[], bool], what: str, seconds: float = 5.0) -> None:
+def until(true: Callable[[], bool], what: str, seconds: float = 20.0) -> None:
     """Wait for something to become true."""
     end = time.monotonic() + seconds
     while not true():
@@ -68,7 +68,7 @@ class RawClient:
         }
         self.send(**(message | changes))
 
-    def messages_until(self, last: Callable[[dict[str, Any]], bool], seconds: float = 5.0) -> list[dict[str, Any]]:
+    def messages_until(self, last: Callable[[dict[str, Any]], bool], seconds: float = 20.0) -> list[dict[str, Any]]:
         """All messages received up to the one for which `last` holds."""
         got: list[dict[str, Any]] = []
         end = time.monotonic() + seconds

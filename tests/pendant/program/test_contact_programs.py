@@ -20,6 +20,7 @@ from pendant.program.steps import (
     LinearMove,
     Program,
     ProgramState,
+    SetOutput,
     SwitchTool,
     Tell,
     Wait,
@@ -384,3 +385,15 @@ def test_a_step_tells_the_user_once() -> None:
     assert events[1].tick == events[0].tick + 1
     assert render(events[0]) == ("Hello", "Program program.")
     assert bench.last.signs == 1
+
+
+def test_what_the_last_step_tells_and_switches_comes_before_the_end() -> None:
+    """CD-15: who reads the events in turn hears it of a program that still runs."""
+    for step, kind in (
+        (Tell(text="Done"), Kind.PROGRAM_TELLS),
+        (SwitchTool(on=True), Kind.TOOL_SWITCHED),
+        (SetOutput(output=1, on=True), Kind.OUTPUT_SWITCHED),
+    ):
+        bench, _ = running(Wait(duration=0.02), step)
+        bench.run(20)
+        assert [event.kind for event in bench.events[-2:]] == [kind, Kind.PROGRAM_FINISHED]

@@ -267,7 +267,7 @@ def test_a_closed_connection_releases_at_once(served: Served, join: Join, loop: 
     client.hold(served.panel.free_drive._impl.uuid)
     until(lambda: loop.advance() is None and bool(loop.wishes[-1].touches), "a touch")
     client.close()
-    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release", seconds=1.0)
+    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release")
     assert loop.desk.take().touches == ()
     other.set(served.lab.force._impl.uuid, value=60.0)
     until(lambda: served.guard.operator.holder == 1, "control is free")
@@ -282,7 +282,7 @@ def test_a_network_that_stalls_lets_go(served: Served, join: Join, loop: FakeLoo
     client.hold(served.panel.free_drive._impl.uuid)
     until(lambda: loop.advance() is None and bool(loop.wishes[-1].touches), "a touch")
     monkeypatch.setattr(MessageGate, "ping", no_answer)
-    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release", seconds=2.0)
+    until(lambda: loop.advance() is None and Button.FREE_DRIVE in loop.wishes[-1].inputs.released, "the release")
     assert loop.desk.take().touches == ()
     client.drag("update", to=(0.3, 0.2, 0.1))
     client.set(served.lab.force._impl.uuid, value=60.0)
@@ -406,4 +406,4 @@ def test_a_flood_is_read_slowly(served: Served, join: Join, monkeypatch: pytest.
     until(lambda: served.guard.refused["too fast"] > 0, "the flood is seen")
     assert served.guard.refused["not understood"] < 100
     other.set(served.lab.force._impl.uuid, value=70.0)
-    until(lambda: served.hand.cap == 70.0, "the others are served", seconds=1.0)
+    until(lambda: served.hand.cap == 70.0, "the others are served", seconds=5.0)

@@ -36,7 +36,7 @@ def choose(served: Served, client: RawClient, section: str) -> None:
     if not tab.section.visible:
         view(served, client, VIEWS[2])
     client.set(tab.section._impl.uuid, value=title_of(section))
-    until(lambda: tab.controls and all(name.startswith(f"{section}.") for name in tab.controls), f"section {section}")
+    until(lambda: bool(tab.controls) and all(name.startswith(f"{section}.") for name in tab.controls), f"section {section}")
 
 
 HERE = [row for row in describe() if row.name not in {f"joints.{name}" for name in JOINTS[6:]}]

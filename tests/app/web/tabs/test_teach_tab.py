@@ -196,11 +196,16 @@ def test_steps_are_inserted_changed_moved_deleted_and_all_of_it_undone(served: S
     until(lambda: steps.fields["back"].visible, "how far")
     press(client, steps.insert, "Replace")
     until(lambda: texts(teach)[0] == "Until contact, tool +Z, 200 mm, retreat 50 mm", "changed")
+    client.set(steps.kind._impl.uuid, value="Tell the user")
+    until(lambda: steps.fields["says"].visible, "what")
+    client.set(steps.fields["says"]._impl.uuid, value="Turn the part")
+    press(client, steps.insert, "Replace")
+    until(lambda: texts(teach)[0] == "Tell “Turn the part”", "changed again")
     press(client, steps.order, "\u2715")
     until(lambda: texts(teach)[0].startswith("Wait"), "deleted")
     press(client, steps.history, "Clear")
     until(lambda: texts(teach) == [], "empty, and stays so")
-    for count in (3, 4, 4, 3):
+    for count in (3, 4, 4, 4, 3):
         press(client, steps.history, "Undo")
         until(lambda count=count: len(texts(teach)) == count, f"{count} steps")
     press(client, steps.history, "Redo")

@@ -10,6 +10,7 @@ from app.web.server import Served
 from app.web.walls.made_walls import REACTIONS
 from app.web.walls.wall_handles import NAME
 from app.web.walls.walls_tab import NONE
+from pendant.all_settings import apply
 from pendant.events.event import Kind
 from pendant.tick.modes import Mode, Phase
 from pendant.tick.pose import Pose
@@ -67,7 +68,7 @@ CHANGES: list[tuple[str, Any, AnyBorder]] = [
     ("on", False, replace(BALL, on=False)),
     ("side", "Keep out", replace(BALL, keep_out=True)),
     ("part", "Elbow", replace(BALL, part="elbow")),
-    ("reaction", list(REACTIONS)[1], replace(BALL, reaction=Reaction.LEAVE)),
+    ("reaction", list(REACTIONS)[1], replace(BALL, reaction=Reaction.STAY)),
     ("size", 150.0, replace(BALL, shape=Sphere(radius=0.15))),
     ("spot", -250.0, replace(BALL, position=(-0.25, 0.0, 0.3))),
 ]
@@ -207,3 +208,27 @@ def test_handles_that_are_put_away_move_nothing(served: Served, join: Join, loop
     until(lambda: served.docks.walls.handles._gizmo is None, "put away")
     take(client)
     until(lambda: served.guard.refused["not movable"] == 1, "refused")
+
+
+def test_a_wall_gets_another_name_once_it_is_typed(served: Served, join: Join, loop: FakeLoop) -> None:
+    have(loop, BALL, FLOOR)
+    client, tab = join(), served.docks.walls
+    until(lambda: tab.name.visible and tab.choice.value in ("ball", "floor"), "one is chosen")
+    client.set(tab.choice._impl.uuid, value="ball")
+    until(lambda: tab.name.value == "ball", "its name")
+    for text in ("r", "round", " round the part "):
+        client.set(tab.name._impl.uuid, value=text)
+    wished(loop, lambda walls: walls == (replace(BALL, name="round the part"), FLOOR), "renamed once")
+    until(lambda: tab.choice.value == "round the part", "and chosen")
+    client.set(tab.name._impl.uuid, value="floor")
+    until(lambda: "name of its own" in tab.message.shown, "another one has it")
+    until(lambda: tab.name.value == "round the part", "as it was")
+    assert loop.borders == (replace(BALL, name="round the part"), FLOOR)
+
+
+def test_walls_that_are_switched_off_at_all_are_told(served: Served, loop: FakeLoop) -> None:
+    have(loop, BALL)
+    tab = served.docks.walls
+    until(lambda: "stay inside" in tab.list.shown, "it holds")
+    loop.settings = apply(loop.settings, {"walls.on": False})
+    until(lambda: "All walls are off" in tab.list.shown and "stay inside" not in tab.list.shown, "it does not")
