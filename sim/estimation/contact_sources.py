@@ -118,7 +118,8 @@ class ContactSources:
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
         motion = (sample.values, estimate.qd, estimate.qdd)
-        _read(self._record, self._dynamics.recursion.record, self._momentum.record, motion, (*watched, sample.wrench_valid))
+        models = (self._dynamics.recursion.record, self._momentum.record)
+        _read(self._record, models, motion, (*watched, sample.wrench_valid))
         self._started = links
         valid = (pair, flange, links, links)
         if not links:
@@ -143,11 +144,11 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 
 
 @kernel
-def _read(sources, model, momentum, felt, watched) -> None:
+def _read(sources, models, felt, watched) -> None:
     """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
-    own, rigid = sources[0], model[0]
+    own, rigid, momentum = sources[0], models[0][0], models[1][0]
     rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]
     if watched.tool:
@@ -161,7 +162,7 @@ def _read(sources, model, momentum, felt, watched) -> None:
     if watched.links:
         beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0]
         beyond = beyond or max(abs(wrench[3]), abs(wrench[4]), abs(wrench[5])) >= own.reach[1]
-        _feel_behind(own, rigid, momentum[0], watched.with_sensor)
+        _feel_behind(own, rigid, momentum, watched.with_sensor)
         for which in range(2):
             own.signals[2 + which, 11] = 1.0 if beyond else 0.0
             _derive(own, rigid, felt, (which, watched.went_on))
