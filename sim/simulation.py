@@ -78,7 +78,8 @@ class Simulation:
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
-        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, math.inf if wrench is None else wrench.force.range)
+        reach = (math.inf, math.inf) if wrench is None else (wrench.force.range, wrench.torque.range)
+        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach, self.estimator.momentum)
         self.supervisor = Supervisor(
             settings,
             arm.n,

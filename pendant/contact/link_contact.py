@@ -23,12 +23,11 @@ Array = NDArray[np.float64]
 
 LINKS = ("elbow", "forearm", "wrist")
 """The parts that are told apart: what the joints before the elbow feel, what the elbow feels, too, and what joints beyond do."""
-NEWEST = 20
-"""Ticks of the newest mean: half a swing of the arm on its springs, which its model does not see in time."""
-STORED = 20
-"""Ticks of the stored means that it is held against."""
-LAGS = (20, 60)
-"""Their ages."""
+NEWEST = 10
+"""Ticks of the newest mean: the encoders' noise is less than a tenth of a bound in it."""
+FOLLOW = 0.0066
+"""Share a tick by which what counts as no contact follows what is felt: a time constant of 0.3 s, so that a hand that comes
+within a tenth of a second is there before it is followed, and what masses and encoders are wrong by in a motion is followed."""
 SEEN = 5
 """Newest ticks whose mean tells the force and the acceleration at a sighting: half of the newest mean may be from before it."""
 HELD = 40
@@ -39,10 +38,14 @@ SURE = 0.4
 """Share of its bound from which on a joint feels a change that another joint has shown: two deviations."""
 ENDED = 0.3
 """Share of the torques felt before, below which a change is a contact that ends: errors of the model alone are not so large."""
-LEFT = 0.2
-"""Share of a contact's largest torque lately, below which it has gone."""
+LEFT = 0.3
+"""Share of a contact's largest torque lately, below which it has gone: springs may be wrong by a fifth."""
 LATELY = 0.996
 """By which that largest torque fades a tick: by two thirds in half a second."""
+STRAYED = 2.0
+"""Bounds by which what counts as no contact may have strayed meanwhile, for it is not followed: within them,"""
+HALF = 0.45
+"""this share of a contact's largest torque lately is enough to call it gone."""
 GONE = 12
 """Ticks in a row for which it must be gone: an arm that swings back feels little for less."""
 CALM = 25
@@ -52,7 +55,7 @@ SETTLED = 20
 SILENCE = 500
 """Ticks after which contacts are looked for again although the torques have not settled."""
 BEFORE = 100
-"""Age of the stored mean that tells what was before a change: older than any that a sighting holds the newest against."""
+"""Age of the oldest sample that may be the first of a contact."""
 BEGUN = 0.2
 """Share of the change at the sighting, from which on a sample belongs to it."""
 
@@ -102,7 +105,6 @@ class LinkWatch:
     __slots__ = (
         "_age",
         "_begun",
-        "_bound",
         "_calm",
         "_count",
         "_largest",
@@ -116,14 +118,13 @@ class LinkWatch:
 
     def __init__(self) -> None:
         self.points = (History(), History())  # force and acceleration at the elbow, and at the forearm's end
-        self.torques = Torques()
+        self.torques = Torques()  # that the joints feel, then those that their gears bear
         self.touched: int | None = None  # which of `LINKS`
         self.silent = False  # after a release, until the torques have settled
         self._begun = False  # there is something to forget
         self._left_out = False  # of this tick nothing is known
         self._count = Confirmation()
-        self._rest: Array = np.zeros(0)  # torques before the contact [N·m]
-        self._bound: Array = np.zeros(0)  # the least bound of a torque since then [N·m]
+        self._rest: Array = np.zeros(0)  # both torques where nothing is touched [N·m]; empty: not known
         self._largest = 0.0  # contact torque lately, over its bound
         self._calm = 0  # ticks for which the contact has been gone, or the torques calm
         self._age = 0  # ticks since the last change
@@ -140,7 +141,7 @@ class LinkWatch:
         self._left_out = bool(elbow.saturated)
         if self._left_out:
             return
-        self.torques.push(signals.behind)
+        self.torques.push(np.concatenate((signals.behind, signals.borne)))
         self.points[0].push(elbow)
         self.points[1].push(forearm)
 
@@ -149,6 +150,7 @@ class LinkWatch:
         self.torques.gap()
         for point in self.points:
             point.gap()
+        self._rest = np.zeros(0)
         self.forget()
 
     def forget(self) -> None:
@@ -157,6 +159,7 @@ class LinkWatch:
             return
         self._begun = False
         self.touched, self.silent = None, False
+        self._rest = np.zeros(0)
         self._count.clear()
 
     def step(self, use: ContactUse, signals: ContactSignals, scale: float) -> LinkChange | None:
@@ -164,76 +167,88 @@ class LinkWatch:
         if self._left_out or self.torques.count < SETTLED + NEWEST:
             return None
         self._begun = True
-        bound = signals.doubt * (use.link_limit * scale)
         new = self.torques.mean(0, NEWEST)
+        if not self._rest.size:
+            self._rest = self.torques.mean(NEWEST, SETTLED)
+        limit = signals.doubt * (use.link_limit * scale)
         if self.touched is not None:
-            return self._held(new, bound, signals.elbow)
+            return self._held(new, limit, signals)
         if self.silent:
-            self._settle(new, bound, signals.elbow)
+            self._settle(new, limit, signals)
             return None
-        return self._onset(new, bound, use, signals.elbow)
+        return self._onset(new, limit, use, signals)
 
-    def _onset(self, new: Array, bound: Array, use: ContactUse, elbow: int) -> LinkChange | None:
+    def _felt_now(self, torques: Array, limit: Array, signals: ContactSignals) -> tuple[Array, Array]:
+        """What each joint feels of a contact (n,) [N·m], and the bound (n,) of what is none."""
+        n = limit.size
+        change = torques - self._rest
+        borne = change[n:]
+        return change[:n] - signals.stiffer * borne, limit + signals.misfit * np.abs(borne)
+
+    def _onset(self, new: Array, limit: Array, use: ContactUse, signals: ContactSignals) -> LinkChange | None:
         """Free: what a joint up to the elbow feels beyond errors of model and sensors is a contact that begins.
 
         Or it is one that ends, where less is felt than before: it began too gently to be seen.
         """
-        sightings = 0
-        for lag in LAGS:
-            if self.torques.count >= lag + STORED:
-                felt = np.abs(new - self.torques.mean(lag, STORED))[: elbow + 1] / bound[: elbow + 1]
-                sightings = max(sightings, int(felt.max()))
-        if not self._count.step(min(sightings, HEAVIEST), use.slow_count, use.misses):
+        elbow, n = signals.elbow, limit.size
+        felt, bound = self._felt_now(new, limit, signals)
+        largest = float((np.abs(felt) / bound)[: elbow + 1].max())
+        if not self._count.step(min(int(largest), HEAVIEST), use.slow_count, use.misses):
+            if largest < 1.0:
+                self._rest += FOLLOW * (new - self._rest)
             return None
-        lag = min(BEFORE, self.torques.count - STORED)
-        old = self.torques.mean(lag, STORED)
-        change = np.abs(new - old)
+        change = np.abs(felt)
         told = np.flatnonzero((change >= SURE * bound) & (change >= SHARE * change.max()))
         last = int(told[-1]) if told.size else elbow - 1
         link = min(max(last - elbow + 1, 0), len(LINKS) - 1)
-        largest = float((change / bound)[: elbow + 1].max())
-        if float((np.abs(new) / bound).max()) < ENDED * float((np.abs(old) / bound).max()) and (np.abs(old) > 2.0 * bound).any():
+        old = self._rest
+        before, now = (np.abs(torques[:n] - signals.stiffer * torques[n:]) / bound for torques in (old, new))
+        if now.max() < ENDED * before.max() and before.max() > 2.0:
             self._over()
-            return self._felt(Change.LOST, link, new, old=old, lag=lag)
-        self.touched, self._calm, self._age = link, 0, 0
-        self._rest, self._bound, self._largest = old, bound, largest
-        return self._felt(Change.GAINED, link, new, old=old, lag=lag)
+            return self._reported(Change.LOST, link, new, old)
+        self.touched, self._calm, self._age, self._largest = link, 0, 0, 0.0
+        return self._reported(Change.GAINED, link, new, old)
 
-    def _held(self, new: Array, bound: Array, elbow: int) -> LinkChange | None:
+    def _held(self, new: Array, limit: Array, signals: ContactSignals) -> LinkChange | None:
         """In contact: it has gone where little is left of its torques."""
         self._age += 1
-        self._bound = np.minimum(self._bound, bound)
         if self._age < HELD:  # that mean still holds ticks from before the contact
             return None
-        left = float((np.abs(self.torques.mean(0, HELD) - self._rest) / self._bound)[: elbow + 1].max())
+        felt, _ = self._felt_now(self.torques.mean(0, HELD), limit, signals)
+        left = float((np.abs(felt) / limit)[: signals.elbow + 1].max())
         self._largest = max(left, LATELY * self._largest)
-        self._calm = self._calm + 1 if left < max(1.0, LEFT * self._largest) else 0
+        gone = max(1.0, LEFT * self._largest, min(STRAYED, HALF * self._largest))
+        self._calm = self._calm + 1 if left < gone else 0
         if self._calm < GONE or self.touched is None:
             return None
-        link, lag = self.touched, min(BEFORE, self.torques.count - STORED)
+        link, touched = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
         self._over()
-        return self._felt(Change.LOST, link, new, old=self.torques.mean(lag, STORED), lag=lag)
+        return self._reported(Change.LOST, link, new, touched)
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0
         self._count.clear()
 
-    def _settle(self, new: Array, bound: Array, elbow: int) -> None:
+    def _settle(self, new: Array, limit: Array, signals: ContactSignals) -> None:
         """After a release: silent until the torques are calm; then statistics start again (CD-9a)."""
         self._age += 1
-        calm = bool((np.abs(new - self.torques.mean(SETTLED, NEWEST)) < bound)[: elbow + 1].all())
+        self._rest = self.torques.mean(SETTLED, NEWEST)
+        felt, bound = self._felt_now(new, limit, signals)
+        calm = bool((np.abs(felt) < bound)[: signals.elbow + 1].all())
         self._calm = self._calm + 1 if calm else 0
         if self._calm >= CALM or self._age >= SILENCE:
             self.silent = False
-            self.torques.count = SETTLED + NEWEST
 
-    def _felt(self, change: Change, link: int, new: Array, *, old: Array, lag: int) -> LinkChange:
+    def _reported(self, change: Change, link: int, new: Array, old: Array) -> LinkChange:
         """What is reported: force and acceleration at the link, as the newest mean and the stored one tell them (CD-16)."""
-        point = self.points[min(link, 1)]
-        n, o = point.mean(0, SEEN), point.mean(lag, STORED)
-        force, acceleration = (n[0] - o[0], n[1] - o[1], n[2] - o[2]), (n[3] - o[3], n[4] - o[4], n[5] - o[5])
-        way = new - old
+        point, n = self.points[min(link, 1)], new.size // 2
+        oldest = min(BEFORE, self.torques.count - NEWEST)
+        way = (new - old)[:n]
         least, steps = BEGUN * float(way @ way), 0
-        while steps < lag + NEWEST and float((self.torques.mean(steps, 1) - old) @ way) > least:
+        while steps < oldest and float((self.torques.mean(steps, 1) - old)[:n] @ way) > least:
             steps += 1
+        lag = min(steps + NEWEST, oldest)
+        now, then = point.mean(0, SEEN), point.mean(lag, min(SEEN, point.count - lag))
+        force = (now[0] - then[0], now[1] - then[1], now[2] - then[2])
+        acceleration = (now[3] - then[3], now[4] - then[4], now[5] - then[5])
         return LinkChange(change, link, force, acceleration, max(steps - 1, 0))

@@ -14,6 +14,7 @@ from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
+from sim.estimation.momentum_observer import MomentumObserver
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
@@ -28,7 +29,9 @@ MASS_TICKS = 50
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever"))
 SENSOR_FORCE, SENSOR_TORQUE = 1.0, 0.1
-"""Deviation of what a flange sensor that was not zeroed tells while the flange turns: a part of its offset of 4 N [N, N·m]."""
+"""Deviation of what a flange sensor that was not zeroed tells when the flange has turned: part of its offset of 4 N [N, N·m]."""
+TURNED = 0.3
+"""Time over which it turns: contacts are looked for within it (`pendant.contact.link_contact.FOLLOW`) [s]."""
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -37,9 +40,6 @@ class Feeling(NamedTuple):
     """What the sources are made of in a tick, besides the rigid model's motion."""
 
     values: Array  # all measurements (3n + 18,)
-    tau_ext: Array  # (n,) [N·m]
-    doubt: Array  # standard deviation of its changes (n,) [N·m]
-    F_user: Array  # (6,) in B at the flange origin; zeros without the sensor [N, N·m]
     qd: Array  # (n,) [rad/s]
     qdd: Array  # (n,) [rad/s²]
 
@@ -51,6 +51,7 @@ class WatchedSources(NamedTuple):
     arm_side: bool
     links: bool
     went_on: bool  # the links were watched in the last tick, too
+    with_sensor: bool  # the flange sensor's wrench is valid
 
 
 class ContactSources:
@@ -59,11 +60,12 @@ class ContactSources:
     Args:
         dynamics: the controller's model, already updated to this tick's posture when `read` is called.
         elbow: index of the joint that the elbow is.
-        reach: force at which the flange sensor saturates [N].
+        reach: force and torque at which the flange sensor saturates [N, N·m].
+        momentum: external torques of this tick.
     """
 
-    def __init__(self, dynamics: Dynamics, elbow: int, reach: float) -> None:
-        self._dynamics, self._range = dynamics, reach
+    def __init__(self, dynamics: Dynamics, elbow: int, reach: tuple[float, float], momentum: MomentumObserver) -> None:
+        self._dynamics, self._range, self._momentum = dynamics, np.array(reach), momentum
         n = dynamics.recursion.origins.shape[0]
         self._record = record(
             turn=(3,),  # angular speed, a tick ago
@@ -72,10 +74,10 @@ class ContactSources:
             smoothing=(),
             com=(3,),  # of the load
             gravity=(3,),
-            reach=(),
+            reach=(2,),
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
             doubt=(n,),  # standard deviation of its changes
-            behind=(n,),  # what the joints feel and the flange sensor does not
+            felt=(n,),  # what the joints feel and the flange sensor does not
             joints="2i8",  # whose origins are elbow and end of the forearm
             signals=(4, len(Signal._fields)),
         )
@@ -85,7 +87,6 @@ class ContactSources:
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
         self._out, self._started = own["signals"], False
-        self._with_sensor: bool | None = None  # in the last tick
         self._elbow = elbow
         self._out[:, EFFECTIVE_MASS] = 1.4  # until the arm has been weighed
         self.set_load(dynamics.load)
@@ -97,7 +98,8 @@ class ContactSources:
 
     def set_zero(self, zero: Array) -> None:
         """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
-        self._own["reach"] = self._range - float(np.abs(zero[:3]).max())
+        self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
+        self._momentum.forget()
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.
@@ -112,20 +114,21 @@ class ContactSources:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
         pair = sample.wrench_valid and sample.acceleration_valid
-        # Torques with the sensor's share and without it are no continuation of each other.
-        links = use.links and sample.joints_valid and self._with_sensor in (sample.wrench_valid, None)
-        self._with_sensor = sample.wrench_valid
+        links = use.links and sample.joints_valid and self._momentum.ready
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
-        felt = (sample.values, estimate.tau_ext, estimate.tau_ext_doubt, estimate.F_user, estimate.qd, estimate.qdd)
-        _read(self._record, self._dynamics.recursion.record, felt, watched)
+        motion = (sample.values, estimate.qd, estimate.qdd)
+        models = (self._dynamics.recursion.record, self._momentum.record)
+        _read(self._record, models, motion, (*watched, sample.wrench_valid))
         self._started = links
         valid = (pair, flange, links, links)
         if not links:
             estimate.signals = ContactSignals(self._out.copy(), valid)
             return
-        behind, doubt = self._own["behind"].copy(), self._own["doubt"].copy()
-        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, self._elbow)
+        own, torques = self._own, self._momentum
+        kept = (torques.residual, own["doubt"], torques.borne, torques.stiffer, torques.misfit)
+        behind, doubt, borne, stiffer, misfit = (column.copy() for column in kept)
+        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, borne, stiffer, misfit, self._elbow)
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
@@ -141,11 +144,11 @@ def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float
 
 
 @kernel
-def _read(sources, model, felt, watched) -> None:
+def _read(sources, models, felt, watched) -> None:
     """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
-    own, rigid = sources[0], model[0]
+    own, rigid, momentum = sources[0], models[0][0], models[1][0]
     rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]
     if watched.tool:
@@ -157,8 +160,9 @@ def _read(sources, model, felt, watched) -> None:
     else:
         own.turn[:] = np.nan
     if watched.links:
-        beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach
-        _feel_behind(own, rigid.jacobian, felt)
+        beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0]
+        beyond = beyond or max(abs(wrench[3]), abs(wrench[4]), abs(wrench[5])) >= own.reach[1]
+        _feel_behind(own, rigid, momentum, watched.with_sensor)
         for which in range(2):
             own.signals[2 + which, 11] = 1.0 if beyond else 0.0
             _derive(own, rigid, felt, (which, watched.went_on))
@@ -200,22 +204,21 @@ def _transfer(own, R, felt, out) -> None:
         out[3 + k] = acceleration[k] + moved[k]
         out[6 + k] = R[0, k] * gravity[0] + R[1, k] * gravity[1] + R[2, k] * gravity[2]
         out[13 + k] = moved[k] - before[k]
-    out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach else 0.0
+    out[11] = 1.0 if max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0] else 0.0
 
 
 @kernel
-def _feel_behind(own, jacobian, felt) -> None:
-    """The joints' external torques without those of what the flange sensor feels (n,) [N·m].
+def _feel_behind(own, rigid, momentum, with_sensor) -> None:
+    """The joints' external torques that the flange sensor does not feel, as known best, and their deviation (n,) [N·m].
 
-    A contact beyond the sensor, and what a wrong payload seems to be, are felt by both; what is left acts on a link.
+    The sensor's offset is in them: as the flange turns, it changes.
     """
-    for i in range(own.behind.size):
-        left = felt.tau_ext[i]
-        for k in range(6):
-            left -= jacobian[k, i] * felt.F_user[k]
-        own.behind[i] = left
-        lever = np.sqrt(jacobian[0, i] ** 2 + jacobian[1, i] ** 2 + jacobian[2, i] ** 2)
-        own.doubt[i] = np.sqrt(felt.doubt[i] ** 2 + (SENSOR_FORCE * lever) ** 2 + SENSOR_TORQUE**2)
+    w, jacobian = rigid.v_F[3:], rigid.jacobian
+    turned = min(TURNED * np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), 1.0) if with_sensor else 0.0
+    for i in range(own.felt.size):
+        own.felt[i] = momentum.residual[i] - momentum.stiffer[i] * momentum.borne[i]
+        lever = SENSOR_FORCE**2 * (jacobian[0, i] ** 2 + jacobian[1, i] ** 2 + jacobian[2, i] ** 2)
+        own.doubt[i] = np.sqrt(momentum.doubt[i] ** 2 + turned * turned * (lever + SENSOR_TORQUE**2))
 
 
 @kernel
@@ -228,7 +231,7 @@ def _derive(own, rigid, felt, which) -> None:
     link, went_on = which
     joint, before, out = own.joints[link], own.before[link], own.signals[2 + link]
     origins, flange, gravity = rigid.origins, rigid.jacobian, own.gravity
-    qd, qdd, behind = felt.qd, felt.qdd, own.behind
+    qd, qdd, behind = felt.qd, felt.qdd, own.felt
     n = qd.size
     jacobian = np.empty((3, n))
     square = np.empty((3, 3))

@@ -23,7 +23,8 @@ from sim.estimation.joint_tracking import (
     surplus,
     tracking_gains,
 )
-from sim.estimation.transmission_torque import DEFLECTION, WAYS, TransmissionTorque
+from sim.estimation.momentum_observer import MomentumObserver
+from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -81,6 +82,7 @@ class Estimator:
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(arm, self.forces)
+        self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
         self.tick = 0
 
@@ -131,7 +133,8 @@ class Estimator:
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        self._estimate_torques(sample, use, learn)
+        moving = self._estimate_torques(sample, use, learn)
+        self._observe(sample, learn and moving)
         self.forces.update(sample, self.q, q, self.transmission.external)
         self.wrench.update(bias if sample.wrench_valid else None)
         known, valid = self._known, sample.joints_valid
@@ -186,15 +189,24 @@ class Estimator:
             friction_deviation=friction.deviation,
             tau_ways=transmission.ways,
             tau_ext_deviation=transmission.external_deviation,
-            tau_ext_doubt=transmission.external_doubt,
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
             current=self._current,
         )
 
-    def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> None:
-        """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs."""
+    def _observe(self, sample: Sample, learn: bool) -> None:
+        """External torques by the momentum."""
+        friction, motor = self.friction, self.transmission.ways[MOTOR]
+        gears = (self._deflection, motor, friction.total, friction.deviation, self._stiction, self._ways)
+        valid, with_sensor = sample.joints_valid, sample.wrench_valid
+        self.momentum.update((self.q, *gears, sample.wrench), with_sensor=with_sensor, valid=valid, learn=learn)
+
+    def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> bool:
+        """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs.
+
+        Returns whether any joint moves.
+        """
         friction, transmission, motor, rigid = self.friction, self.transmission, self._theta, self._dynamics.recursion
         spent, stiction, ways = self._surplus, self._stiction, transmission.ways
         if use is not self._use:
@@ -220,6 +232,7 @@ class Estimator:
         transmission.update((friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(ways, transmission.fused, where=~self._ways)
+        return moving
 
     def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:
         """Angles and currents where some are out: each angle from the other, through the spring; None if a joint has neither."""

@@ -28,7 +28,6 @@ STIFFNESS_WALK = 2e-3  # random walk of the learned stiffness error [1/sqrt(s)]
 OFFSET_WALK = 0.05  # of the deflection's offset, relative to the ripple's torque [1/sqrt(s)]
 RIPPLE_LEFT = 0.25  # share of the ripple that a learned offset leaves
 CORRELATED = 100.0  # ticks over which the deflection's error stays alike
-CHANGING = 0.5  # share of the error of the links' masses that a motion of some tenths of a second changes
 CONTACT = 2.5  # deviations between two ways that count as a contact
 CONTACT_FLOOR = 0.012  # and the least such difference, relative to the torque limit
 SLOWLY = TICK / 0.3  # where two ways differ for longer than this [s], it is the deflection's error
@@ -63,8 +62,6 @@ class TransmissionTorque:
         ways, deviations: each way (3, n), and its standard deviation.
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
         external_deviation: standard deviation of `external` at rest (n,): errors of the deflection and of the model's masses.
-        external_doubt: standard deviation of a change of `external` within some tenths of a second, in an arm that accelerates
-            as it has done lately (n,); errors that stay as they are do not count.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
@@ -97,7 +94,6 @@ class TransmissionTorque:
             deviation=(n,),
             external=(n,),
             external_deviation=(n,),
-            external_doubt=(n,),
             model=(n,),  # standard deviation of the rigid model where nothing is touched
         )
         own = self.record[0]
@@ -105,7 +101,7 @@ class TransmissionTorque:
         own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
-        self.external_deviation, self.external_doubt = own["external_deviation"], own["external_doubt"]
+        self.external_deviation = own["external_deviation"]
         self.forget()
         self.contact = False
         self._quiet = SETTLE_TICKS
@@ -176,8 +172,6 @@ def _compare(own, rubbing, use) -> bool:
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
         other = 1 if use[1, i] else 2
-        changes = floor**2 + (shaking * own.inertia[i]) ** 2 + (CHANGING * LINK_MASS * dynamics) ** 2
-        own.external_doubt[i] = np.sqrt(changes if other == 1 else changes + rubs)
         external[i] = 0.0
         if not use[0, i] or not (use[1, i] or use[2, i]):
             continue

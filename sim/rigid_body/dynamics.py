@@ -26,6 +26,7 @@ class Dynamics:
 
     Attributes:
         recursion: the same model, compiled for what every tick needs.
+        bare: the last link without the load, in its joint's frame.
     """
 
     def __init__(self, chain: Chain, links: tuple[Body, ...], load: Body, *, mounting: Vector, elbow: int) -> None:
@@ -42,6 +43,7 @@ class Dynamics:
         self.model, self.data = model, model.createData()
         self._last, self._elbow = parent, elbow + 1
         self._bare = model.inertias[parent].copy()
+        self.bare = links[-1]
         self.gravity_B = np.array(model.gravity.linear)
         self.recursion = NewtonEuler(model, self._flange_placement, elbow)
         self.set_load(load)

@@ -24,6 +24,7 @@ class NewtonEuler:
         jacobian: (6, n), linear first, axes of B, at the flange origin.
         v_F: flange velocity (6,), linear [m/s], then angular [rad/s].
         origins: of the joints (n, 3) in B [m].
+        turns: their orientations (n, 3, 3) in B.
         energy: kinetic, of the links (1,) [J].
         tcp, elbow: position [m], then velocity [m/s] of the tool centre point and of the elbow (6,) each.
 
@@ -51,6 +52,7 @@ class NewtonEuler:
             jacobian=(6, n),
             v_F=(6,),
             origins=(n, 3),
+            turns=(n, 3, 3),
             energy=(1,),
             tcp=(6,),
             elbow=(6,),
@@ -64,6 +66,7 @@ class NewtonEuler:
         own["R"] = np.eye(3)
         self.torque, self.p, self.R, self.v_F = own["torque"], own["p"], own["R"], own["v_F"]
         self.jacobian, self.origins, self.energy = own["jacobian"], own["origins"], own["energy"]
+        self.turns = own["turns"]
         self.tcp, self.elbow = own["tcp"], own["elbow"]
 
     def set_load(self) -> None:
@@ -133,7 +136,7 @@ def _run(rigid, q, motion, tcp):
     own = rigid[0]
     p_F, R_F, v_F, jacobian, tip = own.p, own.R, own.v_F, own.jacobian, own.tcp
     n = q.size
-    p, R = np.zeros((n + 1, 3)), np.empty((n + 1, 3, 3))
+    p, R = np.zeros((n + 1, 3)), own.turns
     behind_p, behind_R = np.zeros(3), np.eye(3)
     for i in range(n):
         _place(own, i, (behind_p, behind_R), (p[i], R[i]))

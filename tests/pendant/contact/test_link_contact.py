@@ -13,14 +13,18 @@ from pendant.tick.source_signal import ContactSignals, Signal
 
 USE = ContactUse()
 DOUBT = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
+LOAD = np.array([5.0, 60.0, 30.0, 2.0, 1.0, 0.0])
+"""What the gears bear [N·m]."""
+MISFIT = 0.1
 START = 100
 
 
-def tick(torques: np.ndarray, doubt: np.ndarray = DOUBT, saturated: float = 0.0) -> ContactSignals:
+def tick(torques: np.ndarray, borne: np.ndarray = LOAD, stiffer: float = 0.0, saturated: float = 0.0) -> ContactSignals:
     """Torques on the joints; the force at both points is a tenth of their sum along x, in the other direction."""
     force = -0.1 * float(torques.sum())
     row = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
-    return ContactSignals(np.tile(row, (4, 1)), (False, False, True, True), torques, doubt)
+    known = (torques, DOUBT, borne, np.full(6, stiffer), np.full(6, MISFIT))
+    return ContactSignals(np.tile(row, (4, 1)), (False, False, True, True), *known)
 
 
 def stream(n: int, way: tuple[float, ...], *spans: tuple[int, int, float], noise: float = 0.1, seed: int = 0) -> np.ndarray:

@@ -9,6 +9,7 @@ from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, Program
 from pendant.tick.source_signal import Signal
 from sim.arm.scenario import Load, Scenario
+from sim.estimation.momentum_observer import READY
 from sim.exchange.desk import Wishes
 from sim.plant.changes import FrictionChange, SensorFault
 from sim.plant.touch import Push
@@ -21,7 +22,10 @@ IDLE = Wishes(NOTHING, (), ())
 def simulation(**changes: bool) -> Simulation:
     load = Load(mass=2.0, com=[0.05, -0.03, 0.06])
     scenario = Scenario(tool=TOOL, payload_true=load, payload_configured=load, mismatch="nominal", seed=3)
-    return Simulation(ARM, scenario, apply(Settings(), {f"contact.{name}": on for name, on in changes.items()}))
+    sim = Simulation(ARM, scenario, apply(Settings(), {f"contact.{name}": on for name, on in changes.items()}))
+    for _ in range(READY + 2):  # the links' torques are known after that
+        sim.tick(IDLE)
+    return sim
 
 
 def mean(sim: Simulation, source: int, ticks: int, wishes: Wishes = IDLE) -> np.ndarray:

@@ -1,0 +1,274 @@
+"""External torques of the joints by their momentum: a generalised-momentum observer, without accelerations.
+
+With the links' momentum p = M(q) q' and what is known to drive it, p' = tau_J - f_out + C^T q' - g - J^T w + tau_ext, the
+residual r = K (p - integral(tau_J - f_out + C^T q' - g - J^T w + r) dt) follows tau_ext with a first-order lag of 1 / K. The
+torque tau_J is that behind the gear, from its deflection, so the friction of motor and gear does not enter; w is what the flange
+sensor feels of all that it carries, so what is carried need not be known. Arms swing on their gears: an acceleration comes out of
+a filter later than the torque that it needs, but here both go through the same filter.
+
+Source: De Luca, Albu-Schaeffer, Haddadin, Hirzinger, Collision Detection and Safe Reaction with the DLR-III Lightweight
+Manipulator Arm, IROS 2006; Haddadin, De Luca, Albu-Schaeffer, Robot Collisions: A Survey on Detection, Isolation, and
+Identification, IEEE Transactions on Robotics 33(6), 2017, section IV.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.transmission_torque import CONTACT, SETTLE_TICKS, SOFTEST, STIFFEST
+from sim.rigid_body.dynamics import Dynamics
+from sim.rigid_body.newton_euler import cross, turned, turned_back
+from sim.sensing.calibration import ENCODER_RIPPLE, LINK_MASS, MOTOR_CONSTANT, STIFFNESS
+
+Array = NDArray[np.float64]
+
+BANDWIDTH = 40.0
+"""Of the observer and of the filter behind it [Hz]: above the swing of an arm on its gears (10 to 25 Hz), and so low that the
+output encoder's noise, which is differentiated twice, makes a newton metre of it at the most."""
+READY = 25
+"""Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
+FLOOR = 0.004
+"""Deviation of what model, gear and encoders leave within some tenths of a second, relative to a joint's torque limit."""
+OFFSET_WALK = 0.05  # of the gear's offset, relative to the ripple's torque [1/sqrt(s)]
+STIFFNESS_WALK = 2e-3  # of its stiffness error [1/sqrt(s)]
+CORRELATED = 100.0  # ticks over which errors of the deflection stay alike
+CARRIED = 0.15
+"""Share of what the gears bear that a payload may be wrong by: up to a fifth of a payload, which is most of what they bear. It
+counts without the flange sensor alone."""
+SURE = 3.0  # deviations of a stiffness that is learned
+
+
+class Driven(NamedTuple):
+    """What is known of a tick besides the rigid model, n joints."""
+
+    q: Array  # (n,) measured [rad]
+    deflection: Array  # (n,) torque that it bears as believed [N·m]
+    motor: Array  # (n,) transmission torque by the motor's current [N·m]
+    friction: Array  # (n,) of both sides [N·m]
+    friction_deviation: Array  # (n,) [N·m]
+    stiction: Array  # (n,) what a standing joint may hold besides [N·m]
+    use: NDArray[np.bool_]  # (3, n) which of `transmission_torque.WAYS` may be used
+    wrench: Array  # (6,) measured at the flange, in F: what it exerts on what it carries [N, N·m]
+
+
+class MomentumObserver:
+    """External torques of n joints, before anything is learned of the gears, and what is known of their error.
+
+    With the flange sensor they are those of contacts before it. Without it the configured load counts as a part of the arm, and
+    they are those of all contacts. Of a joint without deflection the motor's torque less its friction is taken.
+
+    What the gears bear is wrong by their stiffness, known to a fifth at first: it is learned where planned motion bends them and
+    nothing is touched, from these torques, in which no payload's error is.
+
+    Attributes:
+        residual: the torques (n,) [N·m].
+        borne: what passes through the gears (n,), with the lag of the torques [N·m].
+        stiffer: share of `borne` (n,) that the residual holds by the gears' stiffness, as learned.
+        misfit: share of a change of `borne` (n,) by which the residual may still be wrong.
+        doubt: standard deviation of a change of the residual within some tenths of a second, for other reasons (n,) [N·m].
+
+    Args:
+        arm: the arm's numbers.
+        dynamics: the controller's rigid model, whose recursion has been run with the tick's angles.
+    """
+
+    def __init__(self, arm: Arm, dynamics: Dynamics) -> None:
+        self._rigid = dynamics.recursion
+        n, spring, body = arm.n, arm.transmissions, dynamics.bare
+        self.record = record(
+            bare=(13,),  # last link without load: mass, centre, inertia about it
+            gain=(),
+            output_share=(),  # of friction
+            floor=(n,),
+            ripple=(n,),  # torque of the output encoder's ripple [N·m]
+            count="i8",  # ticks in a row, at most `READY`
+            q=(n,),  # a tick ago
+            p=(n,),  # momentum, a tick ago [N·m·s]
+            drive=(n,),  # of it, a tick ago
+            load=(n,),  # what the gears bore, a tick ago
+            first=(2, n),  # residual and load behind the first of both filters
+            residual=(n,),
+            borne=(n,),
+            offset=(n,),
+            covariance=(n, 3),  # of stiffer, of both, of offset
+            stiffer=(n,),
+            misfit=(n,),
+            doubt=(n,),
+            quiet="i8",  # ticks since something was touched, as far as these torques tell
+        )
+        own = self._own = self.record[0]
+        self.residual, self.borne, self.stiffer = own["residual"], own["borne"], own["stiffer"]
+        self.misfit, self.doubt = own["misfit"], own["doubt"]
+        own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
+        own["bare"] = np.concatenate([[body.mass], body.com, body.inertia.ravel()])
+        own["output_share"] = arm.frictions.output_share
+        own["floor"] = FLOOR * np.array(arm.limits.torque)
+        own["ripple"] = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
+        own["covariance"][:, 0], own["covariance"][:, 2] = STIFFNESS**2 / 3.0, own["ripple"] ** 2  # of a uniform error
+        self._with_sensor = False
+
+    @property
+    def ready(self) -> bool:
+        """What it says counts: it has followed the arm for `READY` ticks."""
+        return bool(self._own["count"] == READY)
+
+    def forget(self) -> None:
+        """What was before counts no more: a tick is missing, or the flange sensor tells something else from now on."""
+        self._own["count"] = 0
+
+    def update(self, driven: tuple[Array, ...], *, with_sensor: bool, valid: bool, learn: bool) -> None:
+        """One tick.
+
+        Args:
+            driven: as `Driven`.
+            with_sensor: the wrench is valid.
+            valid: the joints are; a tick without them ends what was.
+            learn: planned motion moves the arm.
+        """
+        if not valid or with_sensor is not self._with_sensor:
+            self.forget()
+        self._with_sensor = with_sensor
+        if valid:
+            _update(self.record, self._rigid.record, driven, (with_sensor, learn))
+
+
+@kernel
+def _update(observer, model, driven, state) -> None:
+    driven = Driven(*driven)
+    own, rigid = observer[0], model[0]
+    with_sensor, learn = state
+    n = driven.q.size
+    speed, p, drive = np.empty(n), np.empty(n), np.empty(n)
+    for i in range(n):
+        speed[i] = (driven.q[i] - own.q[i]) / TICK if own.count else 0.0
+        own.q[i] = driven.q[i]
+    _momentum(own, rigid, (speed, with_sensor), (p, drive))
+    force, torque = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if with_sensor:
+        w = driven.wrench
+        force, torque = turned(rigid.R, (w[0], w[1], w[2])), turned(rigid.R, (w[3], w[4], w[5]))
+    for i in range(n):
+        by_deflection = driven.use[1, i]
+        load = driven.deflection[i] if by_deflection else driven.motor[i]
+        drive[i] += load - own.output_share * driven.friction[i]
+        for k in range(3):
+            drive[i] -= rigid.jacobian[k, i] * force[k] + rigid.jacobian[3 + k, i] * torque[k]
+        if own.count < 2:
+            own.first[0, i], own.residual[i], own.first[1, i], own.borne[i] = 0.0, 0.0, load, load
+        else:
+            # The speed is that of half a tick ago: between this and the last one lies the drive of a tick ago.
+            own.first[0, i] += own.gain * ((p[i] - own.p[i]) / TICK - own.drive[i] - own.first[0, i])
+            own.residual[i] += own.gain * (own.first[0, i] - own.residual[i])
+            own.first[1, i] += own.gain * (own.load[i] - own.first[1, i])
+            own.borne[i] += own.gain * (own.first[1, i] - own.borne[i])
+        own.p[i], own.drive[i], own.load[i] = p[i], drive[i], load
+        _doubt(own, driven, (with_sensor, by_deflection), i)
+    own.quiet = 0 if _touched(own, driven.use) else min(own.quiet + 1, SETTLE_TICKS)
+    if learn and own.quiet == SETTLE_TICKS:
+        for i in range(n):
+            if driven.use[1, i]:
+                _learn(own, i)
+    own.count = min(own.count + 1, READY)
+
+
+@kernel
+def _touched(own, use) -> bool:
+    """Some joint feels more than gear and model may be wrong by, as far as is known now."""
+    for i in range(own.borne.size):
+        P, x = own.covariance[i], own.borne[i]
+        error = own.residual[i] - own.stiffer[i] * x - own.offset[i]
+        known = max(x * x * P[0] + 2.0 * x * P[1] + P[2], 0.0)
+        if use[1, i] and error * error > CONTACT**2 * (known + (0.5 * own.ripple[i]) ** 2 + own.doubt[i] ** 2):
+            return True
+    return False
+
+
+@kernel
+def _doubt(own, driven, known, i) -> None:
+    """How wrong the residual of joint i may be."""
+    with_sensor, by_deflection = known
+    rubs = own.output_share * driven.friction_deviation[i]
+    own.doubt[i] = np.sqrt(own.floor[i] ** 2 + rubs**2)
+    gear = min(STIFFNESS, SURE * np.sqrt(own.covariance[i, 0]))
+    if not by_deflection:
+        own.doubt[i] = np.sqrt(own.floor[i] ** 2 + driven.friction_deviation[i] ** 2 + driven.stiction[i] ** 2)
+        gear, own.stiffer[i] = MOTOR_CONSTANT, 0.0
+    own.misfit[i] = LINK_MASS + gear + (0.0 if with_sensor else CARRIED)
+
+
+@kernel
+def _learn(own, i) -> None:
+    """A Kalman filter's step on residual = stiffer · borne + offset."""
+    P, x = own.covariance[i], own.borne[i]
+    # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
+    P[0] = min(P[0] + STIFFNESS_WALK**2 * TICK, STIFFNESS**2 / 3.0)
+    P[2] = min(P[2] + (OFFSET_WALK * own.ripple[i]) ** 2 * TICK, own.ripple[i] ** 2)
+    error = own.residual[i] - own.stiffer[i] * x - own.offset[i]
+    a, b = P[0] * x + P[1], P[1] * x + P[2]
+    spread = a * x + b + (0.5 * own.ripple[i]) ** 2 * CORRELATED
+    own.stiffer[i] = min(max(own.stiffer[i] + a * error / spread, SOFTEST), STIFFEST)
+    own.offset[i] += b * error / spread
+    P[0] -= a * a / spread
+    P[1] -= a * b / spread
+    P[2] -= b * b / spread
+
+
+@kernel
+def _momentum(own, rigid, motion, out) -> None:
+    """The momentum of each joint, and what of its change the torques do not make: C^T q' - g.
+
+    About the origin o of joint i, whose axis is z, all links beyond have the angular momentum L and the linear one P:
+    p = z·L, and p' = z'·L - z·(o' x P) + z·(moments about o).
+    """
+    speed, with_sensor = motion
+    p, driven = out
+    n = speed.size
+    linear, angular, weight = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    turning, going = np.empty((n, 3)), np.empty((n, 3))
+    masses = np.empty(n)
+    w, v, last = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for i in range(n):
+        R = rigid.turns[i]
+        here = (rigid.origins[i, 0], rigid.origins[i, 1], rigid.origins[i, 2])
+        whirl = cross(w, (here[0] - last[0], here[1] - last[1], here[2] - last[2]))
+        v = (v[0] + whirl[0], v[1] + whirl[1], v[2] + whirl[2])
+        w = (w[0] + R[0, 2] * speed[i], w[1] + R[1, 2] * speed[i], w[2] + R[2, 2] * speed[i])
+        last = here
+        mass, at, inertia = rigid.mass[i], rigid.com[i], rigid.inertia[i]
+        if with_sensor and i == n - 1:
+            mass, at, inertia = own.bare[0], own.bare[1:4], own.bare[4:13].reshape((3, 3))
+        com = turned(R, at)
+        moving = cross(w, com)
+        spun = turned(R, turned(inertia, turned_back(R, w)))
+        P = (mass * (v[0] + moving[0]), mass * (v[1] + moving[1]), mass * (v[2] + moving[2]))
+        L = cross(com, P)
+        masses[i] = mass
+        for k in range(3):
+            linear[i, k], angular[i, k] = P[k], L[k] + spun[k]
+            weight[i, k], turning[i, k], going[i, k] = mass * com[k], w[k], v[k]
+    P, L, S, mass = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0  # of all beyond; S: mass times centre
+    for i in range(n - 1, -1, -1):
+        if i < n - 1:
+            a = rigid.origins[i + 1]
+            b = rigid.origins[i]
+            ahead = (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+            lever = cross(ahead, P)
+            L = (L[0] + lever[0], L[1] + lever[1], L[2] + lever[2])
+            S = (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2])
+        P = (P[0] + linear[i, 0], P[1] + linear[i, 1], P[2] + linear[i, 2])
+        L = (L[0] + angular[i, 0], L[1] + angular[i, 1], L[2] + angular[i, 2])
+        S = (S[0] + weight[i, 0], S[1] + weight[i, 1], S[2] + weight[i, 2])
+        mass += masses[i]
+        z = (rigid.turns[i, 0, 2], rigid.turns[i, 1, 2], rigid.turns[i, 2, 2])
+        z_d = cross(turning[i], z)
+        push, heavy = cross(going[i], P), cross(S, rigid.gravity)
+        p[i], driven[i] = 0.0, 0.0
+        for k in range(3):
+            p[i] += z[k] * L[k]
+            driven[i] += z_d[k] * L[k] + z[k] * (heavy[k] - push[k])
