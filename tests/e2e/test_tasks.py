@@ -179,3 +179,20 @@ def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: i
             return
         assert endings(cell)[-1] == "no word from the button"
     pytest.fail(f"held in vain: {cell.told()}")
+
+
+def test_a_finger_that_scrolls_from_a_jog_button_moves_nothing_and_the_next_press_counts(visit: Visit, cell: Cell) -> None:
+    page = visit(820, 1180)
+    tap(page.get_by_role("tab", name="Jog"))
+    button = page.get_by_role("button", name="Shoulder −", exact=True)
+    at, hand = middle(button), pointer(page)
+    hand.down(at)
+    hand.move((at[0], at[1] - 60.0))
+    hand.move((at[0], at[1] - 120.0))
+    hand.up()
+    page.wait_for_function("[...document.querySelectorAll('*')].some(one => one.scrollTop > 40)")
+    cell.pass_time(0.6)
+    assert not cell.happened(Kind.JOG_STARTED)
+    choose(page, "Stops after", "10 mm, 10°")
+    cell.wait(lambda: cell.served.docks.jog.steps.value == "10 mm, 10°", "the step is chosen")
+    hold_jog(page, cell, "Wrist 3 +")
