@@ -40,6 +40,13 @@ class FedBackTorque(Word):
     MOTOR = "motor"  # motor side: from motor angle and motor torque
 
 
+class FrictionFrom(Word):
+    """What is taken off the motor torque, beside the rotor's inertia, to obtain the friction (AF-2)."""
+
+    DYNAMICS = "dynamics"  # the rigid model's torque: exact, and wrong by whatever touches the arm
+    DEFLECTION = "deflection"  # the torque that bends the gear, from the two angles: in contact, too
+
+
 class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Which terms make the motor torque, and which ways lead to the transmission torque."""
 
@@ -48,6 +55,9 @@ class JointControl(Section, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     feed_forward: Annotated[bool, _switch("AF-4", "torques for inertia and speed of a planned motion are added")] = True
     friction: Annotated[bool, _switch("AF-7", "the friction estimate compensates friction of motion and hand guiding")] = True
     adaptive: Annotated[bool, _switch("AF-2", "friction is learned while the robot works")] = True
+    friction_from: Annotated[FrictionFrom, _choice("AF-2", "what is taken off the motor torque to obtain the friction")] = (
+        FrictionFrom.DYNAMICS
+    )
     torque_feedback: Annotated[bool, _switch("AF-5", "the error of the transmission torque is fed back")] = True
     fed_back: Annotated[FedBackTorque, _choice("AF-5", "the transmission torque that is fed back; without it the fused one")] = (
         FedBackTorque.DEFLECTION

@@ -98,6 +98,7 @@ _EMBODIMENTS = {
     "FD-9 current": "motor current as a parameter",
     "FD-9 motion": "without a force sensor: a wrong payload that moves the arm is refused by its motion alone",
     "FD-12b vertical": "speed along gravity limited more than across it",
+    "VW-6 inside": "free-drive is kept only while the part is inside the shape, as shipped",
     "VW-6 payload": "without a force sensor: a wrong payload that moves the arm into a wall is refused by it",
     "VW-7 push": "a wall pushes back, the harder the nearer, at rest, too",
     "AF-6 limit": "a current within the motor's limits; what is asked beyond winds nothing up",

@@ -20,12 +20,13 @@ B; a sensor whose zero is off by 5 N on each axis changes by 17 N when the wrist
 
 STRUCK = 10.0
 """Change within about `LATELY` that stops it [N]: by 2 N such a zero changes in it at `SLOW_JOINT`; speeding up a load of 10 kg
-takes 5 N."""
+takes 5 N. Bench `wizard` guards it."""
 
 JOLTED = 10.0
 """Change of a wrist joint's external torque within about `LATELY` that stops it [N·m]: what meets a link before the sensor.
 
 A load of 10 kg that nobody entered made 4 N·m at most. Joints that stand do not count: friction at rest hides their torque.
+Bench `wizard` guards it.
 """
 
 LATELY = ticks(0.5)

@@ -91,7 +91,7 @@ class Border(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     force: Annotated[float, Meta(ge=1.0, le=500.0)] = 150.0  # most that it resists with [N]
     push: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0  # back inwards at the border, at rest too; it grows through the band [N]
     push_back: Annotated[float, Meta(ge=1.0, le=50.0)] = 8.0  # smallest force that counts as the user's [N]
-    reaction: Reaction = Reaction.STAY
+    reaction: Reaction = Reaction.LEAVE  # free-drive is kept only while the part is inside (P 84)
     on: bool = True  # it holds in free-drive; one that is off is only remembered
 
     def __post_init__(self) -> None:

@@ -12,8 +12,8 @@ from pendant.tick.words import Word
 class Reaction(Word):
     """What follows when a wall is exceeded in FREE_DRIVE (VW-6). In the activation sequence entry is refused (FD-10)."""
 
-    STAY = "stay"  # the arm stops at the wall and stays there
-    LEAVE = "leave"
+    STAY = "stay"  # free-drive goes on; the arm stops at the wall and stays there
+    LEAVE = "leave"  # free-drive ends: it is kept only while the part is inside (P 84)
     STOP = "stop"
 
 

@@ -7,7 +7,7 @@ from msgspec import Meta
 
 import pendant.equipment.tools
 from pendant.equipment.load import Angles, Load, Vector
-from pendant.settings.bounds import Extent, Force, Friction, Name, Size, Span, Stiffness, Thickness
+from pendant.settings.bounds import Extent, Force, Friction, Name, Share, Size, Span, Stiffness, Thickness
 from pendant.walls.definitions import AnyBorder
 
 __all__ = ["BARE", "AnyObject", "Load", "Scenario", "ToolModel", "Vector", "table"]
@@ -60,6 +60,7 @@ class SnapFit(WorldObject, tag="snap-fit", frozen=True, forbid_unknown_fields=Tr
     size: Sizes
     force: Force = 30.0  # [N]
     travel: Size = 0.004  # [m]
+    rest: Share = 0.2  # of its force that it still resists with while it gives way
 
 
 class TwoFrictions(WorldObject, tag="two-frictions", frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -33,8 +33,8 @@ class Turning(NamedTuple):
     """What the joints do in a tick, as they are learned from."""
 
     speed: Array  # of the motors (n,) [rad/s]
-    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where the motor torque is unknown
-    tau_dyn: Array  # torque of the rigid model (n,) [N·m]
+    surplus: Array  # tau_m - J theta_dd - tau_dyn (n,) [N·m], not a number where tau_m is unknown; or by the deflection
+    tau_dyn: Array  # torque that was taken off, of the rigid model or of the deflection (n,) [N·m]
     tau_J: Array  # transmission torque (n,) [N·m], for the load term
 
 
@@ -56,6 +56,9 @@ class AdaptiveFriction:
     Friction changes its sign with the speed, the model's errors do not: both directions tell them apart. Learning needs the
     motor torque, a speed above the gate and no contact; without them the estimate stands and its uncertainty grows.
     From one side alone output friction cannot be told from an external torque: its share of the whole is assumed as filed.
+    With `joint_control.friction_from` the deflection stands for the rigid model. It bears what touches the arm, too, so friction
+    is learned in contact; what is left is the input side's, and the whole is that over its share:
+        (tau_m - J theta_dd - tau_deflection) / (1 - output share) = f_in + f_out + (gain error) tau_deflection + bias.
     """
 
     def __init__(self, arm: Arm, scale: float = 1.0) -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.all_settings import JointControl
+from pendant.all_settings import FrictionFrom, JointControl
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
@@ -32,6 +32,7 @@ from sim.sensing.sensors import Sample
 Array = NDArray[np.float64]
 
 SHIPPED = JointControl()
+_DEFLECTION = FrictionFrom.DEFLECTION  # looked up in every tick
 SENSORS = ("motor_encoder", "output_encoder", "current")
 MOTOR_ANGLE, CURRENT = 0, 2
 BENDING_BANDWIDTH = 5.0  # of a deflection that is made up [Hz]
@@ -65,6 +66,7 @@ class Estimator:
         self._use: JointControl | None = None
         self._ways = np.ones((len(WAYS), n), dtype=bool)
         self._surplus, self._stiction, self._deflection = own["surplus"], own["stiction"], own["deflection"]
+        self._by_deflection: NDArray[np.bool_] | None = None  # whose friction is obtained from it (n,); None: of no joint
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
         self._theta, self._q, self.tau_m, self._current = own["theta"], own["q"], own["tau_m"], own["current"]
@@ -202,11 +204,17 @@ class Estimator:
             # A joint that has lost the ways that are wanted of it goes on with the rigid model.
             lost = ~(deflection | motor_side) & (use.from_deflection or use.from_motor)
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
-        surplus(self._record, rigid.torque)
+            wanted = use.from_deflection and use.friction_from is _DEFLECTION
+            self._by_deflection = both & motor_known if wanted else None
+        surplus(self._record, rigid.torque, friction.record, transmission.record)
         if self._lost:
             spent[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
-        free = learn and self._started and use.adaptive and not transmission.contact
-        friction.learn((motor[1], spent, rigid.torque, transmission.fused), sample.temperature, free)
+        borne, touched, chosen = rigid.torque, transmission.contact, self._by_deflection
+        if chosen is not None:
+            spent, borne = np.where(chosen, self._own["rubbing"], spent), np.where(chosen, self._own["bending"], borne)
+            touched = touched and not chosen.all()  # the deflection bears what touches the arm, too
+        free = learn and self._started and use.adaptive and not touched
+        friction.learn((motor[1], spent, borne, transmission.fused), sample.temperature, free)
         ways[DEFLECTION] = self._deflection
         moving = sides(self._record, rigid.torque, friction.record, transmission.record)
         transmission.update((friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)

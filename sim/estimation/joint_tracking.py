@@ -55,16 +55,23 @@ def joint_record(n: int) -> Record:
         tau_m=(n,),
         deflection=(n,),  # torque that the deflection bears
         surplus=(n,),
+        bending=(n,),  # torque that the deflection bears, with what was learned of the spring
+        rubbing=(n,),  # friction of both sides as the deflection leaves it
         stiction=(n,),
     )
 
 
 @kernel
-def surplus(joints, tau_dyn) -> None:
-    """What the motor spends beyond the rotor's inertia and the rigid model."""
-    own = joints[0]
+def surplus(joints, tau_dyn, friction, transmission) -> None:
+    """What the motor spends beyond the rotor's inertia and the rigid model; and, the other way, what friction takes of it by the
+    deflection: the gear bends under all that is behind it, whatever touches the arm, so the rest rubs on the input side (AF-2).
+    """
+    own, rubs, springs = joints[0], friction[0], transmission[0]
     for i in range(own.surplus.size):
-        own.surplus[i] = own.tau_m[i] - own.rotor[i] * own.theta[2, i] - tau_dyn[i]
+        driving = own.tau_m[i] - own.rotor[i] * own.theta[2, i]
+        own.surplus[i] = driving - tau_dyn[i]
+        own.bending[i] = own.deflection[i] * (1.0 + springs.stiffer[i]) + springs.offset[i]
+        own.rubbing[i] = (driving - own.bending[i]) / (1.0 - rubs.output_share)
 
 
 @kernel

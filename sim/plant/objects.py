@@ -17,7 +17,6 @@ RUB = 500.0
 """Friction of a plate of two frictions per speed of sliding, up to Coulomb's [N·s/m]: from some cm/s on the whole of it is there.
 Without this it is the normal damping, 4 N·s/m on a soft plate, as it is on the other objects."""
 SNAP_SLIP = 5e-5  # travel at which a snap-fit has let go [m]
-SNAP_REST = 0.2  # share of its force that a snap-fit still resists with while it gives way
 SNAP_MASS = 0.2  # of the part that gives way [kg]
 SKIN = 1e5  # stiffness of the arm's housings, where the tool touches them [N/m]
 SKIN_FRICTION = 0.3

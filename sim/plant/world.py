@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.arm.scenario import AnyObject, Moving, SnapFit, TwoFrictions
-from sim.plant.objects import SNAP_REST, SNAP_SLIP
+from sim.plant.objects import SNAP_SLIP
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class World:
                 data.qvel[dofs] = amplitude * rate * math.cos(rate * middle)
             elif isinstance(item, SnapFit):
                 given = data.qpos[model.jnt_qposadr[model.body_jntadr[body]]] > SNAP_SLIP
-                model.dof_frictionloss[int(model.body_dofadr[body])] = item.force * (SNAP_REST if given else 1.0)
+                model.dof_frictionloss[int(model.body_dofadr[body])] = item.force * (item.rest if given else 1.0)
             elif isinstance(item, TwoFrictions):
                 R = data.xmat[body].reshape(3, 3)
                 tip = data.geom_xpos[self._tip] - data.xpos[body]

@@ -267,6 +267,7 @@ TERMS = {
 }
 EXPECTED |= {f"joint_control.{name}": (on, None, None, "", ident, True) for name, (ident, on) in TERMS.items()}
 EXPECTED["joint_control.fed_back"] = ("deflection", None, None, "", "AF-5", True)
+EXPECTED["joint_control.friction_from"] = ("dynamics", None, None, "", "AF-2", True)
 EXPECTED["limits.activation.load_share"] = (0.25, 0.0, 1.0, "", "FD-9", True)
 
 CONTACT_SWITCHES = {

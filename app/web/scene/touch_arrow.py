@@ -16,8 +16,8 @@ SHORTEST = 0.06
 LONGEST = 0.4
 """Length of the arrow of a force [m]."""
 
-SMALLEST, LARGEST = 0.04, 0.12
-"""Radius of the arrow of a torque [m]."""
+SMALLEST, LARGEST = 0.09, 0.14
+"""Radius of the arrow of a torque [m]: it goes round the link that is turned."""
 
 TURN = 1.5 * math.pi
 PIECES = 24
@@ -80,6 +80,7 @@ def arc(point: Array, torque: Array) -> Array:
     across = np.cross(axis, np.eye(3)[int(np.argmin(np.abs(axis)))])
     across = across / np.linalg.norm(across)
     radius = min(max(size * METRES_PER_NEWTON_METRE, SMALLEST), LARGEST)
-    angles = np.linspace(0.0, TURN, PIECES + 1)[:, None]
-    points = point + radius * (np.cos(angles) * across + np.sin(angles) * np.cross(axis, across))
+    angles = np.arange(PIECES + 1, dtype=np.float64)[:, None] * (TURN / PIECES)
+    round_it = np.cos(angles) * across + np.sin(angles) * np.cross(axis, across)
+    points = np.asarray(point + radius * round_it, dtype=np.float64)
     return np.stack([points[:-1], points[1:]], axis=1)

@@ -32,7 +32,7 @@ SHAPES: dict[str, AnyShape] = {
 """What can be made, as it is at first: an arm can be guided for 100 or 200 mm until it is stopped."""
 
 SIDES = {"Stay inside": False, "Keep out": True}
-REACTIONS = {"Stop there": Reaction.STAY, "End free-drive": Reaction.LEAVE, "Protective stop": Reaction.STOP}
+REACTIONS = {"End free-drive": Reaction.LEAVE, "Stop there": Reaction.STAY, "Protective stop": Reaction.STOP}
 PARTS = {"Tool": "tcp", "Flange": "flange", "Elbow": "elbow"}
 
 SIZES: dict[type[AnyShape], tuple[str, ...]] = {

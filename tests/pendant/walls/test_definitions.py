@@ -35,7 +35,7 @@ def test_the_defaults() -> None:
         "force": 150.0,
         "push": 0.0,
         "push_back": 8.0,
-        "reaction": "stay",
+        "reaction": "leave",
         "on": True,
         "offset": (0.0, 0.0, 0.0),
         "policy": "stepwise",
@@ -51,7 +51,7 @@ def test_the_defaults() -> None:
     }
     area = read(kind="area")
     assert isinstance(area, Area)
-    assert (area.position, area.keep_out, area.reaction) == ((0.0, 0.0, 0.0), False, Reaction.STAY)
+    assert (area.position, area.keep_out, area.reaction) == ((0.0, 0.0, 0.0), False, Reaction.LEAVE)
 
 
 RANGES = [

@@ -185,7 +185,7 @@ def test_leaving_when_exceeded(reaction: Reaction, expected: Consequence) -> Non
 
 
 def test_a_caught_part_stays_until_pushed_back_and_again_when_let_go() -> None:
-    barrier = Barrier(Wall(name="a", shape=BALL), Stage.OPERATION)
+    barrier = Barrier(Wall(name="a", shape=BALL, reaction=Reaction.STAY), Stage.OPERATION)
     out = (0.11, 0.0, 0.0)
     barrier.step(around())
     forces = [0.0, 30.0, -7.9, -8.0, -5.0, -4.1, -4.0, -3.9, -7.9, -8.1]
@@ -312,7 +312,7 @@ def nobody(_tick: int, _z: float) -> float:
 
 
 def tether(policy: Policy, **values: object) -> Wall:
-    return Wall(name="tether", shape=BALL, policy=policy, **values)  # type: ignore[arg-type]
+    return Wall(name="tether", shape=BALL, policy=policy, reaction=Reaction.STAY, **values)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("policy", Policy)
@@ -364,7 +364,8 @@ class Stepper:
 
 @pytest.mark.parametrize("payload", [0.0, -20.0])
 def test_a_user_walks_the_tool_down_in_steps(payload: float) -> None:
-    floor = Wall(name="tether", shape=HalfSpace(normal=(0.0, 0.0, -1.0), distance=0.1), policy=Policy.USER)
+    shape = HalfSpace(normal=(0.0, 0.0, -1.0), distance=0.1)
+    floor = Wall(name="tether", shape=shape, policy=Policy.USER, reaction=Reaction.STAY)
     stepper = Stepper(-20.0, 35.0, 0.03)
     drop = Drop(floor, payload, lambda tick, z: stepper(tick, z) if tick < 6000 else 0.0, 9000)
     assert drop.anchorings >= 4
@@ -380,7 +381,8 @@ def test_a_user_walks_the_tool_down_in_steps(payload: float) -> None:
 
 
 def test_without_lifting_it_goes_no_lower_than_the_wall() -> None:
-    floor = Wall(name="tether", shape=HalfSpace(normal=(0.0, 0.0, -1.0), distance=0.1), policy=Policy.USER)
+    shape = HalfSpace(normal=(0.0, 0.0, -1.0), distance=0.1)
+    floor = Wall(name="tether", shape=shape, policy=Policy.USER, reaction=Reaction.STAY)
     drop = Drop(floor, 0.0, lambda tick, z: -20.0, 4000)
     assert drop.anchorings == 0
     assert -0.105 < min(drop.heights) < -0.09

@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 
-from pendant.all_settings import Settings
+from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, Program
 from sim.arm.scenario import Scenario
 from sim.estimation.adaptive_friction import AdaptiveFriction, Turning
+from sim.estimation.joint_tracking import joint_record, surplus
+from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
+from sim.plant.changes import SensorFault
 from sim.plant.touch import Push
 from sim.simulation import Simulation
 from tests.sim.arms import UR5E
@@ -86,6 +89,41 @@ def test_a_contact_is_never_learned_as_friction() -> None:
         simulation.tick(Wishes(NOTHING, (Push("wrist_1", (0.0, 0.0, 0.0), (0.0, 0.0, -50.0)),), ()))
     assert simulation.estimator.transmission.contact
     assert np.abs(friction.at(speed, load) / before - 1.0).max() < 0.05
+
+
+def test_what_the_motor_spends_beyond_what_bends_the_gear_rubs() -> None:
+    """tau_m - J theta_dd - tau_deflection is the friction of the input side (AF-2); by hand, for one joint of the six."""
+    friction, transmission = AdaptiveFriction(UR5E), TransmissionTorque(UR5E, np.ones(6))
+    joints = joint_record(6)
+    own = joints[0]
+    own["tau_m"], own["rotor"], own["deflection"] = 30.0, 2.0, 20.0
+    own["theta"][2] = 1.5
+    transmission.stiffer[0], transmission.offset[0] = 0.1, -0.5
+    surplus(joints, np.full(6, 15.0), friction.record, transmission.record)
+    assert own["surplus"][0] == pytest.approx(30.0 - 2.0 * 1.5 - 15.0)
+    assert own["bending"][0] == pytest.approx(20.0 * 1.1 - 0.5)
+    assert own["rubbing"][0] == pytest.approx((30.0 - 2.0 * 1.5 - 21.5) / (1.0 - friction.output_share))
+    assert own["rubbing"][1] == pytest.approx((30.0 - 2.0 * 1.5 - 20.0) / (1.0 - friction.output_share))
+
+
+def test_friction_by_the_deflection_is_learned_in_contact_and_by_the_model_where_an_encoder_is_lost() -> None:
+    """AF-2; with an output encoder lost nothing is made up of the angle that is."""
+    learned = []
+    for lost in (False, True):
+        simulation = running(1.0, mismatch="off")
+        simulation.supervisor.settings = apply(Settings(), {"joint_control.friction_from": "deflection"})
+        if lost:
+            simulation.tick(Wishes(NOTHING, (), (SensorFault(sensor="output_encoder", outage=True),)))
+        push = Wishes(NOTHING, (Push("wrist_1", (0.0, 0.0, 0.0), (0.0, 0.0, -60.0)),), ())
+        for _ in range(200):
+            simulation.tick(push)
+        before = simulation.estimator.friction.terms.copy()
+        for _ in range(50):
+            simulation.tick(push)
+        assert simulation.estimator.transmission.contact
+        assert np.isfinite(simulation.estimator.friction.total).all()
+        learned.append(not np.array_equal(before, simulation.estimator.friction.terms))
+    assert learned == [True, False]
 
 
 def test_nothing_is_learned_at_rest_and_friction_never_drives() -> None:

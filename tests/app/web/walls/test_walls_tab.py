@@ -68,7 +68,7 @@ CHANGES: list[tuple[str, Any, AnyBorder]] = [
     ("on", False, replace(BALL, on=False)),
     ("side", "Keep out", replace(BALL, keep_out=True)),
     ("part", "Elbow", replace(BALL, part="elbow")),
-    ("reaction", list(REACTIONS)[1], replace(BALL, reaction=Reaction.LEAVE)),
+    ("reaction", list(REACTIONS)[1], replace(BALL, reaction=Reaction.STAY)),
     ("size", 150.0, replace(BALL, shape=Sphere(radius=0.15))),
     ("spot", -250.0, replace(BALL, position=(-0.25, 0.0, 0.3))),
 ]
