@@ -67,7 +67,7 @@ def test_whoever_comes_back_knows_the_page() -> None:
     assert client.things[first_use.FLANGE]["drag"]
     assert mode == first_use.READY
     assert said.startswith("TEACH Ready")
-    assert "Drag the arm" in said
+    assert "The arm can be guided by hand" in said
     assert "Hold-to-run free-drive" in named
     assert "Hold-to-run free-drive" not in kept, "a control that is taken from the page is not used any more"
     ends = [render(Event(kind, 1, {"limit": 3.0}))[0] for kind in (Kind.LEFT_PERIOD, Kind.LEFT_RESTART)]

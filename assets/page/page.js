@@ -15,15 +15,22 @@
   const named = (name) => { const sheet = at(`style[data-pd-${name}]`); return sheet && document.getElementById(sheet.getAttribute(`data-pd-${name}`)); };
   const freeDrive = () => named("free-drive"), stop = () => named("stop");
 
-  // A press of the free-drive button ends with a click, wherever the pointer is lifted: the server counts a hold that fell silent as
-  // ended until it has heard of the click.
+  // A press of a button that is held ends with a click, wherever the pointer is lifted, also when the press became a scroll: the
+  // server counts a hold that fell silent as ended until it has heard of the click.
+  const STILL = 150;
   let pressed = null;
-  const lift = () => { const button = pressed; pressed = null; if (!button) return;
+  const held = (button) => button === freeDrive() || at(`style[data-pd-held~="${button.id}"]`);
+  const lift = (event) => { if (!pressed || event.pointerId !== pressed.pointer) return;
+    const { button } = pressed; pressed = null;
     let clicked = false; const heard = () => { clicked = true; };
     button.addEventListener("click", heard, { once: true });
     setTimeout(() => { button.removeEventListener("click", heard); if (!clicked) button.click(); }, 80); };
-  addEventListener("pointerdown", (event) => { const button = freeDrive(); if (button && event.button === 0 && button.contains(event.target)) pressed = button; }, true);
+  addEventListener("pointerdown", (event) => { const button = event.target.closest && event.target.closest("button[id]");
+    if (button && event.button === 0 && (!pressed || event.isPrimary) && held(button)) pressed = { button, pointer: event.pointerId, since: performance.now() }; }, true);
   for (const name of ["pointerup", "pointercancel"]) addEventListener(name, lift, true);
+  // A finger that has been still on such a button holds it, and scrolls no more.
+  addEventListener("touchmove", (event) => { if (pressed && event.cancelable && performance.now() - pressed.since > STILL) event.preventDefault(); },
+    { capture: true, passive: false });
   // A finger that holds a button asks for no menu.
   addEventListener("contextmenu", (event) => { if (event.target.closest && event.target.closest("button,canvas")) event.preventDefault(); });
 
@@ -39,14 +46,22 @@
   addEventListener("blur", release); document.addEventListener("visibilitychange", release); addEventListener("focusout", release);
 
   // The connection: the server's beat changes again and again while it is there.
-  let beat = "", heard = performance.now();
+  let beat = "", heard = performance.now(), presses = 0, back = 0;
+  const SAID = 10000;
+  addEventListener("pointerdown", (event) => { if (document.documentElement.classList.contains("pd-cut") && event.target.closest && event.target.closest("button,input,[role=radio],[role=slider]")) presses += 1; }, true);
   const listen = () => { const now = at("[data-pd-beat]"), value = now ? now.getAttribute("data-pd-beat") : "";
     if (value && value !== beat) { beat = value; heard = performance.now(); }
     const lost = at("#pd-lost"), silent = performance.now() - heard;
     if (lost && document.visibilityState === "visible") {
       const told = beat && silent > STALE ? `No answer from the simulation for ${Math.floor(silent / 1000)} s. What you see is old; nothing that you press arrives.` : "";
-      if (Boolean(told) !== lost.classList.contains("pd-on")) { lost.classList.toggle("pd-on", Boolean(told)); if (told) release(); }
-      if (told) lost.textContent = told; }
+      const root = document.documentElement, picture = at(".pd-picture");
+      if (Boolean(told) !== root.classList.contains("pd-cut")) { root.classList.toggle("pd-cut", Boolean(told));
+        if (told) { presses = back = 0; release(); } else if (presses) back = performance.now(); }
+      const again = back && performance.now() - back < SAID;
+      if (told || again) { const box = (picture || document.body).getBoundingClientRect();
+        Object.assign(lost.style, { left: `${box.left}px`, width: `${box.width}px`, top: `${Math.max(box.top, 0)}px` });
+        lost.textContent = told || `The simulation answers again. What you pressed meanwhile (${presses}) may not have arrived: look, and press again.`; }
+      lost.classList.toggle("pd-on", Boolean(told || again)); lost.classList.toggle("pd-back", !told && Boolean(again)); }
     if (beat && at(".pd-picture") && at("#pd-opening") || performance.now() - began > OPENING) open(); };
   const open = () => { const shown = at("#pd-opening"); if (!shown) return; shown.classList.add("pd-gone"); setTimeout(() => shown.remove(), 300); restore();
     const place = at(".pd-picture"); if (place && !at("#pd-tour")) { const card = made("section", "pd-tour", "region"); card.setAttribute("aria-label", "Tour"); place.append(card); tour(); } };
@@ -60,6 +75,10 @@
     for (const list of strips()) for (const tab of all("[role=tab]", list))
       if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
     if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
+  // A tab opens at its top.
+  addEventListener("click", (event) => { const tab = event.target.closest && event.target.closest("[role=tab]"); if (!tab) return;
+    let box = tab.closest("[role=tablist]").parentElement; while (box && !at("button,input", box)) box = box.parentElement;
+    setTimeout(() => { for (const inside of box ? all("*", box) : []) if (inside.scrollTop) inside.scrollTop = 0; }, 0); }, true);
   const press = (tab) => { for (const type of ["pointerdown", "mousedown", "pointerup", "mouseup", "click"])
     tab.dispatchEvent(type.startsWith("pointer") ? pointer(type) : new MouseEvent(type, { bubbles: true, button: 0 })); };
   const edge = () => at('[data-dock-region-resize="left"]');
@@ -87,9 +106,12 @@
     for (const input of all("input:not([type=hidden])")) if (!input.labels || !input.labels.length) set(input, "aria-label", input.placeholder || labelled(input));
     for (const group of all(".mantine-Button-root[data-size=compact-xs]")) { const text = group.textContent.trim();
       if (text.length < 2) set(group, "aria-label", `${labelled(group)}: ${{ "↑": "up", "↓": "down", "✕": "delete" }[text] || text}`); }
+    for (const one of all(".mantine-Button-root[data-size=compact-xs]")) if (/^(TEACH|NORMAL)$/.test(one.textContent.trim()))
+      set(one, "aria-pressed", String(one.textContent.trim() === mode()));
     // viser greets each file before anybody has looked into it: what became of it stands beside the button.
     for (const note of all(".mantine-Notification-description")) { const text = note.firstChild;
       if (text && text.nodeValue === "File uploaded successfully.") text.nodeValue = "The file has arrived. What became of it stands beside the button."; }
+    for (const fold of all('[aria-label="Collapse panel area"]')) set(fold, "title", "Fold this side away");
     for (const close of all(".mantine-Notification-closeButton")) set(close, "aria-label", "Close this message");
     all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Connection and view" : "Command palette"));
     for (const head of all('[style*="cursor: pointer"]')) { const next = head.nextElementSibling; if (head.tagName !== "DIV" || !next || !at("svg", head) || head.querySelector("input,button") || !/^(button)?$/.test(head.getAttribute("role") || "") || head.closest("[role=tablist]")) continue;
@@ -122,13 +144,15 @@
     { title: "Guide it", text: "Drag the arm again: it follows. Register waypoint, on the tab Teach, keeps a posture." },
     { title: "Let it be", text: "Wait, or press Leave free-drive. The ring at the button shows what is left.", aim: freeDrive, over: () => mode() === "TEACH" },
     { title: "Stop it", text: "Press EMERGENCY STOP or the key X. The panel says why it stands; then press Reset.", aim: stop, over: () => mode() === "STOP" } ];
-  let step = -1;
+  let step = -1, acted = false;
+  addEventListener("pointerdown", (event) => { const button = event.target.closest && event.target.closest("button[id]");
+    if (button && !button.disabled && (held(button) || button.textContent.trim() === "Register waypoint")) acted = true; }, true);
+  const leave = () => { step = -1; keep("toured", true); tour(); };
   const tour = () => { const card = at("#pd-tour"); if (!card) return;
     for (const aimed of all(".pd-aim")) aimed.classList.remove("pd-aim");
     if (kept.toured && step < 0) { card.remove(); return; }
     card.replaceChildren();
     const button = (text, act) => { const one = Object.assign(document.createElement("button"), { type: "button", textContent: text }); one.addEventListener("click", act); return one; };
-    const leave = () => { step = -1; keep("toured", true); tour(); };
     if (step < 0) { card.append(button("New here? Five steps", () => { step = 0; tour(); }), button("No, thanks", leave)); return; }
     const one = STEPS[step], last = step === STEPS.length - 1;
     const title = Object.assign(document.createElement("b"), { textContent: `${step + 1} of ${STEPS.length}: ${one.title}` });
@@ -137,7 +161,9 @@
     if (!last) card.append(button("Leave the tour", leave));
     const aim = one.aim && one.aim(); if (aim) aim.classList.add("pd-aim"); };
   let was = false;
-  const advance = () => { const one = STEPS[step]; if (!one || !one.over) { was = false; return; }
+  const advance = () => {
+    if (step < 0 && at("#pd-tour") && (acted || mode() === "FREE-DRIVE" || mode() === "RUN")) { leave(); return; } // who acts needs no offer
+    const one = STEPS[step]; if (!one || !one.over) { was = false; return; }
     const over = one.over(); if (over && was === false && step < STEPS.length - 1) { step += 1; tour(); was = Boolean(STEPS[step].over && STEPS[step].over()); } };
 
   addEventListener("DOMContentLoaded", () => {

@@ -1,9 +1,10 @@
 """Jogging: a motion of one joint, or of the tool along or about one axis, for as long as a button is held."""
 
 import math
-from typing import Literal
+from typing import Literal, NamedTuple, Self
 
 from pendant.program.steps import Move
+from pendant.tick.estimate import Estimate
 
 LONGEST = 1.0
 """Of a single step [m or rad]."""
@@ -27,6 +28,33 @@ class JogMove(Move, tag="jog", frozen=True, forbid_unknown_fields=True, kw_only=
         if self.frame == "joint":
             return f"joint {self.axis + 1} {sign}"
         return f"{self.frame} {('x', 'y', 'z', 'rx', 'ry', 'rz')[self.axis]} {sign}"
+
+    def moved(self, start: "JogPlace", now: "JogPlace") -> str:
+        """How far it has gone from `start` to `now`, and of how much, in words: of the joint, or of the tool centre point."""
+        if self.frame == "joint":
+            gone = abs(now.q[self.axis] - start.q[self.axis])
+        elif self.axis < TURNS:
+            return _of(1000.0 * math.dist(now.p, start.p), 1000.0 * self.length, " mm")
+        else:  # the trace of the matrix of a turn by an angle is 1 + 2 cos(angle)
+            gone = math.acos(max(-1.0, min(1.0, (sum(a * b for a, b in zip(start.R, now.R, strict=True)) - 1.0) / 2.0)))
+        return _of(math.degrees(gone), math.degrees(self.length), "°")
+
+
+class JogPlace(NamedTuple):
+    """Where the arm is, for how far it is jogged."""
+
+    q: tuple[float, ...]  # output angles [rad]
+    p: tuple[float, ...]  # tool centre point in B [m]
+    R: tuple[float, ...]  # R_BF, row by row
+
+    @classmethod
+    def of(cls, seen: Estimate) -> Self:
+        """That of an estimate."""
+        return cls(tuple(seen.q.tolist()), tuple(seen.tcp[:3].tolist()), tuple(seen.R_BF.ravel().tolist()))
+
+
+def _of(gone: float, whole: float, unit: str) -> str:
+    return f"{gone:.0f} of {whole:.0f}{unit}" if whole else f"{gone:.0f}{unit}"
 
 
 def unfit(move: JogMove, n_joints: int) -> str | None:

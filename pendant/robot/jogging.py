@@ -3,10 +3,10 @@
 from msgspec.structs import replace
 
 from pendant.all_settings import Settings
-from pendant.events.event import Event, Kind
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Inputs
 from pendant.limits.validity import JOINTS_SENSED, motion_ok
-from pendant.program.jog_move import JogMove, unfit
+from pendant.program.jog_move import JogMove, JogPlace, unfit
 from pendant.robot.robot_mode import Robot
 from pendant.settings.schema import ticks
 from pendant.signals.keep_alive import KeepAlive
@@ -19,13 +19,14 @@ JOGGED_IN = frozenset({Mode.NORMAL, Mode.TEACH})
 class Jogging:
     """One press of a jog button at a time: what ends it needs a new press."""
 
-    __slots__ = ("_asked", "_held", "_n", "_robot", "_spent")
+    __slots__ = ("_asked", "_held", "_n", "_robot", "_spent", "_start")
 
     def __init__(self, robot: Robot, n_joints: int) -> None:
         self._robot, self._n = robot, n_joints
         self._held = KeepAlive()
         self._asked: JogMove | None = None  # of the press that lasts
         self._spent = False  # this press has ended, and has to be let go first
+        self._start: JogPlace | None = None  # where the arm began to be jogged
 
     def step(self, estimate: Estimate, inputs: Inputs, settings: Settings, events: list[Event], *, changing: bool) -> None:
         """One tick.
@@ -44,12 +45,12 @@ class Jogging:
         silence = ticks(settings.hold.silence)
         silent = held.step(wish is not None, inputs.jog_released, silence)
         if not held.held:
-            self._end("no word from the button" if silent else "let go", estimate.tick, events)
+            self._end("no word from the button" if silent else "let go", estimate, events)
             self._asked, self._spent = None, False
             return
         if wish is not None and wish != self._asked:
             if not pressed:
-                self._end("another button", estimate.tick, events)
+                self._end("another button", estimate, events)
             self._asked, self._spent = wish, False
         if self._spent:
             return
@@ -58,26 +59,28 @@ class Jogging:
             done = estimate.move_done == self._robot.jog.id
             reason = "done" if done else estimate.move_refused or against
             if reason:
-                self._end(reason, estimate.tick, events)
+                self._end(reason, estimate, events)
                 self._spent = True
         elif against:
             assert self._asked is not None
             self._spent = True
             events.append(Event(Kind.JOG_REFUSED, estimate.tick, {"what": self._asked.what, "reason": against}))
         elif self._robot.static:  # else it still comes to rest from what was before
-            self._begin(estimate.tick, events)
+            self._begin(estimate, events)
 
-    def _begin(self, tick: int, events: list[Event]) -> None:
+    def _begin(self, estimate: Estimate, events: list[Event]) -> None:
         assert self._asked is not None
-        self._robot.jog = replace(self._asked, id=self._robot.number())
-        events.append(Event(Kind.JOG_STARTED, tick, {"what": self._asked.what}))
+        self._robot.jog, self._start = replace(self._asked, id=self._robot.number()), JogPlace.of(estimate)
+        events.append(Event(Kind.JOG_STARTED, estimate.tick, {"what": self._asked.what}))
 
-    def _end(self, reason: str, tick: int, events: list[Event]) -> None:
+    def _end(self, reason: str, estimate: Estimate, events: list[Event]) -> None:
         """The arm comes to rest, if it was jogged."""
-        move, self._robot.jog = self._robot.jog, None
-        if move is not None:
+        move, start = self._robot.jog, self._start
+        self._robot.jog = self._start = None
+        if move is not None and start is not None:
             self._robot.braking = True
-            events.append(Event(Kind.JOG_ENDED, tick, {"what": move.what, "reason": reason}))
+            values: Values = {"what": move.what, "moved": move.moved(start, JogPlace.of(estimate)), "reason": reason}
+            events.append(Event(Kind.JOG_ENDED, estimate.tick, values))
 
     def _against(self, estimate: Estimate, changing: bool) -> str:
         """Why the arm must not be jogged now, or ""."""

@@ -45,7 +45,7 @@ class FirstUse:
 
     def open(self) -> None:
         """The page says what to do."""
-        self.page.get_by_text("Drag the arm").wait_for()
+        self.page.get_by_text("The arm can be guided by hand").wait_for()
         self.see("open")
 
     def push_it_held(self) -> None:

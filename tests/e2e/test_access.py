@@ -155,5 +155,10 @@ def test_a_reload_comes_back_as_it_was(visit: Visit) -> None:
 def test_a_page_without_an_answer_says_so(visit: Visit, cell: Cell) -> None:
     page = ready(visit())
     expect(page.locator("#pd-lost")).not_to_be_visible()
-    cell.served.stop_drawing()
+    cell.served._still_page = True
     expect(page.locator("#pd-lost")).to_contain_text("No answer from the simulation", timeout=20_000)
+    expect(page.locator("html.pd-cut")).to_have_count(1)
+    page.get_by_role("button", name="Register waypoint").click()
+    cell.served._still_page = False
+    expect(page.locator("#pd-lost")).to_contain_text("What you pressed meanwhile (1) may not have arrived", timeout=20_000)
+    expect(page.locator("html.pd-cut")).to_have_count(0)

@@ -29,7 +29,7 @@ def test_measure_the_payload(visit: Callable[..., Page], cell: Cell, width: int,
     page.get_by_text("The arm measures its payload").first.wait_for()
     cell.wait(lambda: cell.happened(Kind.WIZARD_FINISHED), "measured", 90.0)
     page.get_by_text("2.0", exact=False).first.wait_for()
-    click(page, "Take")
+    click(page, "Use this payload")
     cell.wait(lambda: cell.happened(Kind.PAYLOAD_CHANGED), "taken")
     fitting = cell.loop.latest().decision.fitting
     assert fitting is not None

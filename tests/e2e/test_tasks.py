@@ -66,7 +66,7 @@ def teach_three(page: Page, cell: Cell) -> None:
         if number < 3:
             tap(page.get_by_role("tab", name="Jog"))
             if jog.steps.value != "10 mm, 10°":
-                choose(page, "One press", "10 mm, 10°")
+                choose(page, "Stops after", "10 mm, 10°")
                 cell.wait(lambda: jog.steps.value == "10 mm, 10°", "the step is chosen")
             hold_jog(page, cell, "Wrist 3 +")
 
@@ -91,7 +91,7 @@ def test_teach_three_waypoints_and_loop_them(visit: Visit, cell: Cell, width: in
     page = visit(width, height)
     teach = cell.served.docks.teach
     teach_three(page, cell)
-    fill(page, "Times (0: loop)", "0")
+    tap(page.get_by_label("Loop", exact=True))
     cell.wait(lambda: teach.lesson.repeat == 0, "it loops")
     click(page, "Run")
     seen: list[int] = []
@@ -161,7 +161,7 @@ def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: i
     tap(page.get_by_role("tab", name="Jog"))
     choose(page, "Move by", "Axes of the tool")
     cell.wait(lambda: tab.chosen == "tool", "the frame is chosen")
-    choose(page, "One press", "50 mm, 50°")
+    choose(page, "Stops after", "50 mm, 50°")
     cell.wait(lambda: tab.steps.value == "50 mm, 50°", "the step is chosen")
     cell.pass_time(0.5)
     button = page.get_by_role("button", name="Z −", exact=True)
@@ -179,3 +179,20 @@ def test_jog_fifty_millimetres_along_the_tool(visit: Visit, cell: Cell, width: i
             return
         assert endings(cell)[-1] == "no word from the button"
     pytest.fail(f"held in vain: {cell.told()}")
+
+
+def test_a_finger_that_scrolls_from_a_jog_button_moves_nothing_and_the_next_press_counts(visit: Visit, cell: Cell) -> None:
+    page = visit(820, 1180)
+    tap(page.get_by_role("tab", name="Jog"))
+    button = page.get_by_role("button", name="Shoulder −", exact=True)
+    at, hand = middle(button), pointer(page)
+    hand.down(at)
+    hand.move((at[0], at[1] - 60.0))
+    hand.move((at[0], at[1] - 120.0))
+    hand.up()
+    page.wait_for_function("[...document.querySelectorAll('*')].some(one => one.scrollTop > 40)")
+    cell.pass_time(0.6)
+    assert not cell.happened(Kind.JOG_STARTED)
+    choose(page, "Stops after", "10 mm, 10°")
+    cell.wait(lambda: cell.served.docks.jog.steps.value == "10 mm, 10°", "the step is chosen")
+    hold_jog(page, cell, "Wrist 3 +")

@@ -136,7 +136,7 @@ def test_a_wall_through_three_points_gets_a_name(visit: Visit, cell: Cell, width
     open_tab(page, "Jog")
     choose(page, "Move by", "Axes of the base")
     cell.wait(lambda: cell.served.docks.jog.chosen == "base", "the frame is chosen")
-    choose(page, "One press", "50 mm, 50°")
+    choose(page, "Stops after", "50 mm, 50°")
     cell.wait(lambda: cell.served.docks.jog.steps.value == "50 mm, 50°", "the step is chosen")
     cell.pass_time(0.5)
     open_tab(page, "Walls")

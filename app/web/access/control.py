@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import viser
 
 from app.web.access.guard import Guard
+from app.web.access.operator import SILENCE
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
@@ -34,6 +35,7 @@ class Control:
         self._let_go = let_go
         self._strips: dict[int, Strip] = {}
         self._had: int | None = None  # who had control when it was last shown
+        self._closed = False  # control is free because the connection of who had it closed
         self._robbed: set[int] = set()  # those from whom the holder has taken it
 
     def welcome(self, client: viser.ClientHandle) -> None:
@@ -63,7 +65,7 @@ class Control:
         """A connection closed: what it held is released at once, and control is free."""
         self._strips.pop(client, None)
         self._let_go(client)
-        self._guard.operator.leave(client)
+        self._closed = self._guard.operator.leave(client) or self._closed
         self.show()
 
     def close(self) -> None:
@@ -73,6 +75,7 @@ class Control:
     def show(self) -> None:
         """Bring every strip up to date."""
         holder, left = self._guard.operator.holder, self._guard.operator.free_in(self._guard.now())
+        self._closed = self._closed and holder is None
         if holder != self._had:
             self._robbed = set() if holder is None or self._had is None else {*self._robbed, self._had} - {holder}
             self._had = holder
@@ -93,9 +96,11 @@ class Control:
     def _words(self, number: int, holder: int | None, left: float | None) -> tuple[str, str, Colour]:
         """What a client is told, a second line, and the colour."""
         if holder == number:
-            return "You have control", "", Colour.GREEN
+            lapsed = f"Free for others: nothing done for {SILENCE:.0f} s." if left == 0.0 else ""
+            return "You have control", lapsed, Colour.GREEN
         if holder is None:
-            return "Nobody has control", "Any press takes it.", Colour.GREY
+            why = "The connection closed. " if self._closed else ""
+            return "Nobody has control", f"{why}Any press takes it.", Colour.GREY
         name = f"Client {holder + 1}"
         text = f"You lost control: {name} has control" if number in self._robbed else f"Watching: {name} has control"
         if left is None:

@@ -37,7 +37,11 @@ class LogRow:
 
 
 EQUIPMENT = ("setting_", "tool", "payload_", "posture_", "sensor_", "wizard_")
+GUIDING = frozenset({Kind.MANIPULATION, Kind.RESTARTED, Kind.PERIOD_ANEW})
+"""Told again and again while a hand guides the arm; the ring at the button shows the same."""
+
 FILTERS: dict[str, Callable[[Event], bool]] = {
+    "What matters": lambda event: event.kind not in GUIDING,
     "Everything": lambda event: True,
     "Stops and refusals": lambda event: (
         TABLE[event.kind].severity >= Severity.WARNING or TABLE[event.kind].effect in (Effect.NO_ENTRY, Effect.LEAVE)
@@ -75,6 +79,16 @@ class Journal:
         for event in told:
             self._add(event)
         return self._draw() if told else False
+
+    def forget(self, event: Event) -> bool:
+        """Take an event off the log; True if it was there."""
+        row = next((row for row in self._rows if row.event == event), None)
+        if row is None:
+            return False
+        row.count -= 1
+        if not row.count:
+            self._rows.remove(row)
+        return self._draw()
 
     def _add(self, event: Event) -> None:
         if event.tick < self._tick:

@@ -36,6 +36,9 @@ HOLD_RATE = 30.0
 ABOUT_TO_END = 1.0
 """A free-drive or restart period with less than this left is shown in amber [s]."""
 
+LEAST_SPEED = 0.002
+"""A speed below this is not told by its figure [m/s]."""
+
 BARS = 5
 """Monitored values shown at once: those nearest to their limits."""
 
@@ -47,6 +50,7 @@ class Panel:
         self._loop = loop
         self.holds = ButtonHolds(loop)
         self._remembered = Remembered()
+        self.excused: Event | None = None  # a silence of the button that was a plain release after all
         self._settings: Settings | None = None
         self._digest = ""
         gui = server.gui
@@ -83,10 +87,13 @@ class Panel:
             self._remembered.take(event)
             if event.kind is Kind.HOLD_SILENT:
                 self.holds.silence()
+        self.excused = self.holds.excused(fresh, snapshot.tick)
+        if self.excused is not None:
+            self._remembered.forget(self.excused)
         self._remembered.see(decision, snapshot.tick)
         if self._loop.failure:
             return self._fail(self._loop.failure)
-        self.said = said(self._remembered, decision, paused=self._loop.paused)
+        self.said = said(self._remembered, decision, self._loop.settings, paused=self._loop.paused)
         word, colour = ("Clock paused", Colour.AMBER) if self._loop.paused else _state(decision)
         bars = decision.monitored
         changed = [
@@ -146,8 +153,8 @@ class Panel:
             if self.speed.value != percent:
                 self.speed.value = percent
         return [
-            ("Speed of the tool", f"{1000 * seen.v_tcp:.0f} mm/s"),
-            ("Speed of the elbow", f"{1000 * seen.v_elbow:.0f} mm/s"),
+            ("Speed of the tool", _speed(seen.v_tcp)),
+            ("Speed of the elbow", _speed(seen.v_elbow)),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),
@@ -192,6 +199,11 @@ def _state(decision: Decision) -> tuple[str, Colour]:
     if decision.mode is Mode.RUN and decision.program is ProgramState.PAUSED:
         return "Program paused", Colour.AMBER
     return ASKED.get(decision.phase, WORDS[decision.mode])
+
+
+def _speed(v: float) -> str:
+    """A speed [m/s]; less than what noise alone makes at rest has no figure, which would flicker."""
+    return f"{1000 * v:.0f} mm/s" if v >= LEAST_SPEED else f"under {1000 * LEAST_SPEED:.0f} mm/s"
 
 
 def _wall(decision: Decision) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from app.web.panel.state_words import ASKED, SEVERITY_COLOURS
 from app.web.widgets.svg import Colour
+from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
@@ -44,7 +45,7 @@ class PanelText(NamedTuple):
 
 
 HINTS = {
-    Mode.TEACH: PanelText("Drag the arm", "It holds its place. Hold the button for free-drive, then drag it again.", Colour.GREY),
+    Mode.TEACH: PanelText("The arm can be guided by hand", "Hold the button, let go, then drag the arm.", Colour.GREY),
     Mode.NORMAL: PanelText("The arm holds its place", "Choose TEACH to guide it by hand or to teach it.", Colour.GREY),
     Mode.REMOTE: PanelText("A remote controller has the arm", "Choose TEACH to take it back to this pendant.", Colour.GREY),
     Mode.RUN: PanelText("The program runs", "Keep out of its way. Pause and Stop are on the tab Teach.", Colour.GREEN),
@@ -92,6 +93,11 @@ class Remembered:
         if worth and row.effect is not Effect.TRY:
             self.note = event
 
+    def forget(self, event: Event) -> None:
+        """It needs no telling any more."""
+        if self.note == event:
+            self.note = None
+
     def see(self, decision: Decision, tick: int) -> None:
         """Forget what has no cause any more. A tick before the last one is another beginning.
 
@@ -118,7 +124,17 @@ class Remembered:
         return decision.mode is Mode.FREE_DRIVE and row.effect is not Effect.ENTER
 
 
-def said(remembered: Remembered, decision: Decision, *, paused: bool = False) -> PanelText:
+def how_to_guide(settings: Settings) -> str:
+    """What to do to guide the arm, in words."""
+    hold = f"Hold the button for {settings.activation.period:g} s"
+    return (
+        f"{hold}, and keep it held while you drag the arm."
+        if settings.button.hold_to_run
+        else f"{hold}, let go, then drag the arm."
+    )
+
+
+def said(remembered: Remembered, decision: Decision, settings: Settings, *, paused: bool = False) -> PanelText:
     """What the panel says in a state; `paused` is that of the simulation's clock."""
     if decision.mode is Mode.STOP:
         return HINTS[Mode.STOP] if remembered.stop is None else _told(remembered.stop)
@@ -133,9 +149,10 @@ def said(remembered: Remembered, decision: Decision, *, paused: bool = False) ->
         return _told(remembered.note, remembered.prevented if no_entry else ())
     if decision.program is ProgramState.PAUSED:
         return PROGRAM_PAUSED
-    if decision.safety is Safety.REDUCED and decision.mode is Mode.TEACH:
-        return HINTS[Mode.TEACH]._replace(text="Reduced mode: the arm is held to lower speeds. Hold the button for free-drive.")
-    return HINTS[decision.mode]
+    if decision.mode is not Mode.TEACH:
+        return HINTS[decision.mode]
+    reduced = "Reduced mode: lower speeds. " if decision.safety is Safety.REDUCED else ""
+    return HINTS[Mode.TEACH]._replace(text=reduced + how_to_guide(settings))
 
 
 def _told(event: Event, prevented: list[Event] | tuple[()] = ()) -> PanelText:

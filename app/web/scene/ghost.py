@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import trimesh
 import viser
+from numpy.typing import NDArray
 
 from sim.arm.arm_file import Arm
 from sim.arm.frames import joint_frames, matrix_from_quaternion
@@ -32,11 +33,16 @@ class Ghost:
 
     @property
     def text(self) -> str:
-        """What is written at its elbow, out of the way of what is told at the tool."""
+        """What is written at its tool centre point."""
         return self._label.text if self._label.visible else ""
 
+    @property
+    def place(self) -> NDArray[np.float64]:
+        """Where that is written, (3,) in W [m]."""
+        return self._label.position
+
     def show(self, q: Sequence[float] | None, snapshot: Snapshot, text: str = "") -> bool:
-        """Show the arm in posture `q` [rad] with a text at its elbow, or nothing; True if anything changed."""
+        """Show the arm in posture `q` [rad] with a text at its tool centre point, or nothing; True if anything changed."""
         wanted = None if q is None else tuple(q)
         if wanted is not None and text != self._label.text:
             self._label.text = text
@@ -51,8 +57,9 @@ class Ghost:
             shape = limbs(self._arm, wanted)
             base = snapshot.truth_links[0]
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
-            elbow = joint_frames(self._arm, np.array(wanted))[2][:3, 3]
-            self._label.position = matrix_from_quaternion(base[3:]) @ elbow + base[:3]
+            flange, fitting = joint_frames(self._arm, np.array(wanted))[-1], snapshot.decision.fitting
+            tip = np.zeros(3) if fitting is None else np.array(fitting.tool.tcp)
+            self._label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ tip + flange[:3, 3]) + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
                 self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False

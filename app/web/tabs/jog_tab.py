@@ -9,6 +9,8 @@ import viser
 from app.web.running import Running
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
+from pendant.event_table import render
+from pendant.events.event import Event, Kind
 from pendant.program.jog_move import TURNS, JogMove
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 from sim.arm.arm_file import Arm
@@ -24,16 +26,30 @@ FRAMES: dict[str, Literal["joint", "base", "tool"]] = {
 }
 AXES = ("X", "Y", "Z", "Turn about X", "Turn about Y", "Turn about Z")
 
-STEPS = {"While held": 0.0, "1 mm, 1°": 1.0, "10 mm, 10°": 10.0, "50 mm, 50°": 50.0}
-"""How far one press goes [mm or degrees]; 0: as long as it is held."""
+LET_GO = "Letting go"
+STEPS = {LET_GO: 0.0, "1 mm, 1°": 1.0, "10 mm, 10°": 10.0, "50 mm, 50°": 50.0}
+"""How far one press goes at most [mm or degrees]; 0: as long as it is held."""
+
+STILL = 0.15
+"""A button is held for so long before the arm moves: a finger that scrolls the page may begin on it [s]."""
+
+HOLD_ON = "Nothing moved: let go too early. The arm moves while a button is held."
+LIFT_FIRST = "Not moved: the end of the press before did not arrive. Let go, then press again."
+NOT_NOW = "Jogging is possible in TEACH and NORMAL, while free-drive is off."
 
 
 class JogPress(NamedTuple):
-    """A button that is held: by whom, which, and when it last said so."""
+    """A button that is held: by whom, which, since when, and when it last said so."""
 
     client: int
     button: tuple[int, int]
+    since: int
     tick: int
+
+    @property
+    def still(self) -> bool:
+        """It has been held for long enough to be meant."""
+        return self.tick - self.since >= STILL * TICK_RATE
 
 
 class JogTab:
@@ -45,7 +61,9 @@ class JogTab:
         self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
         self.frame = gui.add_dropdown("Move by", tuple(FRAMES), initial_value="Joints")
         self.chosen: Literal["joint", "base", "tool"] = "joint"
-        self.steps = gui.add_dropdown("One press", tuple(STEPS), initial_value="While held")
+        self.steps = gui.add_dropdown("Stops after", tuple(STEPS), initial_value=LET_GO, hint="Or when the button is let go")
+        self._told = ""  # of the last press
+        self.said = Html(gui)
         self.buttons: dict[tuple[int, int], viser.GuiButtonHandle] = {}
         for axis in range(max(len(self._names), 2 * TURNS)):
             for sign in (-1, 1):
@@ -57,20 +75,29 @@ class JogTab:
         Html(gui, style.pairs(ids))
         self.pose = Html(gui)
 
+        @self.steps.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._told = ""
+
         @self.frame.on_update
         async def _(_: viser.GuiEvent) -> None:
             self._stop()
+            self._told = ""
             self.chosen = FRAMES[self.frame.value]
             for (axis, sign), button in self.buttons.items():
                 button.label = self._label(axis, sign)
 
-    def show(self, snapshot: Snapshot) -> bool:
-        """Show where the arm is; True if anything changed."""
+    def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
+        """Show where the arm is, and what became of the last press; True if anything changed."""
         decision = snapshot.decision
+        for event in fresh:
+            if event.kind in (Kind.JOG_ENDED, Kind.JOG_REFUSED):
+                self._told = ". ".join(render(event))
         may = decision.mode in (Mode.TEACH, Mode.NORMAL) and decision.phase is Phase.OFF
         count = len(self._names) if self.chosen == "joint" else 2 * TURNS
         changed = [enable(button, may and axis < count) for (axis, _), button in self.buttons.items()]
-        return any([*changed, self.pose.show(svg.facts(self._facts(snapshot)))])
+        said = self.said.show(svg.two_lines((self._told or self._hint()) if may else NOT_NOW))
+        return any([*changed, said, self.pose.show(svg.facts(self._facts(snapshot)))])
 
     def let_go(self, client: int) -> None:
         """Whatever `client` holds is released: it stalled, left, or gave control back. Its press is over."""
@@ -87,6 +114,11 @@ class JogTab:
         names = self._names if self.chosen == "joint" else AXES
         return f"{names[axis] if axis < len(names) else ''} {'−' if sign < 0 else '+'}"
 
+    def _hint(self) -> str:
+        if self.steps.value == LET_GO:
+            return "Hold a button: the arm moves until you let go."
+        return f"Hold a button: the arm stops after {self.steps.value.replace(',', ' or')}. Let go to stop it earlier."
+
     def _facts(self, snapshot: Snapshot) -> list[tuple[str, str]]:
         seen = snapshot.estimate
         if self.chosen == "joint":
@@ -97,14 +129,20 @@ class JogTab:
     def _held(self, which: tuple[int, int]) -> Callable[[viser.GuiEvent], Coroutine[Any, Any, None]]:
         async def held(event: viser.GuiEvent) -> None:
             client = event.client_id
-            if client is None or client in self._over:
+            if client is None:
+                return
+            if client in self._over:
+                self._told = LIFT_FIRST
                 return
             tick, before = self._loop.latest().tick, self._press
             if before is not None and tick - before.tick > self._loop.settings.hold.silence * TICK_RATE:
                 self.let_go(before.client)  # a press that fell silent needs a real pointer-up first
                 if before.client == client:
                     return
-            self._press = JogPress(client, which, tick)
+            goes_on = before is not None and before[:2] == (client, which)
+            self._press = press = JogPress(client, which, before.since if before is not None and goes_on else tick, tick)
+            if not press.still:
+                return
             axis, sign = which
             length = STEPS[self.steps.value]
             turns = self.chosen == "joint" or axis >= TURNS
@@ -118,6 +156,8 @@ class JogTab:
             return
         self._over.discard(event.client_id)
         if self._press is not None and self._press.client == event.client_id:
+            if not self._press.still:
+                self._told = HOLD_ON
             self._stop()
 
     def _stop(self) -> None:

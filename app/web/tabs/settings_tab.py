@@ -257,7 +257,7 @@ class SettingsTab:
                 control.label = text
             self._texts[row.name].show(svg.fine_print(about(row, value)))
         state = "Locked while the arm is free or runs" if self._locked else "Taken at once"
-        self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Now", state)]))
+        self._line.show(svg.facts([("Limits checksum", limits_checksum(settings)), ("Changed", f"{count}"), ("Status", state)]))
         self.listed.show(self._changes(settings) if self._chosen == VIEWS[1] else "")
 
     def _changes(self, settings: Settings) -> str:

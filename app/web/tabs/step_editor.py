@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from app.files.taught_program import LONGEST, MOST, MOVES, OTHERS, Do, Lesson, TaughtStep, axis, level
 from app.web.widgets import svg
-from app.web.widgets.html import Html
+from app.web.widgets.html import Html, enable
 from pendant.program.steps import LINES, MOST_RUNS, InputLevel
 
 NO_STEP, NO_WAYPOINT = "no step yet", "none"
@@ -79,10 +79,9 @@ class StepEditor:
 
     def __init__(self, gui: viser.GuiApi, edits: Edits, edited: Callable[[str | None], None]) -> None:
         self._edits, self._edited = edits, edited
+        self.loop = gui.add_checkbox("Loop", False, hint="The program runs again and again, until Stop")
         self.list = Html(gui)
-        self.repeat = gui.add_number(
-            "Times (0: loop)", 1, min=0, max=MOST_RUNS, step=1, hint="That the program runs; 0: until it is stopped"
-        )
+        self.repeat = gui.add_number("Times", 1, min=1, max=MOST_RUNS, step=1, hint="That the program runs")
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen step", names_of(edits.now))
         self.order = gui.add_button_group("Chosen", ("↑", "↓", "✕"))
         self.history = gui.add_button_group("Edits", ("Undo", "Redo", "Clear"))
@@ -132,7 +131,11 @@ class StepEditor:
             kept = self.fields["to"].value
             self.fields["to"].options = places
             self.fields["to"].value = kept if kept in places else places[-1]
-        if self.repeat.value != lesson.repeat:
+        loops = lesson.repeat == 0
+        if self.loop.value != loops:
+            self.loop.value = loops
+        enable(self.repeat, not loops)
+        if not loops and self.repeat.value != lesson.repeat:
             self.repeat.value = lesson.repeat
 
     def entered(self) -> TaughtStep | None:
@@ -242,10 +245,13 @@ class StepEditor:
                 if event.client_id is not None:
                     act()
 
-        @self.repeat.on_update
-        async def _(event: viser.GuiEvent) -> None:
-            if event.client_id is not None:
-                self._edits.to(replace(self._edits.now, repeat=int(self.repeat.value)))
+        for control in (self.repeat, self.loop):
+
+            @control.on_update
+            async def _(event: viser.GuiEvent) -> None:
+                if event.client_id is not None:
+                    self._edits.to(replace(self._edits.now, repeat=0 if self.loop.value else int(self.repeat.value)))
+                    self.refresh()
 
 
 def names_of(lesson: Lesson) -> tuple[str, ...]:

@@ -45,7 +45,9 @@ class ToolsTab:
             )
             self.stop = gui.add_button("Stop measuring", color="red", visible=False)
             self.progress = Html(gui)
-            self.apply = gui.add_button("Take", color="gray", disabled=True, hint="Configure the payload that was found")
+            self.apply = gui.add_button(
+                "Use this payload", color="gray", disabled=True, hint="Configure the payload that was found"
+            )
             with gui.add_folder("Turn the wrist by hand", expand_by_default=False):
                 self.measure = gui.add_button("Measure this posture", color="gray")
                 self.clear = gui.add_button("Begin again", color="gray", disabled=True)
@@ -163,7 +165,7 @@ def _facts(fitting: Fitting | None, locked: bool) -> list[tuple[str, str]]:
         ("Tool centre point", _point(fitting.tool.tcp)),
         ("Payload", f"{fitting.mass:.2f} kg"),
         ("With the tool", f"{total:.2f} kg"),
-        ("Now", state),
+        ("Status", state),
     ]
 
 
@@ -183,7 +185,7 @@ def _told(wizard: Progress, measuring: bool) -> str:
             f"Sensor offset {', '.join(f'{value:.1f}' for value in found.force_offset)} N",
         ]
         headline = f"{found.mass:.2f} ± {found.mass_deviation:.2f} kg"
-        return svg.note(headline, "Take it, or measure again.", Colour.GREEN, lines)
+        return svg.note(headline, "Use it, or measure again.", Colour.GREEN, lines)
     if wizard.reason:
         return svg.note("Not found yet", f"{wizard.reason}.", Colour.AMBER)
     if not wizard.postures:
@@ -193,12 +195,12 @@ def _told(wizard: Progress, measuring: bool) -> str:
 
 
 def _subtracted(decision: Decision) -> str:
-    """What is subtracted from the force sensor, and whether zeroing is due, in a line."""
+    """What is subtracted from the force sensor, and whether to zero it, in a line."""
     force, torque = math.hypot(*decision.zero[:3]), math.hypot(*decision.zero[3:])
     now = f"{force:.1f} N and {torque:.2f} N·m are subtracted."
     if decision.zero_due:
-        return svg.note("Zeroing is due", f"{now} Nothing may touch the arm.", Colour.AMBER)
-    return svg.fine_print(f"{now} Zeroing is not due.")
+        return svg.note("Zero the force sensor now", f"{now} Nothing may touch the arm.", Colour.AMBER)
+    return svg.fine_print(f"{now} No need to zero now.")
 
 
 def _point(point: Sequence[float]) -> str:

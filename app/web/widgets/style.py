@@ -22,7 +22,7 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str], *, large: Iterable[s
 [style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 [id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
-{plain}{{{QUIET};height:34px!important;border-radius:8px}} {plain.replace("]", "]:disabled")}{{opacity:.6}}
+{plain}{{{QUIET};height:var(--pd-button)!important;border-radius:8px}} {plain.replace("]", "]:disabled")}{{opacity:.6}}
 :root:has([data-pd-watching]) :is(.mantine-Button-root,.mantine-Slider-root):not([id="{stop}"]){{opacity:.55}}
 {easy}{{height:44px!important}}
 </style>"""
@@ -43,12 +43,13 @@ def shown(button: str, visible: bool) -> str:
 
 
 def pairs(buttons: list[str]) -> str:
-    """Put every two of these buttons beside each other, for a finger."""
+    """Put every two of these buttons, which are held, beside each other, for a finger; it may begin a scroll on them."""
     left, right = (",".join(f'[id="{button}"]' for button in buttons[k::2]) for k in (0, 1))
     both = f"{left},{right}"
     return (
-        f"<style>div:has(>:is({left})){{width:calc(50% - 15px)!important;margin-right:0!important}}"
+        f'<style data-pd-held="{" ".join(buttons)}">'
+        f"div:has(>:is({left})){{width:calc(50% - 15px)!important;margin-right:0!important}}"
         f"div:has(>:is({right})){{width:calc(50% - 15px)!important;margin-left:calc(50% + 3px)!important;"
         "margin-top:-52px!important}"
-        f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:none;user-select:none;{QUIET}}}</style>"
+        f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:pan-y;user-select:none;{QUIET}}}</style>"
     )

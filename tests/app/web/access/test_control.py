@@ -101,9 +101,19 @@ def test_a_watcher_is_told_when_it_may_act_and_who_lost_control_that_it_has(serv
     assert "data-pd-watching" in strips[1].text.shown
     assert "data-pd-watching" not in strips[0].text.shown
     clock.now += SILENCE
-    until(lambda: shown(strips, "You have control", "whatever you press takes control"), "the warning")
+    until(lambda: shown(strips, "Free for others: nothing done for 10 s.", "whatever you press takes control"), "the warning")
     press(second, strips[1].take)
     until(lambda: shown(strips, "You lost control: Client 2 has control", "You have control"), "the former operator is told")
+
+
+def test_who_is_left_is_told_that_the_connection_of_who_had_control_closed(served: Served, two: Two) -> None:
+    first, second, strips = two
+    first.close()
+    until(lambda: shown(strips, "The connection closed. Any press takes it."), "free")
+    press(second, strips[1].take)
+    until(lambda: shown(strips, "You have control"), "taken")
+    press(second, strips[1].release)
+    until(lambda: "Nobody has control" in strips[1].text.shown and "closed" not in strips[1].text.shown, "given back")
 
 
 def test_whoever_acts_first_after_the_silence_takes_over_by_that(served: Served, two: Two, clock: Clock) -> None:

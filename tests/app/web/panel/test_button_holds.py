@@ -3,6 +3,7 @@
 import pytest
 
 from app.web.panel.button_holds import ButtonHolds
+from pendant.events.event import Event, Kind
 from pendant.inputs import Button
 from tests.app.web.fake_loop import FakeLoop
 
@@ -57,3 +58,44 @@ def test_who_has_let_go_by_a_stall_has_to_lift_too(loop: FakeLoop, holds: Button
     holds.forget(1)
     holds.hold(1)
     assert held(loop)
+
+
+def silent(loop: FakeLoop, holds: ButtonHolds, *besides: Kind) -> list[Event]:
+    """A hold, and the events of the tick in which it counts as released."""
+    holds.hold(1)
+    loop.advance(0.502)
+    holds.silence()
+    return [Event(Kind.HOLD_SILENT, loop.tick, {"value": 0.502, "limit": 0.5}), *(Event(kind, loop.tick) for kind in besides)]
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_pointer_up_after_the_last_word_makes_a_silence_a_release(loop: FakeLoop, holds: ButtonHolds, first: bool) -> None:
+    """Whether the pointer-up is heard of before the silence is seen on the page, or after."""
+    fresh = silent(loop, holds)
+    if not first:
+        assert holds.excused(fresh, loop.tick) is None
+        loop.advance(1.5)
+    holds.lift(1)
+    assert holds.excused(fresh if first else [], loop.tick) == fresh[0]
+    assert holds.excused([], loop.tick) is None
+
+
+@pytest.mark.parametrize("kind", [Kind.ACTIVATION_CANCELLED, Kind.LEFT_RELEASE])
+def test_a_silence_that_ends_something_stays(loop: FakeLoop, holds: ButtonHolds, kind: Kind) -> None:
+    fresh = silent(loop, holds, kind)
+    holds.lift(1)
+    assert holds.excused(fresh, loop.tick) is None
+
+
+def test_a_silence_that_lasts_stays(loop: FakeLoop, holds: ButtonHolds) -> None:
+    fresh = silent(loop, holds)
+    loop.advance(2.1)
+    assert holds.excused(fresh, loop.tick) is None
+    holds.lift(1)
+    assert holds.excused([], loop.tick) is None
+
+
+def test_a_pointer_up_of_before_excuses_nothing(loop: FakeLoop, holds: ButtonHolds) -> None:
+    holds.lift(1)
+    loop.advance(0.1)
+    assert holds.excused(silent(loop, holds), loop.tick) is None

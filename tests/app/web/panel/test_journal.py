@@ -60,7 +60,43 @@ def test_the_filter_shows_its_kind_alone(served: Served, join: Join, loop: FakeL
     until(lambda: journal.table.shown.count("<tr") == 2, "both")
     client.set(journal.filter._impl.uuid, value="Stops and refusals")
     until(lambda: journal.table.shown.count("<tr") == 1 and "free_drive" not in journal.table.shown, "the stop alone")
-    assert len(FILTERS) == 5
+    assert len(FILTERS) == 6
+
+
+def test_what_a_guiding_hand_repeats_is_shown_among_everything_alone(served: Served, join: Join, loop: FakeLoop) -> None:
+    client, journal = join(), served.docks.journal
+    loop.note(Kind.ENTERED, source="button", compensated="none")
+    loop.note(Kind.RESTARTED, period=3.0)
+    loop.note(Kind.PERIOD_ANEW, period=3.0)
+    until(lambda: journal.table.shown.count("<tr") == 1, "the entry alone")
+    client.set(journal.filter._impl.uuid, value="Everything")
+    until(lambda: journal.table.shown.count("<tr") == 3, "all of it")
+
+
+def test_a_silence_that_was_a_plain_release_is_taken_off_the_log_and_the_panel(loop: FakeLoop, still: Served) -> None:
+    still.panel.holds.hold(3)
+    loop.advance(0.6)
+    loop.note(Kind.HOLD_SILENT, value=0.502, limit=0.5)
+    assert "Button counts as released" in log(loop, still)
+    assert still.panel.said.headline == "Button counts as released"
+    loop.advance(0.2)
+    still.panel.holds.lift(3)
+    assert "Button counts as released" not in log(loop, still)
+    assert still.panel.said.headline != "Button counts as released"
+    assert not still.docks.journal.forget(loop.log[-1])
+
+
+def test_of_two_silences_one_may_have_been_a_plain_release(loop: FakeLoop, still: Served) -> None:
+    for again in (False, True):
+        still.panel.holds.hold(3)
+        loop.advance(0.6)
+        loop.note(Kind.HOLD_SILENT, value=0.502, limit=0.5)
+        log(loop, still)
+        loop.advance(0.1 if again else 3.0)
+        still.panel.holds.lift(3)
+    shown = log(loop, still)
+    assert "Button counts as released" in shown
+    assert "2 ×" not in shown
 
 
 def test_a_row_leads_to_its_moment_in_the_plots(served: Served, join: Join, loop: FakeLoop) -> None:

@@ -122,7 +122,7 @@ def test_what_is_asked_for_is_told_while_it_is_asked_for(loop: FakeLoop, still: 
     assert "push it or press the button within 3 s" in still.panel.note.shown
     loop.phase = Phase.OFF
     still.docks.show(loop.latest())
-    assert "Drag the arm" in still.panel.note.shown
+    assert "The arm can be guided by hand" in still.panel.note.shown
     loop.note(Kind.ACTIVATION_CANCELLED, value=0.4, limit=1.0)
     still.docks.show(loop.latest())
     assert "Held for 0.40 s. Hold the button for 1.00 s." in still.panel.note.shown

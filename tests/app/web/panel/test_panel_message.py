@@ -4,6 +4,7 @@ import pytest
 
 from app.web.panel.panel_message import CLOCK_PAUSED, HINTS, MEASURING, PASSING, PROGRAM_PAUSED, Remembered, said
 from app.web.server import Served
+from pendant.all_settings import Settings, apply
 from pendant.events.event import Event, Kind
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Safety
@@ -43,7 +44,7 @@ def test_a_refused_command_is_told_until_the_mode_is_another(loop: FakeLoop, sti
 
 def test_a_program_that_starts_ends_what_was_told_of_the_last_one(loop: FakeLoop, still: Served) -> None:
     loop.note(Kind.PROGRAM_FAILED, name="taught", step=2, reason="no contact within 200 mm")
-    assert headline(loop, still) == "Program taught stopped at step 2"
+    assert headline(loop, still) == 'Program "taught" stopped at step 2'
     loop.mode, loop.program = Mode.RUN, ProgramState.RUNNING
     loop.note(Kind.PROGRAM_STARTED, name="taught")
     assert headline(loop, still) == HINTS[Mode.RUN].headline
@@ -121,13 +122,23 @@ def test_a_busy_machine_hides_nothing(loop: FakeLoop, still: Served) -> None:
     assert "nobody moved" in headline(loop, still)
 
 
+def test_how_to_guide_the_arm_names_the_time_that_is_set(loop: FakeLoop, still: Served) -> None:
+    assert headline(loop, still) == HINTS[Mode.TEACH].headline
+    assert still.panel.said.text == "Hold the button for 1 s, let go, then drag the arm."
+    loop.settings = apply(Settings(), {"activation.period": 0.6, "button.hold_to_run": True})
+    loop.safety = Safety.REDUCED
+    headline(loop, still)
+    wanted = "Reduced mode: lower speeds. Hold the button for 0.6 s, and keep it held while you drag the arm."
+    assert still.panel.said.text == wanted
+
+
 def test_a_cause_is_kept_where_the_page_takes_in_the_state_before_it_first() -> None:
     remembered = Remembered()
     remembered.take(Event(Kind.STOPPED_LIMIT, 10, LIMIT))
     remembered.see(decision(Mode.TEACH), 9)
     remembered.see(decision(Mode.STOP), 10)
-    assert said(remembered, decision(Mode.STOP)).headline == "Stopped: flange acceleration"
+    assert said(remembered, decision(Mode.STOP), Settings()).headline == "Stopped: flange acceleration"
     remembered.see(decision(Mode.TEACH), 11)
-    assert said(remembered, decision(Mode.TEACH)).headline == HINTS[Mode.TEACH].headline
+    assert said(remembered, decision(Mode.TEACH), Settings()).headline == HINTS[Mode.TEACH].headline
     remembered.see(decision(Mode.STOP), 12)
-    assert said(remembered, decision(Mode.STOP)).headline == HINTS[Mode.STOP].headline
+    assert said(remembered, decision(Mode.STOP), Settings()).headline == HINTS[Mode.STOP].headline

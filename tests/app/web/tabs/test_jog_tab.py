@@ -7,10 +7,11 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.jog_tab import JogTab
+from app.web.tabs.jog_tab import HOLD_ON, LIFT_FIRST, NOT_NOW, STILL, JogTab
 from pendant.all_settings import Settings, apply
+from pendant.events.event import Kind
 from pendant.program.jog_move import JogMove
-from pendant.tick.modes import Mode
+from pendant.tick.modes import TICK_RATE, Mode
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -23,19 +24,26 @@ class Hand:
     client_id = 3
     client = None
 
-    def __init__(self, tab: JogTab) -> None:
-        self.tab = tab
+    def __init__(self, tab: JogTab, loop: FakeLoop) -> None:
+        self.tab, self.loop = tab, loop
+
+    def word(self, axis: int, sign: int) -> None:
+        """What a held button says again and again."""
+        asyncio.run(self.tab._held((axis, sign))(self))  # type: ignore[arg-type]
 
     def hold(self, axis: int, sign: int) -> None:
-        asyncio.run(self.tab._held((axis, sign))(self))  # type: ignore[arg-type]
+        """Keep still on a button until that is meant."""
+        self.word(axis, sign)
+        self.loop.tick += round(STILL * TICK_RATE)
+        self.word(axis, sign)
 
     def lift(self) -> None:
         asyncio.run(self.tab._lifted(self))  # type: ignore[arg-type]
 
 
 @pytest.fixture
-def hand(served: Served) -> Hand:
-    return Hand(served.docks.jog)
+def hand(served: Served, loop: FakeLoop) -> Hand:
+    return Hand(served.docks.jog, loop)
 
 
 def test_a_held_button_jogs_and_letting_go_stops(hand: Hand, loop: FakeLoop) -> None:
@@ -47,13 +55,35 @@ def test_a_held_button_jogs_and_letting_go_stops(hand: Hand, loop: FakeLoop) -> 
     assert inputs.jog_released
 
 
+def test_a_finger_that_only_begins_on_a_button_moves_nothing(served: Served, join: Join, hand: Hand, loop: FakeLoop) -> None:
+    join()
+    hand.word(2, -1)
+    loop.tick += round(0.9 * STILL * TICK_RATE)
+    hand.word(2, -1)
+    assert loop.desk.take().inputs.jog is None
+    hand.lift()
+    until(lambda: HOLD_ON in hand.tab.said.shown, "told")
+
+
+def test_the_tab_tells_what_became_of_the_last_press(served: Served, join: Join, hand: Hand, loop: FakeLoop) -> None:
+    client = join()
+    until(lambda: "Hold a button: the arm moves until you let go." in hand.tab.said.shown, "how")
+    loop.note(Kind.JOG_ENDED, what="tool z +", moved="12 of 50 mm", reason="let go")
+    until(lambda: "Jogging tool z + ended after 12 of 50 mm. Let go." in hand.tab.said.shown, "how it ended")
+    client.set(hand.tab.steps._impl.uuid, value="50 mm, 50°")
+    until(lambda: "the arm stops after 50 mm or 50°" in hand.tab.said.shown, "how far")
+    loop.mode = Mode.STOP
+    until(lambda: NOT_NOW in hand.tab.said.shown, "why not")
+
+
 def test_a_press_that_fell_silent_needs_the_pointer_up_first(hand: Hand, loop: FakeLoop) -> None:
     hand.hold(0, 1)
     loop.tick += 500
-    hand.hold(0, 1)
+    hand.word(0, 1)
     assert loop.desk.take().inputs.jog is None
     hand.hold(0, 1)
     assert loop.desk.take().inputs.jog is None
+    assert hand.tab._told == LIFT_FIRST
     hand.lift()
     hand.hold(0, 1)
     assert loop.desk.take().inputs.jog is not None

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any, get_args
 
 import msgspec
+import numpy as np
 import pytest
 
 from app.files.taught_program import Do, Lesson, TaughtStep
@@ -14,6 +15,7 @@ from app.web.tabs.step_editor import KINDS
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, ProgramState
 from pendant.tick.modes import Mode
+from sim.arm.frames import joint_frames
 from tests.app.web.fake_loop import ARM, HOME, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -98,6 +100,7 @@ def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loo
     until(lambda: served.docks.teach.ghost.posture is not None, "shown")
     assert served.docks.teach.ghost.posture == pytest.approx(tuple(HOME))
     assert served.docks.teach.ghost.text == "P1"
+    np.testing.assert_allclose(served.docks.teach.ghost.place, joint_frames(ARM, HOME)[-1][:3, 3], atol=1e-5)
     client.set(served.docks.teach.order._impl.uuid, value="✕")
     until(lambda: served.docks.teach.ghost.posture is None, "gone")
 
@@ -210,6 +213,17 @@ def test_steps_are_inserted_changed_moved_deleted_and_all_of_it_undone(served: S
         until(lambda count=count: len(texts(teach)) == count, f"{count} steps")
     press(client, steps.history, "Redo")
     until(lambda: len(texts(teach)) == 4, "again")
+
+
+def test_a_loop_is_switched_on_and_off_and_the_count_is_kept(served: Served, join: Join) -> None:
+    client, teach = join(), served.docks.teach
+    steps = teach.steps
+    client.set(steps.repeat._impl.uuid, value=3)
+    until(lambda: teach.lesson.repeat == 3, "three times")
+    client.set(steps.loop._impl.uuid, value=True)
+    until(lambda: teach.lesson.repeat == 0 and steps.repeat.disabled, "it loops")
+    client.set(steps.loop._impl.uuid, value=False)
+    until(lambda: teach.lesson.repeat == 3 and not steps.repeat.disabled, "three times again")
 
 
 def test_a_program_that_repeats_is_handed_over_and_one_that_takes_no_time_is_not(loop: FakeLoop, still: Served) -> None:

@@ -124,13 +124,13 @@ def test_a_change_shows_how_far_it_is(served: Served, join: Join, loop: FakeLoop
 
 def test_the_force_sensor_is_zeroed_with_a_button(served: Served, join: Join, loop: FakeLoop) -> None:
     client, tab = join(), served.docks.tools
-    until(lambda: "0.0 N and 0.00 N·m are subtracted. Zeroing is not due." in tab.zeroed.shown, "not yet")
+    until(lambda: "0.0 N and 0.00 N·m are subtracted. No need to zero now." in tab.zeroed.shown, "not yet")
     client.set(tab.zero._impl.uuid, value=True)
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.commands == (Command.ZERO_SENSOR,), "the wish")
     loop.zero = (0.0, -3.0, 4.0, 0.03, 0.0, 0.04)
-    until(lambda: "5.0 N and 0.05 N·m are subtracted. Zeroing is not due." in tab.zeroed.shown, "subtracted")
+    until(lambda: "5.0 N and 0.05 N·m are subtracted. No need to zero now." in tab.zeroed.shown, "subtracted")
     loop.zero_due = True
-    until(lambda: "Zeroing is due" in tab.zeroed.shown and "Nothing may touch the arm." in tab.zeroed.shown, "due")
+    until(lambda: "Zero the force sensor now" in tab.zeroed.shown and "Nothing may touch the arm." in tab.zeroed.shown, "due")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,34 @@
+"""How far a jogged arm has gone, in words."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pendant.program.jog_move import JogMove, JogPlace
+from tests.pendant.estimates import estimate
+
+
+def turned(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize(
+    ("frame", "axis", "length", "said"),
+    [
+        ("joint", 1, np.radians(50.0), "10 of 50°"),
+        ("joint", 1, 0.0, "10°"),
+        ("joint", 0, 0.0, "0°"),
+        ("tool", 2, 0.05, "5 of 50 mm"),
+        ("base", 0, 0.0, "5 mm"),
+        ("base", 5, np.radians(50.0), "20 of 50°"),
+        ("tool", 3, 0.0, "20°"),
+    ],
+)
+def test_the_way_is_told_in_the_unit_of_the_motion(frame: Any, axis: int, length: float, said: str) -> None:
+    start, now = estimate(), estimate().copy()
+    now.q[1] -= np.radians(10.0)
+    now.tcp[:3] += (0.003, 0.0, -0.004)
+    now.R_BF = start.R_BF @ turned(np.radians(20.0))
+    assert JogMove(frame=frame, axis=axis, sign=1, length=length).moved(JogPlace.of(start), JogPlace.of(now)) == said
