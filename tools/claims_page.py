@@ -1,6 +1,6 @@
 """Writes docs/reference/claims.md: each claim, its session, its mutants, and what was seen. Run: `python -m tools.claims_page`.
 
-What was seen is what `make claims` has written last: `python -m tools.claims_page out/claims/claims.json` takes that over.
+What was seen is what `make claims` has written last: `python -m tools.claims_page FILE`, given its claims.json, takes that over.
 """
 
 import sys
