@@ -187,10 +187,10 @@ def test_a_text_of_a_user_stays_a_text(served: Served, join: Join) -> None:
     client.set(teach.steps.insert._impl.uuid, value="After")
     until(lambda: len(teach.lesson.plan) == 2, "a step to it")
     for content in (f"{EVIL}: 1", f"waypoints: [{{name: '{EVIL}'}}]", f"waypoints: {EVIL}", f"- {EVIL}", f"'{EVIL}"):
-        before = teach.message.shown
+        before = teach.filed.shown
         upload(client, teach.load._impl.uuid, content.encode(), filename=EVIL)
-        until(lambda before=before: teach.message.shown != before, "an answer to the file")
-        assert "File refused" in teach.message.shown
+        until(lambda before=before: teach.filed.shown != before, "an answer to the file")
+        assert "File refused" in teach.filed.shown
     until(lambda: "onerror" in teach.steps.list.shown, "the step is listed")
     pieces = told(served, join())
     assert sum("onerror" in piece for piece in pieces) >= 2

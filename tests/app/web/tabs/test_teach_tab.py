@@ -100,7 +100,8 @@ def test_the_ghost_stands_at_the_chosen_waypoint(served: Served, join: Join, loo
     until(lambda: served.docks.teach.ghost.posture is not None, "shown")
     assert served.docks.teach.ghost.posture == pytest.approx(tuple(HOME))
     assert served.docks.teach.ghost.text == "P1"
-    np.testing.assert_allclose(served.docks.teach.ghost.place, joint_frames(ARM, HOME)[-1][:3, 3], atol=1e-5)
+    tool = joint_frames(ARM, HOME)[-1][:3, 3]
+    until(lambda: np.allclose(served.docks.teach.ghost.place, tool, atol=1e-5), "named at its tool")
     client.set(served.docks.teach.order._impl.uuid, value="✕")
     until(lambda: served.docks.teach.ghost.posture is None, "gone")
 
