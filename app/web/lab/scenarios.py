@@ -32,7 +32,7 @@ TOPICS = {
     "Free-drive ends": ("left-alone", "short-press", "too-fast", "sensor-fails", "way-back"),
     "Limits, walls, locked axes": (
         *("soft-limits", "dynamic-limits", "joint-limits", "vertical-speed", "wall-walked-down", "wall-made", "wall-pushes-back"),
-        *("axis-locks", "only-the-elbow"),
+        *("wall-ends-free-drive", "axis-locks", "only-the-elbow"),
     ),
     "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "zeroed", "hanging", "friction-warm-up"),
     "Programs and contact": (

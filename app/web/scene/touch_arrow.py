@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class TouchArrow:
         self.label = scene.add_label(f"/touch/{number}/label", "", visible=False, anchor="bottom-center")
         self._shown: tuple[float, ...] = ()
 
-    def show(self, touch: tuple[Array, Array, Array] | None) -> bool:
+    def show(self, touch: tuple[ArrayLike, ArrayLike, ArrayLike] | None) -> bool:
         """Show point [m], force [N] and torque [N·m] of a touch in W, or none; True if anything changed."""
         shown = () if touch is None else tuple(np.round(np.concatenate(touch), 3).tolist())
         if shown == self._shown:

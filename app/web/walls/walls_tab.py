@@ -80,7 +80,8 @@ class WallsTab:
         self.points = ThreePoints(server, self._tool, self._through)
         self.handles = WallHandles(server, guard, self._moved)
         self._refresh()  # nothing is chosen yet
-        for control in (self.on, self.side, self.part, self.reaction, *self.size, *self.spot, self.here, self.delete, self.undo):
+        own = (self.name, self.on, self.side, self.part, self.reaction, *self.size, *self.spot)
+        for control in (*own, self.here, self.delete, self.undo):
             enable(control, False)
         self._connect()
         self._connect_values()
