@@ -94,8 +94,8 @@ def test_a_network_that_cannot_be_opened_again_has_ended_and_it_is_said(
 def test_another_arm_begins_as_it_was_kept(loop: Loop, tmp_path: Path) -> None:
     keeper, settings = Keeper(tmp_path, "ur10e"), apply(Settings(), {"free_drive.period": 7.0})
     ur10e, lesson = prepare(Setup(robot="ur10e"), "test"), Lesson(steps=[TaughtStep(do="wait", seconds=2.0)])
-    keeper.see(Lesson(), ur10e.arm, ur10e.scenario, Settings(), walls=(), now=0.0)
-    keeper.see(lesson, ur10e.arm, ur10e.scenario, settings, walls=(), now=5.0)
+    keeper.see(Lesson(), ur10e.arm, ur10e.scenario, Settings(), walls=(), tools=(), now=0.0)
+    keeper.see(lesson, ur10e.arm, ur10e.scenario, settings, walls=(), tools=(), now=5.0)
     ready = ServedArms(loop, LiveRecording(loop, tmp_path), folder=tmp_path).ready("ur10e")
     assert (ready.prepared.settings, ready.lesson) == (settings, lesson)
     assert ready.keeper is not None

@@ -7,7 +7,19 @@ import pytest
 
 import pendant
 
-ALLOWED = {"collections", "copy", "dataclasses", "enum", "hashlib", "itertools", "math", "operator", "statistics", "typing"}
+ALLOWED = {
+    "collections",
+    "copy",
+    "dataclasses",
+    "enum",
+    "hashlib",
+    "itertools",
+    "math",
+    "operator",
+    "statistics",
+    "types",
+    "typing",
+}
 ALLOWED |= {"msgspec", "numpy", "pendant"}
 CALLS = {"open", "print", "input", "exec", "eval", "__import__", "breakpoint"}
 FILES = sorted(Path(pendant.__path__[0]).rglob("*.py"))

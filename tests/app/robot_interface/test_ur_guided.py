@@ -12,7 +12,14 @@ from app.testing import ServedRobot
 from tests.app.robot_interface.waiting import ASIDE, HOME, settled, until
 
 QUICK = {"activation.period": 0.3, "sequence.period": 0.5, "free_drive.period": 1.0, "walls.tether": False}
-BALL = {"kind": "wall", "name": "ball", "shape": {"kind": "sphere", "radius": 0.1}, "policy": "fixed", "band": 0.005}
+BALL = {
+    "kind": "wall",
+    "name": "ball",
+    "shape": {"kind": "sphere", "radius": 0.1},
+    "policy": "fixed",
+    "band": 0.005,
+    "reaction": "stay",
+}
 
 
 @contextmanager

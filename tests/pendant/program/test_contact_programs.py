@@ -383,7 +383,7 @@ def test_a_step_tells_the_user_once() -> None:
         {"name": "program", "text": "again", "tone": False},
     ]
     assert events[1].tick == events[0].tick + 1
-    assert render(events[0]) == ("Hello", "Program program.")
+    assert render(events[0]) == ("Hello", 'Program "program".')
     assert bench.last.signs == 1
 
 

@@ -97,7 +97,7 @@ def test_a_client_is_told_version_and_state_first(cell: Cell) -> None:
     version, state = packages(theirs)
     assert (version[0], version[9:11]) == (20, struct.pack(">bB", -2, 3))
     assert version[11:21] == b"\x09URControl"
-    assert struct.unpack_from(">BBii", version, 21) == (5, 25, 1, 130250)
+    assert struct.unpack_from(">BBii", version, 21) == (5, 26, 0, 140462)
     assert {kind: len(body) + 5 for kind, body in parts(state).items()} == SIZES
 
 

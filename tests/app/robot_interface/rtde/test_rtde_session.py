@@ -78,7 +78,7 @@ def test_the_handshake_is_that_of_the_guide(cell: Cell) -> None:
     client = cell.client()
     assert client.say("V", b"\0\2") == [("V", b"\1")]
     assert client.say("V", b"\0\3") == [("V", b"\0")]
-    assert client.say("v") == [("v", struct.pack(">4I", 5, 25, 1, 130250))]
+    assert client.say("v") == [("v", struct.pack(">4I", 5, 26, 0, 140462))]
     assert client.say("S") == [("S", b"\0")]  # without a recipe
     assert client.say("O", struct.pack(">d", 500.0) + b"timestamp,actual_q,robot_mode,") == [("O", b"\1DOUBLE,VECTOR6D,INT32")]
     assert client.say("S") == [("S", b"\1")]
