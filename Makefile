@@ -18,8 +18,7 @@ BIN := $(VENV)/bin
 # Not compiled at once: most of what is installed is never imported, and what is, is compiled then.
 INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
-# One more than cores: some tests wait for a clock or a process.
-WORKERS ?= 3
+WORKERS ?= 2
 SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 # Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.

@@ -342,7 +342,7 @@ def file_recording(cell: Cell) -> None:
     path = cell.folder / "client.csv"
     assert cell.receive.startFileRecording(str(path), ["timestamp", "actual_q", "robot_mode"])
     before = cell.receive.getTimestamp()
-    until(lambda: cell.receive.getTimestamp() > before + 0.2)
+    until(lambda: cell.receive.getTimestamp() > before + 1.0)
     assert cell.receive.stopFileRecording()
     with path.open(newline="") as file:
         lines = list(csv.DictReader(file))
