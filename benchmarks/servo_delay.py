@@ -8,6 +8,7 @@ https://github.com/UniversalRobots/Universal_Robots_Client_Library/issues/86
 """
 
 import math
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,9 +53,9 @@ end
 Array = NDArray[np.float64]
 
 
-def followed(joint: int, lookahead: float, gain: float) -> tuple[Array, Array]:
-    """Angles of a joint that the script commands, and those that are measured, tick by tick [rad]."""
-    simulation = stepped(session({"title": "servo", "robot": "ur5e", "duration": 1.0}))
+def followed(joint: int, lookahead: float, gain: float, seed: int) -> tuple[Array, Array]:
+    """Angles of a joint that the script commands, and those that are measured, tick by tick [rad]; `seed`: of the arm's noise."""
+    simulation = stepped(session({"title": "servo", "robot": "ur5e", "seed": seed, "duration": 1.0}))
     cabinet = Cabinet(lambda: simulation, simulation.arm.chain.joints, ProgramFolder())
     runner = ScriptRunner(cabinet)
     commanded: list[float] = []
@@ -90,10 +91,10 @@ def delay(commanded: Array, measured: Array) -> float:
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    full = report.options.full
+    full, seeds = report.options.full, count(report.options.seed)
     for lookahead in LOOKAHEADS:
         for gain in GAINS if full else (300.0, 1200.0):
-            delays = [delay(*followed(joint, lookahead, gain)) for joint in (JOINTS.values() if full else (0,))]
+            delays = [delay(*followed(joint, lookahead, gain, next(seeds))) for joint in (JOINTS.values() if full else (0,))]
             what = f"look-ahead {lookahead:g} s, gain {gain:g}: delay"
             report.row(what, max(delays), "ms", at_most=1000.0 * lookahead + BEYOND, n=len(delays))
 
