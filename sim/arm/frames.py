@@ -1,5 +1,7 @@
 """Frames and tensors of a Denavit-Hartenberg chain. Pure numpy; transforms are (4, 4), quaternions wxyz."""
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -22,6 +24,19 @@ def rotation_from_rpy(rpy: ArrayLike) -> Array:
     """Rotation matrix (3, 3) of roll, pitch, yaw [rad] about the fixed axes x, y, z in this order (URDF convention)."""
     roll, pitch, yaw = np.asarray(rpy, dtype=float)
     return rotation(2, yaw) @ rotation(1, pitch) @ rotation(0, roll)
+
+
+def rpy_from_matrix(matrix: ArrayLike) -> tuple[float, float, float]:
+    """Roll, pitch, yaw [rad] of a rotation matrix (3, 3), as `rotation_from_rpy` takes them.
+
+    The pitch is within a quarter turn. At its ends roll and yaw turn about the same axis, and all of that is the roll: yaw is 0.
+    """
+    r = np.asarray(matrix, dtype=float)
+    level = math.hypot(r[0, 0], r[1, 0])
+    pitch = math.atan2(-r[2, 0], level)
+    if level < 1e-9:
+        return math.atan2(-r[1, 2], r[1, 1]), pitch, 0.0
+    return math.atan2(r[2, 1], r[2, 2]), pitch, math.atan2(r[1, 0], r[0, 0])
 
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:

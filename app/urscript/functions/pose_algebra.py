@@ -3,6 +3,7 @@
 import math
 
 from app.urscript.machine.values import PoseValue
+from sim.arm.frames import matrix_from_quaternion, rpy_from_matrix
 
 Quaternion = tuple[float, float, float, float]
 Point = tuple[float, float, float]
@@ -101,7 +102,4 @@ def from_rpy(rpy: tuple[float, ...]) -> Point:
 
 def to_rpy(vector: tuple[float, ...]) -> Point:
     """Roll, pitch, yaw about fixed x, y, z of a rotation vector [rad]."""
-    w, x, y, z = quaternion(vector)
-    s = max(-1.0, min(1.0, 2.0 * (w * y - z * x)))
-    roll = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    return roll, math.asin(s), math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return rpy_from_matrix(matrix_from_quaternion(quaternion(vector)))

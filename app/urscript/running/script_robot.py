@@ -16,7 +16,7 @@ from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool, tool_problem
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.tick.modes import TICK_RATE
-from sim.arm.frames import matrix_from_quaternion
+from sim.arm.frames import matrix_from_quaternion, rpy_from_matrix
 from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
@@ -124,9 +124,7 @@ class ScriptRobot:
     def _tcp(self, pose: Any) -> None:
         """A tool like the one in use, with another tool centre point."""
         tool = self.simulation.supervisor.fitting.tool
-        R = matrix_from_quaternion(quaternion(tuple(pose[3:])))
-        pitch = math.asin(max(-1.0, min(1.0, -float(R[2, 0]))))
-        rpy = [math.atan2(float(R[2, 1]), float(R[2, 2])), pitch, math.atan2(float(R[1, 0]), float(R[0, 0]))]
+        rpy = list(rpy_from_matrix(matrix_from_quaternion(quaternion(tuple(pose[3:])))))
         made = Tool(name=TOOL_NAME, mass=tool.mass, com=tool.com, tcp=list(pose[:3]), rpy=rpy, inertia=tool.inertia)
         problem = tool_problem(made, self.simulation.arm.payload)
         if problem is not None:

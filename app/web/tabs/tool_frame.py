@@ -1,18 +1,16 @@
 """The tool frame in the picture: where the tool centre point of the chosen tool is, with handles that move and turn it."""
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 import viser
-from numpy.typing import ArrayLike
 
 from app.web.access.guard import Guard
 from app.web.scene.gizmo import Gizmo
 from pendant.equipment.tools import Tool
 from pendant.tick.pose import Quaternion, Vector
-from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix, rotation_from_rpy
+from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix, rotation_from_rpy, rpy_from_matrix
 from sim.exchange.snapshot import Snapshot
 
 FLANGE = "/tool frame"
@@ -78,15 +76,5 @@ class ToolFrame:
         return self.handles.bring(((x, y, z), (w, i, j, k))) or changed
 
     def _see(self, p: Vector, turn: Quaternion) -> None:
-        rpy = rpy_of(matrix_from_quaternion(turn))
+        rpy = rpy_from_matrix(matrix_from_quaternion(turn))
         self._moved(ToolPlace([round(way, 4) + 0.0 for way in p], [round(angle, 4) + 0.0 for angle in rpy]))  # no -0
-
-
-def rpy_of(matrix: ArrayLike) -> tuple[float, float, float]:
-    """Roll, pitch, yaw [rad] of a rotation matrix (3, 3); pitch within a quarter turn, at whose ends yaw is 0."""
-    R = np.asarray(matrix, dtype=float)
-    level = math.hypot(R[0, 0], R[1, 0])
-    pitch = math.atan2(-R[2, 0], level)
-    if level < 1e-9:
-        return math.atan2(-R[1, 2], R[1, 1]), pitch, 0.0
-    return math.atan2(R[2, 1], R[2, 2]), pitch, math.atan2(R[1, 0], R[0, 0])

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from sim.arm.frames import (
@@ -9,6 +9,7 @@ from sim.arm.frames import (
     quaternion_from_matrix,
     rotation,
     rotation_from_rpy,
+    rpy_from_matrix,
     skew,
     transform,
 )
@@ -26,6 +27,21 @@ def test_roll_pitch_yaw_turn_about_fixed_axes_in_this_order() -> None:
     np.testing.assert_allclose(rotation_from_rpy([np.pi / 2, np.pi / 2, np.pi / 2]) @ [1, 0, 0], [0, 0, -1], atol=1e-15)
     # y rolls to z, pitches to x, yaws to y.
     np.testing.assert_allclose(rotation_from_rpy([np.pi / 2, np.pi / 2, np.pi / 2]) @ [0, 1, 0], [0, 1, 0], atol=1e-15)
+
+
+@given(st.tuples(angle, angle, angle))
+@example((0.4, np.pi / 2, 0.0))
+@example((0.4, -np.pi / 2, 0.3))
+def test_roll_pitch_yaw_of_a_turn_give_the_turn_again(rpy: tuple[float, float, float]) -> None:
+    matrix = rotation_from_rpy(rpy)
+    found = rpy_from_matrix(matrix)
+    np.testing.assert_allclose(rotation_from_rpy(found), matrix, atol=1e-7)
+    assert abs(found[1]) <= np.pi / 2
+
+
+@pytest.mark.parametrize("pitch", [np.pi / 2, -np.pi / 2])
+def test_at_a_pitch_of_a_quarter_turn_there_is_no_yaw(pitch: float) -> None:
+    assert rpy_from_matrix(rotation_from_rpy((0.4, pitch, 0.0))) == pytest.approx((0.4, pitch, 0.0), abs=1e-7)
 
 
 def test_a_quaternion_has_its_scalar_first() -> None:

@@ -1,15 +1,11 @@
 """The tool frame in the picture, and what its handles do to the table."""
 
-import math
 from collections.abc import Callable
 
-import numpy as np
-import pytest
 from msgspec.structs import replace
 
 from app.files.library import load_tool
 from app.web.server import Served
-from app.web.tabs.tool_frame import rpy_of
 from pendant.tick.modes import Mode
 from pendant.tooling.tool_in_use import Fitting
 from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
@@ -20,14 +16,6 @@ from tests.app.web.tabs.test_tool_editor import wish
 
 Join = Callable[[], RawClient]
 GRIPPER = load_tool("gripper")
-
-
-@pytest.mark.parametrize(
-    "rpy", [(0.3, -0.8, 2.5), (0.0, 0.0, 0.0), (-3.0, 1.2, -0.4), (0.4, math.pi / 2, 0.0), (0.4, -math.pi / 2, 0.0)]
-)
-def test_angles_of_a_turn_give_the_turn_again(rpy: tuple[float, float, float]) -> None:
-    turn = rotation_from_rpy(rpy)
-    np.testing.assert_allclose(rotation_from_rpy(rpy_of(turn)), turn, atol=1e-7)
 
 
 def test_the_frame_is_shown_moved_and_brought_back(served: Served, loop: FakeLoop, join: Join) -> None:
