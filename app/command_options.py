@@ -40,7 +40,7 @@ Offset = Annotated[int, typer.Option("--port-offset", help="Added to all ports, 
 Programs = Annotated[
     Path | None,
     typer.Option(
-        help="Folder of programs that clients can load, besides those bundled.", file_okay=False, exists=True, show_default=False
+        help="Folder of programs that clients can load, beside those bundled.", file_okay=False, exists=True, show_default=False
     ),
 ]
 AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]

@@ -1,4 +1,4 @@
-"""Serves a robot on the network until the user stops it: what `pendant robot` does, and `pendant serve --interfaces` besides."""
+"""Serves a robot on the network until the user stops it: what `pendant robot` does, and `pendant serve --interfaces` beside the page."""
 
 import os
 import signal

@@ -39,7 +39,7 @@ class ArmSide(Protocol):
         ...
 
     def push(self, force: ForceMode | None) -> None:
-        """Push besides the motion, until the script ends or says otherwise; None: no more."""
+        """Push while the motion goes on, until the script ends or says otherwise; None: no more."""
         ...
 
     def leave(self) -> None:
@@ -91,5 +91,5 @@ class RobotSide(Protocol):
         ...
 
     def command(self, word: str, **values: Any) -> None:
-        """Something of the robot besides its motion: "payload", "tcp", "protective_stop", "gravity", "watchdog"."""
+        """Something of the robot other than its motion: "payload", "tcp", "protective_stop", "gravity", "watchdog"."""
         ...

@@ -106,7 +106,7 @@ class ScriptArm:
             self.ask(GentleStop(deceleration=OWN_STOP))
 
     def push(self, force: ForceMode | None) -> None:
-        """Push besides the motion; None: no more."""
+        """Push while the motion goes on; None: no more."""
         if force is not None:
             self._want(replace(self._wish, force=force))
         elif self._wish.force is not None:

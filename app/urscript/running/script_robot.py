@@ -77,7 +77,7 @@ class ScriptRobot:
         return bool(self._cabinet.state.popup)
 
     def command(self, word: str, **values: Any) -> None:
-        """Something of the robot besides its motion."""
+        """Something of the robot other than its motion."""
         if word == "payload":
             self._payload(**values)
         elif word == "tcp":
@@ -94,7 +94,7 @@ class ScriptRobot:
             raise Misuse("an external force sensor is not simulated; the robot's own is used")
 
     def taken(self) -> Inputs:
-        """What the script asked of the robot besides motion, for the tick that begins."""
+        """What the script asked of the robot other than motion, for the tick that begins."""
         if not self.asks and self.tool is None:
             return NOTHING
         inputs = NOTHING
