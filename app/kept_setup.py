@@ -37,7 +37,7 @@ def setup_of(arm: Arm, scenario: Scenario, settings: Settings, *, walls: tuple[A
         mounting=scenario.mounting,
         posture=scenario.posture,
         tool=_framed(scenario.tool, tools),
-        tools=_besides(scenario, tools),
+        tools=_others(scenario, tools),
         payload_true=scenario.payload_true,
         payload_configured=scenario.payload_configured,
         settings=changed,
@@ -56,7 +56,7 @@ def _framed(tool: ToolModel | None, tools: tuple[Tool, ...]) -> ToolModel | None
     return tool if tool is None or told is None else msgspec.structs.replace(tool, tcp=told.tcp, rpy=told.rpy)
 
 
-def _besides(scenario: Scenario, tools: tuple[Tool, ...]) -> list[ToolModel]:
+def _others(scenario: Scenario, tools: tuple[Tool, ...]) -> list[ToolModel]:
     """The tools to choose from: as they were, or those of an edited table beside the one at the flange."""
     if list(tools) == table(scenario):
         return scenario.tools

@@ -1,4 +1,4 @@
-"""Serves a robot on the network until the user stops it: what `pendant robot` does, and `pendant serve --interfaces` beside the page."""
+"""Serves a robot on the network until the user stops it: for `pendant robot`, and for `pendant serve --interfaces`."""
 
 import os
 import signal

@@ -25,7 +25,7 @@ STEPS = (5.0, 10.0, 20.0)  # [N]
 MOVED = 5.0  # [mm] beyond which the cause must be named
 
 NAMES = frozenset({Kind.WRENCH_LOST, Kind.WALL_REACHED, Kind.SENSOR_STEPPED, Kind.SENSOR_DRIFTED})
-"""What names a cause, besides every leaving but those by a period."""
+"""What names a cause, beside every leaving but those by a period."""
 
 SILENT = frozenset({Kind.LEFT_PERIOD, Kind.LEFT_RESTART})
 

@@ -59,7 +59,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     limits: str = ""  # checksum of all limits
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
-    force: ForceMode | None = None  # with which the arm pushes besides its motion, under Law.FOLLOW
+    force: ForceMode | None = None  # with which the arm pushes while it moves, under Law.FOLLOW
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
 

@@ -77,7 +77,7 @@ class Supervisor:
             joints: their names for texts, base to flange; None: "joint 1", "joint 2", ...
             rated: torque of each joint, of which some limits are shares [N·m]; None: 100 N·m each.
             borders: walls and areas; `pendant.walls.definitions.problem` has found nothing.
-            frames: poses X_BR of what they lie in, besides the base and the arm's own parts.
+            frames: poses X_BR of what they lie in, apart from the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
             sensor: what is known of the flange force/torque sensor; None: that of a UR5e.
@@ -132,7 +132,7 @@ class Supervisor:
 
     @property
     def state(self) -> State:
-        """All that the next decision depends on, besides its arguments and what `ContactMonitor` leaves out.
+        """All that the next decision depends on, apart from its arguments and what `ContactMonitor` leaves out.
 
         Equal states decide equally. It is as of now: later steps do not change it.
         """
@@ -234,8 +234,8 @@ class Supervisor:
         robot, calls, free, fitting = self._robot, self._calls, self._free, self._tooling.fitting
         changing = fitting.mass if self._tooling.changing else None
         felt = (calls.hand_off, calls.touched, calls.force, changing)
-        besides = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
-        around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *besides)
+        others = (self._sequencer.guiding, self._haptics.busy, fitting.load.mass, self._tare.taring)
+        around = Surroundings(estimate, robot.mode, wrench_ok, robot.still, self._mean, robot.grip, *felt, *others)
         happened = free.step(around, self.settings)
         for event in happened.events:
             robot.follow(event, events)

@@ -24,7 +24,7 @@ STANDING = (Wait, ZeroSensor)
 
 
 class ForceReaders(NamedTuple):
-    """What reads the sensor in every tick, besides the robot's own parts: a new zero is no hand and no contact to any of it."""
+    """What reads the sensor in every tick, other than the robot's parts: a new zero is no hand and no contact to any of it."""
 
     calls: Calls  # which feel the user's hand
     monitor: ContactMonitor

@@ -86,7 +86,7 @@ class ArmCamera:
 
         Args:
             snapshot: the arm, its payload and the world.
-            markers: what is shown besides; no camera would see it.
+            markers: what is shown as well; no camera would see it.
             arrows: the forces of hands are shown; no camera would see them either.
         """
         self._place(snapshot)

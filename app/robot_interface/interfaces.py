@@ -45,7 +45,7 @@ class RobotInterfaces:
         arm: in it.
         host: address to listen on.
         offset: added to all ports.
-        programs: folder of programs that clients can load, besides the bundled ones.
+        programs: folder of programs that clients can load, beside the bundled ones.
         token: of the control channel; None for a new one.
         recording: the switch of recordings; None for one of its own, into the working folder.
 

@@ -30,7 +30,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     mounting: Literal["floor", "wall", "ceiling"] | Angles = "floor"  # or roll, pitch, yaw of B in W [rad]
     posture: Posture | None = None  # joint angles at the start; None: the arm's home [rad]
     tool: ToolModel | Text | None = None  # or the name of a shipped tool, or a path
-    tools: Tools = []  # to choose from on the pendant, besides those shipped
+    tools: Tools = []  # to choose from on the pendant, beside those shipped
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     settings: dict[str, float | bool | str] = {}  # overrides, by dotted name
@@ -40,7 +40,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     world: World | Text = []  # objects, or the name of a bundled world
-    walls: Walls = []  # virtual walls and areas, besides the tether (docs/guide/walls.md)
+    walls: Walls = []  # virtual walls and areas, beside the tether (docs/guide/walls.md)
 
 
 class Session(Setup, frozen=True, kw_only=True):

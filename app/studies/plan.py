@@ -71,7 +71,7 @@ class Plan:
         return np.column_stack([factor.at(shares[:, k]) for k, factor in enumerate(factors)])
 
     def _key(self) -> str:
-        """What every row of the study depends on besides its factors and its seed."""
+        """What every row of the study depends on, apart from its factors and its seed."""
         content = [self.study.factors, self.study.measures, self.raw]
         content += [self.study.samples, self.study.sampling, self.study.seeds, source_digest()]
         return hashlib.sha256(msgspec.json.encode(content, order="sorted")).hexdigest()

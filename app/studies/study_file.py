@@ -128,7 +128,7 @@ class Study(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
 
 RESERVED = ("run", "id", "seed", "exit", "error", "commit", "digest")
-"""Columns of a row besides factors and measures."""
+"""Columns of a row that are neither factors nor measures."""
 
 
 def studies() -> list[str]:

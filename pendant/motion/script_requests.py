@@ -108,7 +108,7 @@ class SpeedTool(Move, tag="speedl", frozen=True, forbid_unknown_fields=True, kw_
 
 
 class DirectTorque(Move, tag="direct_torque", frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Joint torques for one tick, besides those against gravity; without new ones in the next tick the arm comes to rest.
+    """Joint torques for one tick, in addition to those against gravity; without new ones in the next tick the arm comes to rest.
 
     Source: URScript manual 5.25, direct_torque.
     """
@@ -184,7 +184,7 @@ class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """
 
     move: ScriptedMove | None = None  # None: none yet, the arm stands
-    force: ForceMode | None = None  # besides; None: the arm only moves
+    force: ForceMode | None = None  # while it moves; None: the arm only moves
     feeling: bool = False  # changes in contact are to be looked for
     over: bool = False  # the script has ended; the arm comes to rest
     equips: bool = False  # tool and payload in the inputs of this tick are the script's

@@ -38,7 +38,7 @@ class Scripting:
 
     @property
     def force(self) -> ForceMode | None:
-        """How the script has the arm push besides its motion."""
+        """How the script has the arm push while it moves."""
         return self._force if self._sequencer.scripted else None
 
     @property

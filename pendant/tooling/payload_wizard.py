@@ -99,7 +99,7 @@ class PayloadWizard:
         Args:
             estimate: of this tick.
             why_not: what forbids it by now, or "".
-            known: what the sensor feels besides the load that is looked for.
+            known: what the sensor feels apart from the load that is looked for.
         """
         if why_not:
             self.left = 0

@@ -63,7 +63,7 @@ class Containment:
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
         Args:
-            borders: walls and areas besides the tether; `pendant.walls.definitions.problem` has found nothing.
+            borders: walls and areas beside the tether; `pendant.walls.definitions.problem` has found nothing.
             frames: poses X_BR of the frames and objects that they can lie in and that do not move in B.
         """
         self.R_FT = UNTURNED  # orientation of the tool centre point in the flange

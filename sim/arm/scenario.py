@@ -82,16 +82,16 @@ AnyObject = BoxObject | Plane | Pad | SnapFit | TwoFrictions | Moving
 
 
 class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """All that a simulation starts from, besides the arm and the settings."""
+    """All that a simulation starts from, apart from the arm and the settings."""
 
     mounting: Angles = msgspec.field(default_factory=lambda: [0.0, 0.0, 0.0])  # roll, pitch, yaw of B in W [rad]
     posture: list[float] | None = None  # joint angles at the start; None: the arm's home [rad]
     tool: ToolModel | None = None  # mounted, and the one in use at the start
-    tools: list[ToolModel] = []  # to choose from on the pendant, besides that one
+    tools: list[ToolModel] = []  # to choose from on the pendant, beside that one
     payload_true: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     payload_configured: Load = msgspec.field(default_factory=lambda: Load(mass=0.0))
     world: list[AnyObject] = []
-    walls: list[AnyBorder] = []  # virtual walls and areas, besides the tether
+    walls: list[AnyBorder] = []  # virtual walls and areas, beside the tether
     soft_sensor: bool = False  # the flange sensor has its soft stiffness, for demonstration (CD-17)
     self_contact: bool = False  # the tool can touch the arm's own links (CD-2)
     seed: int = 0

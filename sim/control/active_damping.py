@@ -85,7 +85,7 @@ class ActiveDamping:
         Args:
             estimate: this tick's.
             damping: where it begins, and how strong it is.
-            reduced: limits that hold besides, in REDUCED.
+            reduced: limits that hold as well, in REDUCED.
             jacobian: of the flange (6, n), linear first, axes of B.
         """
         if damping is not self._asked[0] or reduced is not self._asked[1]:

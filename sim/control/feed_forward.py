@@ -91,7 +91,7 @@ class FeedForward:
             friction: its estimate; None counts none.
             motion: count inertia and speed; else gravity alone, as under PD + gravity.
             stiffer: error of the springs' believed stiffness (n,), as learned, relative to it.
-            push: with which the joints push against the outside besides (n,) [N·m].
+            push: with which the joints push against the outside as well (n,) [N·m].
             fresh: the reference started again, nothing is known of the bristles.
         """
         torque, self._commanded = np.empty_like(self._no_friction), False

@@ -34,7 +34,7 @@ class Shaker:
         self._centre = None
 
     def torque(self, shake: Shake, estimate: Estimate, breakaway: float) -> float:
-        """Torque on the last joint besides all else [N·m]; `breakaway` is its friction at rest [N·m]."""
+        """Torque on the last joint in addition to all else [N·m]; `breakaway` is its friction at rest [N·m]."""
         angle = float(estimate.theta[-1])
         centre = angle - shake.angle if self._centre is None else self._centre
         error = centre + shake.angle - angle

@@ -37,7 +37,7 @@ SINGULAR = 0.2
 
 
 class Feeling(NamedTuple):
-    """What the sources are made of in a tick, besides the rigid model's motion."""
+    """What the sources are made of in a tick, apart from the rigid model's motion."""
 
     values: Array  # all measurements (3n + 18,)
     qd: Array  # (n,) [rad/s]

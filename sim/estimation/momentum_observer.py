@@ -45,14 +45,14 @@ SURE = 3.0  # deviations of a stiffness that is learned
 
 
 class Driven(NamedTuple):
-    """What is known of a tick besides the rigid model, n joints."""
+    """What is known of a tick beyond the rigid model, n joints."""
 
     q: Array  # (n,) measured [rad]
     deflection: Array  # (n,) torque that it bears as believed [N·m]
     motor: Array  # (n,) transmission torque by the motor's current [N·m]
     friction: Array  # (n,) of both sides [N·m]
     friction_deviation: Array  # (n,) [N·m]
-    stiction: Array  # (n,) what a standing joint may hold besides [N·m]
+    stiction: Array  # (n,) what a standing joint may hold as well [N·m]
     use: NDArray[np.bool_]  # (3, n) which of `transmission_torque.WAYS` may be used
     wrench: Array  # (6,) measured at the flange, in F: what it exerts on what it carries [N, N·m]
 

@@ -39,7 +39,7 @@ class Rubbing(NamedTuple):
     """What friction leaves uncertain in a tick, and how the motors accelerate."""
 
     deviation: Array  # of the friction estimate (n,) [N·m]
-    stiction: Array  # what a standing joint may hold besides (n,) [N·m], 0 for one that moves
+    stiction: Array  # what a standing joint may hold as well (n,) [N·m], 0 for one that moves
     acceleration: Array  # of the motors (n,) [rad/s²]
 
 

@@ -55,7 +55,7 @@ class References:
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
         commanding: in this tick the joints had torques that a script commands.
-        push: torque (n,) with which the joints push against the outside besides [N·m], None for none.
+        push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
@@ -68,7 +68,7 @@ class References:
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
-        self._compliance: Compliance | None = None  # the arm pushes besides its motion
+        self._compliance: Compliance | None = None  # the arm pushes while it moves
         self._leaving = False  # the motion has come to where the next one may begin
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self._standing = np.zeros(arm.n)
@@ -172,7 +172,7 @@ class References:
     def _comply(
         self, force: ForceMode, motion: Reference, before: Reference | None, *, estimate: Estimate, decision: Decision
     ) -> Reference:
-        """The next reference of an arm that pushes besides its motion; `before`: the last one."""
+        """The next reference of an arm that pushes while it moves; `before`: the last one."""
         if self._compliance is None:
             now = before or motion
             try:

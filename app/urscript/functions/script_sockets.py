@@ -127,7 +127,7 @@ class ScriptSockets:
     """All connections of a script.
 
     Args:
-        hosts: addresses that it may connect to, besides those of this machine: whoever sent the script.
+        hosts: addresses other than this machine's that it may connect to: whoever sent the script.
     """
 
     def __init__(self, hosts: frozenset[str] = frozenset()) -> None:

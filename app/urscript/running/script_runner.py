@@ -76,7 +76,7 @@ class ScriptRunner:
 
         Args:
             text: of the script.
-            hosts: addresses that its sockets may connect to, besides this machine.
+            hosts: addresses other than this machine that its sockets may connect to.
 
         Returns:
             Its name.
