@@ -6,8 +6,8 @@ issue 86, "Reduce Delay Time of ServoJ Command"). So the arm is the look-ahead b
 look-ahead alone, 0.03 to 0.2 s. Here there is no way there and back: commands are given and angles measured on the robot.
 
 Angles that go on evenly are followed by the look-ahead T whatever the gain K is (sim/motion/streams.py). A sine of w rad/s is
-followed atan(T w / (1 - w²/K)) / w later: for the lowest gain, 100, that is a tenth more, and no manual or measurement says what a
-UR does there, so that row has no bar.
+followed atan(T w / (1 - w²/K)) / w later: for the lowest gain, 100, that is a tenth more, and no manual or measurement says
+what a UR does there, so that row has no bar.
 https://github.com/UniversalRobots/Universal_Robots_Client_Library/issues/86
 """
 
@@ -65,7 +65,7 @@ Array = NDArray[np.float64]
 
 
 def followed(joint: int, way: str, lookahead: float, gain: float, *, seed: int) -> tuple[Array, Array]:
-    """Angles of a joint that the script commands along `way`, and those that are measured, tick by tick [rad]; `seed`: of the noise."""
+    """Angles of a joint that the script commands along `way`, and those that are measured, tick by tick [rad]."""
     simulation = stepped(session({"title": "servo", "robot": "ur5e", "seed": seed, "duration": 1.0}))
     cabinet = Cabinet(lambda: simulation, simulation.arm.chain.joints, ProgramFolder())
     runner = ScriptRunner(cabinet)
