@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
-from app.urscript.functions.pose_algebra import quaternion
+from app.urscript.functions.pose_algebra import to_rpy
 from app.urscript.functions.robot_side import ArmSide
 from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.language.trouble import Misuse
@@ -16,7 +16,6 @@ from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool, tool_problem
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.tick.modes import TICK_RATE
-from sim.arm.frames import matrix_from_quaternion, rpy_from_matrix
 from sim.exchange.desk import Wishes
 from sim.simulation import Simulation
 
@@ -124,7 +123,7 @@ class ScriptRobot:
     def _tcp(self, pose: Any) -> None:
         """A tool like the one in use, with another tool centre point."""
         tool = self.simulation.supervisor.fitting.tool
-        rpy = list(rpy_from_matrix(matrix_from_quaternion(quaternion(tuple(pose[3:])))))
+        rpy = list(to_rpy(tuple(pose[3:])))
         made = Tool(name=TOOL_NAME, mass=tool.mass, com=tool.com, tcp=list(pose[:3]), rpy=rpy, inertia=tool.inertia)
         problem = tool_problem(made, self.simulation.arm.payload)
         if problem is not None:
