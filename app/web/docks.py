@@ -58,7 +58,7 @@ class Docks:
         with self._upper.add_tab("Teach"):
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Jog"):
-            self.jog = JogTab(gui, loop, arm)
+            self.jog = JogTab(server, loop, arm)
         with self._upper.add_tab("Axes"):
             self.axes = AxesTab(gui, loop, arm)
         with self._upper.add_tab("Walls"):
@@ -102,6 +102,7 @@ class Docks:
             self.settings.undo,
             self.settings.save,
             self.settings.load,
+            self.jog.here,
             self.tools.zero,
             self.tools.use,
             self.tools.enter,

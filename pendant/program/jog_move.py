@@ -1,9 +1,11 @@
-"""Jogging: a motion of one joint, or of the tool along or about one axis, for as long as a button is held."""
+"""Jogging: a motion of one joint, of the tool along or about one axis, or to a posture, for as long as a button is held."""
 
 import math
-from typing import Literal, NamedTuple, Self
+from typing import Annotated, Literal, NamedTuple, Self
 
-from pendant.program.steps import Move
+from msgspec import Meta
+
+from pendant.program.steps import JointMove, Move
 from pendant.tick.estimate import Estimate
 
 LONGEST = 1.0
@@ -40,6 +42,27 @@ class JogMove(Move, tag="jog", frozen=True, forbid_unknown_fields=True, kw_only=
         return _of(math.degrees(gone), math.degrees(self.length), "°")
 
 
+class MoveThere(JointMove, tag="there", frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """To joint angles while a button is held, all joints arriving together, at manual speed at most."""
+
+    name: Annotated[str, Meta(min_length=1, max_length=40)] = "the posture"  # where that is, in words
+
+    @property
+    def what(self) -> str:
+        """The motion in words."""
+        return f"to {self.name}"
+
+    def moved(self, start: "JogPlace", now: "JogPlace") -> str:
+        """How far it has gone from `start` to `now`, and of how much, in words: the joint with the longest way."""
+        ways = [abs(goal - began) for goal, began in zip(self.q, start.q, strict=True)]
+        joint = ways.index(max(ways))
+        return _of(math.degrees(abs(now.q[joint] - start.q[joint])), math.degrees(ways[joint]), "°")
+
+
+Jogged = JogMove | MoveThere
+"""What a held button moves."""
+
+
 class JogPlace(NamedTuple):
     """Where the arm is, for how far it is jogged."""
 
@@ -57,8 +80,10 @@ def _of(gone: float, whole: float, unit: str) -> str:
     return f"{gone:.0f} of {whole:.0f}{unit}" if whole else f"{gone:.0f}{unit}"
 
 
-def unfit(move: JogMove, n_joints: int) -> str | None:
+def unfit(move: Jogged, n_joints: int) -> str | None:
     """Why an arm of `n_joints` cannot be jogged like that, or None."""
+    if isinstance(move, MoveThere):
+        return None if len(move.q) == n_joints else f"{len(move.q)} joint angles, allowed: {n_joints}"
     count = n_joints if move.frame == "joint" else 2 * TURNS
     if not 0 <= move.axis < count:
         return f"axis {move.axis}, allowed: 0 .. {count - 1}"
