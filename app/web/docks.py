@@ -103,6 +103,7 @@ class Docks:
             self.settings.save,
             self.settings.load,
             self.jog.here,
+            self.jog.now,
             self.tools.zero,
             self.tools.use,
             self.tools.enter,

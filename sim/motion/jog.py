@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.program.jog_move import TURNS, JogMove, MoveThere
+from pendant.program.jog_move import TURNS, JogMove, MoveStraight, MoveThere
 from pendant.program.steps import Move
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
@@ -31,7 +31,7 @@ ENDED = 1e-5  # nearer than this it is there [m or rad]
 
 def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimits | None:
     """The limits for a move: a button that is held allows manual speed at most, whatever REDUCED has."""
-    if not isinstance(move, MoveThere):
+    if not isinstance(move, MoveThere | MoveStraight):
         return limits
     return (
         SpeedLimits(MANUAL, MANUAL, math.inf)

@@ -60,3 +60,11 @@ def pairs(buttons: list[str]) -> str:
         "margin-top:-52px!important}"
         f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:pan-y;user-select:none;{QUIET}}}</style>"
     )
+
+
+def held(button: str) -> str:
+    """The button with this id is held, for a finger as the pairs."""
+    return (
+        f'<style data-pd-held="{button}">[id="{button}"]{{height:44px!important;font-size:13px;touch-action:pan-y;'
+        f"user-select:none;{QUIET}}}</style>"
+    )

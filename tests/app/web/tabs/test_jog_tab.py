@@ -7,10 +7,10 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.jog_tab import HOLD_ON, HOME, LIFT_FIRST, NOT_NOW, STILL, THERE, JogTab, Which
+from app.web.tabs.jog_tab import HOLD_ON, HOME, LIFT_FIRST, NOT_NOW, STILL, STRAIGHT, THERE, JogTab, Which
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
-from pendant.program.jog_move import JogMove, MoveThere
+from pendant.program.jog_move import JogMove, MoveStraight, MoveThere
 from pendant.tick.modes import TICK_RATE, Mode
 from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
@@ -157,3 +157,21 @@ def test_nobody_slides_a_joint_beyond_its_range_by_a_message(served: Served, joi
     client.set(slider._impl.uuid, value=slider.max + 1.0)
     until(lambda: served.guard.refused["value not allowed"] == 1, "refused")
     assert slider.value == before
+
+
+def test_a_typed_pose_is_moved_to_straight_while_its_button_is_held(
+    served: Served, join: Join, hand: Hand, loop: FakeLoop
+) -> None:
+    client, tab = join(), hand.tab
+    client.set(tab.at._impl.uuid, value=(400.0, -100.0, 300.0))
+    client.set(tab.turned._impl.uuid, value=(180.0, 0.0, 0.0))
+    until(lambda: tab.at.value == (400.0, -100.0, 300.0) and tab.turned.value == (180.0, 0.0, 0.0), "typed")
+    hand.press(STRAIGHT)
+    asked = loop.desk.take().inputs.jog
+    assert isinstance(asked, MoveStraight)
+    assert asked.position == (0.4, -0.1, 0.3)
+    assert [round(abs(part), 9) for part in asked.quaternion] == [0.0, 1.0, 0.0, 0.0]
+    hand.lift()
+    assert loop.desk.take().inputs.jog_released
+    client.set(tab.now._impl.uuid, value=True)
+    until(lambda: tab.at.value == (0.0, 0.0, 0.0) and tab.turned.value == (0.0, 0.0, 0.0), "as the tool is now")
