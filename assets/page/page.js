@@ -1,7 +1,7 @@
 // What the page needs beyond viser's controls: a picture until they are there, what is told when the connection is lost, names
 // for screen readers, the keyboard, and what a reload must not forget. It sends nothing of its own: it presses viser's controls.
 (() => {
-  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 284;
+  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 284, ANSWER = 4000;
   const at = (selector, within = document) => within.querySelector(selector);
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const read = () => { try { return JSON.parse(localStorage.getItem(KEPT)) || {}; } catch { return {}; } };
@@ -68,10 +68,15 @@
 
   // What a reload keeps: dark or light, the tabs that were chosen, the width of the left side.
   const strips = () => all("[role=tablist]").filter((list) => list.getBoundingClientRect().left < innerWidth / 2);
-  let restored = false;
+  let restored = false, darkens = 0;
+  const isDark = () => document.documentElement.dataset.mantineColorScheme === "dark";
+  // The key counts only once the simulation knows this client: it is pressed again until the page was dark.
+  const darken = () => { if (isDark() || !darkens) { darkens = 0; return; }
+    darkens -= 1;
+    document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "t", code: "KeyT", bubbles: true }));
+    setTimeout(darken, ANSWER); };
   const restore = () => { if (restored) return; restored = true;
-    if (kept.dark && document.documentElement.dataset.mantineColorScheme !== "dark")
-      document.documentElement.dispatchEvent(new KeyboardEvent("keydown", { key: "t", code: "KeyT", bubbles: true }));
+    if (kept.dark) { darkens = 6; darken(); }
     for (const list of strips()) for (const tab of all("[role=tab]", list))
       if ((kept.tabs || []).includes(tab.textContent.trim()) && tab.getAttribute("aria-selected") !== "true") press(tab);
     if (innerWidth > 1000 && (kept.width || innerWidth < 1200)) resize(kept.width || NARROW); };
@@ -91,8 +96,8 @@
     const side = left(); if (side && innerWidth > 1000) { const width = Math.round(side.getBoundingClientRect().width); if (width > 60) keep("width", width); } }, 400), true);
   addEventListener("click", () => setTimeout(() => { if (restored)
     keep("tabs", strips().map((list) => (at("[role=tab][aria-selected=true]", list) || {}).textContent).filter(Boolean).map((text) => text.trim())); }, 100), true);
-  new MutationObserver(() => { if (restored) { const dark = document.documentElement.dataset.mantineColorScheme === "dark";
-    keep("dark", dark); document.documentElement.classList.toggle("pd-night", dark); } })
+  new MutationObserver(() => { if (isDark()) darkens = 0;
+    if (restored && !darkens) { keep("dark", isDark()); document.documentElement.classList.toggle("pd-night", isDark()); } })
     .observe(document.documentElement, { attributes: true, attributeFilter: ["data-mantine-color-scheme"] });
 
   // Names for what viser leaves without one.
