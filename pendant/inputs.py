@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool
 from pendant.motion.script_requests import Scripted
-from pendant.program.jog_move import JogMove
+from pendant.program.jog_move import Jogged
 from pendant.program.steps import Program
 from pendant.tick.words import Word
 from pendant.walls.definitions import AnyBorder
@@ -69,7 +69,7 @@ class Inputs:
     load: Load | None = None  # the payload to configure, beyond the tool
     tools: tuple[Tool, ...] = ()  # the table of tools from now on; empty: as it was
     remote_signal: bool = False  # the remote controller asks for free-drive; a level
-    jog: JogMove | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
+    jog: Jogged | None = None  # the motion whose button is held, refreshed in this tick (a keep-alive)
     jog_released: bool = False  # that button was let go
     script: Scripted | None = None  # what the running script wants, said in this tick (a keep-alive)
     borders: tuple[AnyBorder, ...] | None = None  # walls and areas from now on, all of them; None: as they were

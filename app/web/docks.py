@@ -58,7 +58,7 @@ class Docks:
         with self._upper.add_tab("Teach"):
             self.teach = Teach(server, loop, arm)
         with self._upper.add_tab("Jog"):
-            self.jog = JogTab(gui, loop, arm)
+            self.jog = JogTab(server, loop, arm)
         with self._upper.add_tab("Axes"):
             self.axes = AxesTab(gui, loop, arm)
         with self._upper.add_tab("Walls"):
@@ -102,12 +102,17 @@ class Docks:
             self.settings.undo,
             self.settings.save,
             self.settings.load,
+            self.jog.here,
+            self.jog.now,
             self.tools.zero,
             self.tools.use,
             self.tools.enter,
             self.tools.apply,
             self.tools.clear,
             self.tools.measure,
+            self.tools.touching.take,
+            self.tools.touching.again,
+            self.tools.touching.use,
             self.tools.editor.save,
             self.tools.editor.load,
             self.walls.here,

@@ -1,7 +1,7 @@
 // What the page needs beyond viser's controls: a picture until they are there, what is told when the connection is lost, names
 // for screen readers, the keyboard, and what a reload must not forget. It sends nothing of its own: it presses viser's controls.
 (() => {
-  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 284, ANSWER = 4000;
+  const KEPT = "pendant-page", STALE = 3000, BEAT = 500, OPENING = 20000, NARROW = 300, ANSWER = 4000;
   const at = (selector, within = document) => within.querySelector(selector);
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const read = () => { try { return JSON.parse(localStorage.getItem(KEPT)) || {}; } catch { return {}; } };

@@ -6,7 +6,7 @@ from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Inputs
 from pendant.limits.validity import JOINTS_SENSED, motion_ok
-from pendant.program.jog_move import JogMove, JogPlace, unfit
+from pendant.program.jog_move import Jogged, JogPlace, unfit
 from pendant.robot.robot_mode import Robot
 from pendant.settings.schema import ticks
 from pendant.signals.keep_alive import KeepAlive
@@ -24,7 +24,7 @@ class Jogging:
     def __init__(self, robot: Robot, n_joints: int) -> None:
         self._robot, self._n = robot, n_joints
         self._held = KeepAlive()
-        self._asked: JogMove | None = None  # of the press that lasts
+        self._asked: Jogged | None = None  # of the press that lasts
         self._spent = False  # this press has ended, and has to be let go first
         self._start: JogPlace | None = None  # where the arm began to be jogged
 

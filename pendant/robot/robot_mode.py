@@ -7,7 +7,7 @@ from pendant.events.event_row import Effect
 from pendant.freedrive.state_machine import ASKED_FOR, FreeDrive
 from pendant.inputs import Command
 from pendant.limits.validity import Stillness
-from pendant.program.jog_move import JogMove
+from pendant.program.jog_move import Jogged
 from pendant.program.sequencer import Sequencer
 from pendant.program.steps import JointMove, Move, ProgramState
 from pendant.robot.stopping import Stopping
@@ -70,7 +70,7 @@ class Robot:
         self.braking = False
         self.static = False
         self.grip: Grip | None = None
-        self.jog: JogMove | None = None
+        self.jog: Jogged | None = None
         self.turn: JointMove | None = None
         self._remembered = Mode.TEACH  # where free-drive was entered from
         self._freed = False  # the law was FREE in the last tick

@@ -7,7 +7,7 @@ import msgspec
 
 from pendant.equipment.tools import Tool
 from pendant.inputs import Button, Command, Inputs
-from pendant.program.jog_move import JogMove
+from pendant.program.jog_move import Jogged
 from pendant.program.steps import Program
 from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load
@@ -61,7 +61,7 @@ class Desk:
     _load: Load | None = None
     _tools: tuple[Tool, ...] = ()
     _borders: tuple[AnyBorder, ...] | None = None
-    _jog: JogMove | None = None
+    _jog: Jogged | None = None
     _jog_released: bool = False
 
     def hold(self, button: Button) -> None:
@@ -76,7 +76,7 @@ class Desk:
             self._held.discard(button)
             self._released.add(button)
 
-    def jog(self, move: JogMove) -> None:
+    def jog(self, move: Jogged) -> None:
         """Say that the button of this motion is held now: a keep-alive, good until the next tick."""
         with self._lock:
             self._jog, self._jog_released = move, False

@@ -5,7 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.program.jog_move import TURNS, JogMove
+from pendant.program.jog_move import TURNS, JogMove, MoveStraight, MoveThere
+from pendant.program.steps import Move
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.motion.line import Line
@@ -26,6 +27,17 @@ JOINT_SHARE = 0.25
 
 LOOK_TICKS = 5  # between looks for a singularity
 ENDED = 1e-5  # nearer than this it is there [m or rad]
+
+
+def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimits | None:
+    """The limits for a move: a button that is held allows manual speed at most, whatever REDUCED has."""
+    if not isinstance(move, MoveThere | MoveStraight):
+        return limits
+    return (
+        SpeedLimits(MANUAL, MANUAL, math.inf)
+        if limits is None
+        else SpeedLimits(min(MANUAL, limits.tcp), min(MANUAL, limits.elbow), limits.joint)
+    )
 
 
 class JogTrajectory:

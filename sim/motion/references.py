@@ -25,7 +25,7 @@ from sim.arm.arm_file import Arm
 from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
-from sim.motion.jog import JogTrajectory
+from sim.motion.jog import JogTrajectory, at_manual_speed
 from sim.motion.line import Line
 from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, shaken, stop_time
 from sim.motion.pace import Pace
@@ -148,10 +148,11 @@ class References:
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
         if isinstance(motion, Planned | Blended):
+            limits = at_manual_speed(decision.move, decision.speed_limits)
             if begins:
                 moving = isinstance(motion, Blended | ProcessTrajectory) and motion.moving
-                self._pace.begin(motion, decision.speed_limits, decision.speed, moving=moving)
-            return motion.step(self._pace.step(motion, decision.speed_limits, decision.speed))
+                self._pace.begin(motion, limits, decision.speed, moving=moving)
+            return motion.step(self._pace.step(motion, limits, decision.speed))
         if isinstance(motion, JogTrajectory | JointStream):
             reference = motion.step(decision.speed, decision.speed_limits)
             self.refusal = self.refusal or motion.problem

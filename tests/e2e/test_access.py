@@ -114,6 +114,19 @@ def test_what_stops_or_frees_the_arm_is_found_by_a_finger(visit: Visit, cell: Ce
     cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "reset")
 
 
+@pytest.mark.parametrize(("width", "height"), [(1280, 800), pytest.param(1024, 768, marks=pytest.mark.every_size)])
+def test_what_is_always_needed_is_in_sight_without_scrolling(visit: Visit, cell: Cell, width: int, height: int) -> None:
+    """Also with three steps in the program."""
+    page = ready(visit(width, height))
+    teach = cell.served.docks.teach
+    for _ in range(3):
+        teach.mark()
+    expect(page.get_by_role("radio", name="3. Move to P3")).to_have_count(1)
+    for name in ("Hold for free-drive", "Leave free-drive", "TEACH", "NORMAL", "EMERGENCY STOP", "Reset", "Run", "Stop", "After"):
+        expect(page.get_by_role("button", name=name, exact=True)).to_be_in_viewport(ratio=0.95)
+    expect(page.get_by_role("slider", name="Speed [%]")).to_be_in_viewport(ratio=0.95)
+
+
 def test_the_first_stop_of_the_keyboard_leads_to_the_stop_of_the_arm(visit: Visit, cell: Cell) -> None:
     page = ready(visit())
     skip = page.locator(".pd-skip")

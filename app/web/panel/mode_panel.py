@@ -62,11 +62,11 @@ class Panel:
         self.note = Html(gui, svg.note(*HINTS[Mode.TEACH][:3]))
         self.back = WayBack(server, arm)
         self.marks = ArmMarks(server, arm)
-        self.numbers = Html(gui)
+        self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
         self.speed = gui.add_slider(
             "Speed [%]", min=0, max=100, step=5, initial_value=100, hint="Of programs and of jogging, at once"
         )
-        self.mode = gui.add_button_group("Mode", ("TEACH", "NORMAL"))
+        self.numbers = Html(gui)  # after what is always in sight: it grows and shrinks
         self.activation = ActivationSwitches(gui, guard, loop)
         # A panel of its own: viser sends only the newest of several messages that the controls of one panel send within 50 ms,
         # so that a held button beside it could swallow the stop of a second finger.

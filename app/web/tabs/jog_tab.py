@@ -1,4 +1,4 @@
-"""The jog tab: the arm moves while a button is held, joint by joint or along and about the axes of base or tool."""
+"""The jog tab: the arm moves while a button is held: a joint, along and about the axes of base or tool, or to a posture."""
 
 import math
 from collections.abc import Callable, Coroutine
@@ -7,14 +7,18 @@ from typing import Any, Literal, NamedTuple
 import viser
 
 from app.web.running import Running
+from app.web.scene.ghost import Ghost
+from app.web.tabs.tool_frame import rpy_of
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from pendant.event_table import render
 from pendant.events.event import Event, Kind
-from pendant.program.jog_move import TURNS, JogMove
+from pendant.program.jog_move import TURNS, Jogged, JogMove, MoveStraight, MoveThere
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 from sim.arm.arm_file import Arm
+from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.exchange.snapshot import Snapshot
+from sim.motion.jog import MANUAL
 
 HOLD_RATE = 30.0
 """How often a held button is asked to say so [Hz], as the free-drive button's."""
@@ -33,6 +37,24 @@ STEPS = {LET_GO: 0.0, "1 mm, 1°": 1.0, "10 mm, 10°": 10.0, "50 mm, 50°": 50.0
 STILL = 0.15
 """A button is held for so long before the arm moves: a finger that scrolls the page may begin on it [s]."""
 
+HOME: Literal["home"] = "home"
+THERE: Literal["there"] = "there"
+STRAIGHT: Literal["straight"] = "straight"
+"""The buttons that move to a posture, the arm's own or the one that the sliders say, and straight to a pose that was typed."""
+
+FARTHEST, FULLEST = 3000.0, 360.0
+"""Of a typed pose [mm], [°]; what the arm cannot reach is refused as it begins."""
+
+SEEN = 20
+"""So long the posture of the sliders is seen after they were moved [s]."""
+
+BLUE = (25, 113, 194)
+NEAR = math.radians(0.5)
+"""The arm is there when no joint is further from the sliders [rad]."""
+
+Which = tuple[int, int] | Literal["home", "there", "straight"]
+"""A button: axis and sign, or where it moves to."""
+
 HOLD_ON = "Nothing moved: let go too early. The arm moves while a button is held."
 LIFT_FIRST = "Not moved: the end of the press before did not arrive. Let go, then press again."
 NOT_NOW = "Jogging is possible in TEACH and NORMAL, while free-drive is off."
@@ -42,7 +64,7 @@ class JogPress(NamedTuple):
     """A button that is held: by whom, which, since when, and when it last said so."""
 
     client: int
-    button: tuple[int, int]
+    button: Which
     since: int
     tick: int
 
@@ -55,7 +77,9 @@ class JogPress(NamedTuple):
 class JogTab:
     """The tab. Its controls run on viser's event loop; `show` runs in the painter."""
 
-    def __init__(self, gui: viser.GuiApi, loop: Running, arm: Arm) -> None:
+    def __init__(self, server: viser.ViserServer, loop: Running, arm: Arm) -> None:
+        gui = server.gui
+        self._home = tuple(arm.chain.home)
         self._loop, self._names = loop, [name.replace("_", " ").capitalize() for name in arm.chain.joints]
         self._press: JogPress | None = None
         self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
@@ -71,21 +95,32 @@ class JogTab:
                 self.buttons[axis, sign] = button
                 button.on_hold(callback_hz=HOLD_RATE)(self._held((axis, sign)))
                 button.on_click(self._lifted)
-        ids = [button._impl.uuid for button in self.buttons.values()]
-        Html(gui, style.pairs(ids))
+        self.home = gui.add_button("Home", color="gray", icon=viser.Icon.HOME, hint="Hold it: to the home posture")
+        self.there = gui.add_button("To the sliders", color="gray", hint="Hold it: to the angles of the sliders")
+        self.home.on_hold(callback_hz=HOLD_RATE)(self._held(HOME))
+        self.there.on_hold(callback_hz=HOLD_RATE)(self._held(THERE))
+        for button in (self.home, self.there):
+            button.on_click(self._lifted)
+        Html(gui, style.pairs([button._impl.uuid for button in (*self.buttons.values(), self.home, self.there)]))
         self.pose = Html(gui)
-
-        @self.steps.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            self._told = ""
-
-        @self.frame.on_update
-        async def _(_: viser.GuiEvent) -> None:
-            self._stop()
-            self._told = ""
-            self.chosen = FRAMES[self.frame.value]
-            for (axis, sign), button in self.buttons.items():
-                button.label = self._label(axis, sign)
+        with gui.add_folder("Joint angles to move to", expand_by_default=False):
+            self.sliders = [
+                gui.add_slider(f"{name} [°]", min=-most, max=most, step=0.1, initial_value=round(math.degrees(angle), 1))
+                for name, angle, most in zip(self._names, self._home, _farthest(arm), strict=True)
+            ]
+            self.here = gui.add_button("As the arm is now", color="gray")
+        with gui.add_folder("Pose of the tool to move to", expand_by_default=False):
+            self.at = _vector(gui, "Place [mm]", FARTHEST, 0.1, hint="x, y, z in the base")
+            self.turned = _vector(gui, "Turned [°]", FULLEST, 0.01, hint="Roll, pitch, yaw")
+            self.now = gui.add_button("As the tool is now", color="gray")
+            self.straight = gui.add_button("Straight to it", color="gray", hint="Hold it: along a straight line")
+            self.straight.on_hold(callback_hz=HOLD_RATE)(self._held(STRAIGHT))
+            self.straight.on_click(self._lifted)
+            Html(gui, style.held(self.straight._impl.uuid))
+        self._fill_pose()
+        self.ghost = Ghost(server, arm, "/ghost/posture", BLUE)
+        self._shown_until = 0  # tick until which the posture of the sliders is seen
+        self._connect()
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Show where the arm is, and what became of the last press; True if anything changed."""
@@ -96,6 +131,8 @@ class JogTab:
         may = decision.mode in (Mode.TEACH, Mode.NORMAL) and decision.phase is Phase.OFF
         count = len(self._names) if self.chosen == "joint" else 2 * TURNS
         changed = [enable(button, may and axis < count) for (axis, _), button in self.buttons.items()]
+        changed += [enable(button, may) for button in (self.home, self.there, self.straight)]
+        changed.append(self.ghost.show(self._wanted(snapshot, may), snapshot, "Sliders"))
         said = self.said.show(svg.two_lines((self._told or self._hint()) if may else NOT_NOW))
         return any([*changed, said, self.pose.show(svg.facts(self._facts(snapshot)))])
 
@@ -109,6 +146,44 @@ class JogTab:
         """`client` has gone."""
         self.let_go(client)
         self._over.discard(client)
+
+    def _wanted(self, snapshot: Snapshot, may: bool) -> tuple[float, ...] | None:
+        """The posture of the sliders [rad], as long as it is to be seen; None: the arm is there, or nobody asked."""
+        held = self._press is not None and self._press.button == THERE
+        if not may or not (held or snapshot.tick < self._shown_until):
+            return None
+        wanted = self._angles()
+        return wanted if max(abs(a - b) for a, b in zip(wanted, snapshot.estimate.q, strict=True)) > NEAR else None
+
+    def _fill_pose(self) -> None:
+        """Let the typed pose be where the tool is."""
+        snapshot = self._loop.latest()
+        seen, fitting = snapshot.estimate, snapshot.decision.fitting
+        R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
+        x, y, z = (round(1000.0 * float(value), 1) for value in seen.tcp[:3])
+        self.at.value = (x, y, z)
+        roll, pitch, yaw = (round(math.degrees(angle), 2) for angle in rpy_of(R_BT))
+        self.turned.value = (roll, pitch, yaw)
+
+    def _angles(self) -> tuple[float, ...]:
+        """What the sliders say (n,) [rad]."""
+        return tuple(math.radians(float(slider.value)) for slider in self.sliders)
+
+    def _asked(self, which: Which) -> Jogged:
+        """The motion of a button."""
+        if which == HOME:
+            return MoveThere(q=self._home, name="home")
+        if which == THERE:
+            return MoveThere(q=self._angles(), name="the sliders")
+        if which == STRAIGHT:
+            x, y, z = (value / 1000.0 for value in self.at.value)
+            w, i, j, k = quaternion_from_matrix(rotation_from_rpy([math.radians(angle) for angle in self.turned.value])).tolist()
+            return MoveStraight(position=(x, y, z), quaternion=(w, i, j, k), speed=MANUAL)
+        axis, sign = which
+        length = STEPS[self.steps.value]
+        turns = self.chosen == "joint" or axis >= TURNS
+        length = math.radians(length) if turns else length / 1000.0
+        return JogMove(frame=self.chosen, axis=axis, sign=1 if sign > 0 else -1, length=length)
 
     def _label(self, axis: int, sign: int) -> str:
         names = self._names if self.chosen == "joint" else AXES
@@ -126,7 +201,7 @@ class JogTab:
         x, y, z = (1000.0 * value for value in seen.tcp[:3])
         return [("Tool, in the base", f"{x:.1f}, {y:.1f}, {z:.1f} mm")]
 
-    def _held(self, which: tuple[int, int]) -> Callable[[viser.GuiEvent], Coroutine[Any, Any, None]]:
+    def _held(self, which: Which) -> Callable[[viser.GuiEvent], Coroutine[Any, Any, None]]:
         async def held(event: viser.GuiEvent) -> None:
             client = event.client_id
             if client is None:
@@ -143,11 +218,7 @@ class JogTab:
             self._press = press = JogPress(client, which, before.since if before is not None and goes_on else tick, tick)
             if not press.still:
                 return
-            axis, sign = which
-            length = STEPS[self.steps.value]
-            turns = self.chosen == "joint" or axis >= TURNS
-            length = math.radians(length) if turns else length / 1000.0
-            self._loop.desk.jog(JogMove(frame=self.chosen, axis=axis, sign=1 if sign > 0 else -1, length=length))
+            self._loop.desk.jog(self._asked(which))
 
         return held
 
@@ -160,6 +231,44 @@ class JogTab:
                 self._told = HOLD_ON
             self._stop()
 
+    def _connect(self) -> None:
+        @self.here.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            for slider, angle in zip(self.sliders, self._loop.latest().estimate.q, strict=True):
+                slider.value = min(max(round(math.degrees(float(angle)), 1), slider.min), slider.max)
+
+        @self.now.on_click
+        async def _(_: viser.GuiEvent) -> None:
+            self._fill_pose()
+
+        for slider in self.sliders:
+
+            @slider.on_update
+            async def _(event: viser.GuiEvent) -> None:
+                if event.client_id is not None:
+                    self._shown_until = self._loop.latest().tick + SEEN * TICK_RATE
+
+        @self.steps.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._told = ""
+
+        @self.frame.on_update
+        async def _(_: viser.GuiEvent) -> None:
+            self._stop()
+            self._told = ""
+            self.chosen = FRAMES[self.frame.value]
+            for (axis, sign), button in self.buttons.items():
+                button.label = self._label(axis, sign)
+
     def _stop(self) -> None:
         self._press = None
         self._loop.desk.stop_jogging()
+
+
+def _farthest(arm: Arm) -> list[float]:
+    """The largest angle of each joint, either way [°]; down to a tenth, which the page shows."""
+    return [math.floor(10.0 * math.degrees(most)) / 10.0 for most in arm.limits.position]
+
+
+def _vector(gui: viser.GuiApi, label: str, most: float, step: float, *, hint: str) -> viser.GuiVector3Handle:
+    return gui.add_vector3(label, (0.0, 0.0, 0.0), min=(-most, -most, -most), max=(most, most, most), step=step, hint=hint)

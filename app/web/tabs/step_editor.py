@@ -7,7 +7,7 @@ import viser
 from msgspec.structs import replace
 
 from app.files.taught_program import LONGEST, MOST, MOVES, OTHERS, Do, Lesson, TaughtStep, axis, level
-from app.web.widgets import svg
+from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from pendant.program.steps import LINES, MOST_RUNS, InputLevel
 
@@ -79,12 +79,10 @@ class StepEditor:
 
     def __init__(self, gui: viser.GuiApi, edits: Edits, edited: Callable[[str | None], None]) -> None:
         self._edits, self._edited = edits, edited
-        self.loop = gui.add_checkbox("Loop", False, hint="The program runs again and again, until Stop")
         self.list = Html(gui)
-        self.repeat = gui.add_number("Times", 1, min=1, max=MOST_RUNS, step=1, hint="That the program runs")
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Chosen step", names_of(edits.now))
+        Html(gui, style.unseen(self.choice._impl.uuid))  # the list chooses
         self.order = gui.add_button_group("Chosen", ("↑", "↓", "✕"))
-        self.history = gui.add_button_group("Edits", ("Undo", "Redo", "Clear"))
         with gui.add_folder("Step to insert"):
             self.kind = gui.add_dropdown("Step", tuple(KINDS))
             self.fields: dict[str, Any] = {
@@ -101,6 +99,9 @@ class StepEditor:
             }
             self.when = gui.add_dropdown("Only if", tuple(CONDITIONS))
             self.insert = gui.add_button_group("Insert it", ("Before", "After", "Replace"))
+        self.history = gui.add_button_group("Edits", ("Undo", "Redo", "Clear"))
+        self.loop = gui.add_checkbox("Loop", False, hint="The program runs again and again, until Stop")
+        self.repeat = gui.add_number("Times", 1, min=1, max=MOST_RUNS, step=1, hint="That the program runs")
         self._see_fields()
         self._connect()
 

@@ -8,7 +8,8 @@ import viser
 from app.web.access.guard import Guard
 from app.web.running import Running
 from app.web.tabs.tool_editor import ToolEditor
-from app.web.tabs.tool_frame import ToolFrame
+from app.web.tabs.tool_frame import ToolFrame, ToolPlace
+from app.web.tool_point.touching_poses import TouchingPoses
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable, reveal
 from app.web.widgets.svg import Colour
@@ -68,6 +69,7 @@ class ToolsTab:
                 "Show the frame", False, hint="The tool centre point in the picture, with arrows and arcs that move and turn it"
             )
             self.editor = ToolEditor(gui, loop, arm)
+            self.touching = TouchingPoses(gui, loop.latest, self._place)
         self.frame = ToolFrame(server, guard, lambda there: self.editor.place(self.tool.value, there))
         self._connect()
 
@@ -88,6 +90,7 @@ class ToolsTab:
             self.about.show(self._about()),
             self.progress.show(_told(wizard, measuring)),
             self.editor.show(self._chosen(), locked),
+            self.touching.show(locked),
             self.frame.show(self._chosen() if self.framed.value else None, snapshot, fixed=locked or turning),
             enable(self.use, not locked and not turning),
             enable(self.enter, not locked and not turning),
@@ -112,6 +115,13 @@ class ToolsTab:
 
     def _chosen(self) -> Tool | None:
         return next((tool for tool in self._loop.tools if tool.name == self.tool.value), None)
+
+    def _place(self, tcp: tuple[float, float, float]) -> None:
+        """The tool centre point of the chosen tool was found; how it is turned stays."""
+        tool = self._chosen()
+        if tool is not None:
+            x, y, z = (round(way, 4) for way in tcp)
+            self.editor.place(tool.name, ToolPlace([x, y, z], list(tool.rpy)))
 
     def _take(self, fitting: Fitting) -> None:
         """Another tool or payload: the controls say what it is."""

@@ -12,13 +12,15 @@ def sheet(stop: str, free_drive: str, quiet: Iterable[str], *, large: Iterable[s
     `quiet` are the buttons that need no eye, `large` those among them that stop or free the arm: a finger finds them.
 
     The part of the right column that has the stop but not the free-drive button gets the height it needs and keeps it (viser
-    gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight.
+    gives stacked panels equal shares), and the column cannot be folded away: the emergency stop is always in sight. Its one tab
+    has no strip, and the column no handle: the height goes to what is always needed.
     """
     main, low = f':has([id="{free_drive}"])', f':has([id="{stop}"])'
     plain = ",".join(f'[id="{button}"]' for button in quiet)
     easy = ",".join(f'[id="{button}"]' for button in large) or "[id=none]"
     return f"""<style data-pd-stop="{stop}" data-pd-free-drive="{free_drive}">
-{main}>{low}:not({main}){{flex:0 0 200px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
+{main}>{low}:not({main}){{flex:0 0 152px!important}} {low}>{main}:not({low}){{flex:1 1 0!important}}
+[data-dock-group]{low}>[role=tablist],[data-dock-region]{low}>div:first-child{{display:none!important}}
 [style*="right: 0px"]{low} [aria-label="Collapse panel area"]{{display:none!important}}
 [id="{free_drive}"]{{height:56px!important;font-size:16px;border-radius:8px;user-select:none;touch-action:none}}
 [id="{stop}"]{{height:64px!important;font-size:17px;font-weight:700;letter-spacing:.05em;border-radius:8px}}
@@ -37,6 +39,11 @@ def beside(button: str) -> str:
     )
 
 
+def unseen(control: str) -> str:
+    """Keep the list with this id from sight: rows that stand beside it choose from it, for keyboard and pointer."""
+    return f'<style>div:has(>div>div>div>div>[id="{control}"]){{display:none!important}}</style>'
+
+
 def shown(button: str, visible: bool) -> str:
     """Show the upload button with this id, or hide it: viser shows one always."""
     return "" if visible else f'<style>div:has(>[id="{button}"]){{display:none}}</style>'
@@ -52,4 +59,12 @@ def pairs(buttons: list[str]) -> str:
         f"div:has(>:is({right})){{width:calc(50% - 15px)!important;margin-left:calc(50% + 3px)!important;"
         "margin-top:-52px!important}"
         f":is({both}){{height:44px!important;font-size:13px;padding:0 4px;touch-action:pan-y;user-select:none;{QUIET}}}</style>"
+    )
+
+
+def held(button: str) -> str:
+    """The button with this id is held, for a finger as the pairs."""
+    return (
+        f'<style data-pd-held="{button}">[id="{button}"]{{height:44px!important;font-size:13px;touch-action:pan-y;'
+        f"user-select:none;{QUIET}}}</style>"
     )

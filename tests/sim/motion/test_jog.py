@@ -3,12 +3,17 @@
 import numpy as np
 import pytest
 
-from pendant.program.jog_move import JogMove
+from pendant.events.event import Event, Kind
+from pendant.inputs import Inputs
+from pendant.program.jog_move import JogMove, MoveStraight, MoveThere
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
-from sim.motion.jog import JOINT_SHARE, MANUAL, JogTrajectory
+from sim.arm.frames import quaternion_from_matrix
+from sim.exchange.desk import Wishes
+from sim.motion.jog import JOINT_SHARE, MANUAL, JogTrajectory, at_manual_speed
 from sim.motion.moves import MoveRefused
 from tests.sim.arms import UR5E
+from tests.sim.bench import Bench
 from tests.sim.laws import dynamics
 
 HOME = np.array(UR5E.chain.home)
@@ -100,3 +105,68 @@ def test_where_the_tool_cannot_go_everywhere_only_joints_are_jogged() -> None:
     with pytest.raises(MoveRefused, match="singular here"):
         jog("base", 0, 1, q=stretched)
     assert not jog("joint", 2, 1, q=stretched).problem
+
+
+def there(posture: np.ndarray) -> MoveThere:
+    return MoveThere(q=tuple(posture.tolist()))
+
+
+def held(move: MoveThere | MoveStraight, ticks: int) -> tuple[Bench, list[Event], float]:
+    """An arm at its home, on which somebody holds the button of a move for so long: what happened, its fastest [m/s]."""
+    bench = Bench()
+    bench.run(0.1)
+    asked = Wishes(Inputs(jog=move), (), ())
+    events: list[Event] = []
+    fastest = 0.0
+    for _ in range(ticks):
+        events += bench.tick(asked).events
+        seen = bench.simulation.estimate
+        fastest = max(fastest, seen.v_tcp, seen.v_elbow)
+        if any(event.kind is Kind.JOG_ENDED for event in events):
+            break
+    return bench, events, fastest
+
+
+def test_a_posture_is_reached_at_manual_speed_while_the_button_is_held() -> None:
+    posture = HOME + np.array([0.0, 0.5, -0.3, 0.0, 0.0, 0.2])
+    bench, events, fastest = held(there(posture), 4000)
+    assert [event.kind for event in events][-2:] == [Kind.JOG_STARTED, Kind.JOG_ENDED]
+    assert (events[-1].values["what"], events[-1].values["reason"]) == ("to the posture", "done")
+    np.testing.assert_allclose(bench.estimate.q, posture, atol=2e-3)
+    assert 0.15 < fastest <= MANUAL
+
+
+def test_letting_go_on_the_way_to_a_posture_stops_the_arm() -> None:
+    bench, _, _ = held(there(HOME + 0.5), 500)
+    events = list(bench.tick(Wishes(Inputs(jog_released=True), (), ())).events)
+    assert [event.values["reason"] for event in events if event.kind is Kind.JOG_ENDED] == ["let go"]
+    bench.run(0.5)
+    stood = bench.estimate.q.copy()
+    bench.run(0.5)
+    np.testing.assert_allclose(bench.estimate.q, stood, atol=2e-3)
+    assert 0.02 < float(np.abs(stood - HOME).max()) < 0.48
+
+
+def test_reduced_mode_is_slower_than_manual_speed_where_it_asks_for_that() -> None:
+    assert at_manual_speed(there(HOME), None) == SpeedLimits(MANUAL, MANUAL, np.inf)
+    assert at_manual_speed(there(HOME), SpeedLimits(0.1, 0.5, 0.3)) == SpeedLimits(0.1, MANUAL, 0.3)
+    assert at_manual_speed(None, None) is None
+
+
+def test_a_pose_is_reached_straight_and_at_manual_speed_while_the_button_is_held() -> None:
+    before = Bench()
+    before.run(0.1)
+    seen = before.estimate
+    x, y, z = (seen.tcp[:3] + np.array([0.1, 0.05, 0.1])).tolist()
+    w, i, j, k = quaternion_from_matrix(seen.R_BF).tolist()
+    bench, events, fastest = held(MoveStraight(position=(x, y, z), quaternion=(w, i, j, k), speed=1.0), 4000)
+    assert (events[-1].values["what"], events[-1].values["reason"]) == ("straight to the pose", "done")
+    assert events[-1].values["moved"] == "150 of 150 mm"
+    np.testing.assert_allclose(bench.estimate.tcp[:3], (x, y, z), atol=1e-3)
+    assert 0.1 < fastest <= MANUAL
+
+
+def test_a_pose_out_of_reach_is_refused() -> None:
+    _, events, _ = held(MoveStraight(position=(3.0, 0.0, 0.5), quaternion=(0.0, 1.0, 0.0, 0.0)), 4000)
+    assert events[-1].kind is Kind.JOG_ENDED
+    assert "linear move" in str(events[-1].values["reason"])

@@ -42,8 +42,16 @@ def two(served: Served, join: Join, clock: Clock) -> tuple[RawClient, RawClient,
     assert "Nobody has control" in strips[0].text.shown
     press(first, strips[0].take)
     until(lambda: shown(strips, "You have control", "Client 1 has control"), "client 1 has it")
-    until(lambda: strips[1].take.disabled, "nobody can take it")
+    until(lambda: not strips[1].take.visible, "nobody can take it")
     return first, second, strips
+
+
+def join_again(served: Served) -> RawClient:
+    """One more client, after one has gone."""
+    until(lambda: len(served.control._strips) == 1, "one has gone")
+    client = RawClient(served.url)
+    until(lambda: len(served.control._strips) == 2, "another is there")
+    return client
 
 
 def press(client: RawClient, button: object) -> None:
@@ -64,13 +72,14 @@ Two = tuple[RawClient, RawClient, dict[int, Strip]]
 
 def test_control_is_taken_shown_and_given_back(served: Served, two: Two, loop: FakeLoop) -> None:
     first, second, strips = two
-    assert (buttons(strips[0]), buttons(strips[1])) == ((False, True), (True, False))
+    assert (buttons(strips[0]), buttons(strips[1])) == ((False, True), (False, False))
+    assert strips[1].ask.visible
     first.drag("start")
     until(lambda: bool(loop.desk.take().touches), "a touch")
     press(first, strips[0].release)
     until(lambda: served.guard.operator.holder is None, "given back")
     assert loop.desk.take().touches == ()
-    until(lambda: not strips[1].take.disabled, "it can be taken")
+    until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
     until(lambda: shown(strips, "Client 2 has control", "You have control"), "client 2 has it")
 
@@ -85,7 +94,7 @@ def test_after_ten_silent_seconds_and_not_before_somebody_else_takes_over(
     until(lambda: served.guard.refused.total() == 2, "refused")
     assert served.guard.operator.holder == 0
     clock.now += 0.02
-    until(lambda: not strips[1].take.disabled, "it can be taken")
+    until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
     until(lambda: shown(strips, "Client 2 has control", "You have control"), "client 2 has it")
     first.drag("start")
@@ -135,7 +144,7 @@ def test_who_holds_the_arm_is_not_silent(served: Served, two: Two, clock: Clock,
     first.drag("end")
     until(lambda: loop.desk.take().touches == (), "let go")
     clock.now += SILENCE
-    until(lambda: not strips[1].take.disabled, "it can be taken")
+    until(lambda: strips[1].take.visible and not strips[1].take.disabled, "it can be taken")
     press(second, strips[1].take)
     until(lambda: served.guard.operator.holder == 1, "client 2 has it")
 
@@ -181,3 +190,42 @@ def test_the_strip_of_another_client_cannot_be_pressed(served: Served, join: Joi
     press(second, served.control._strips[0].take)
     until(lambda: served.guard.refused["unknown control"] == 1, "refused")
     assert served.guard.operator.holder is None
+
+
+def test_who_watches_asks_for_control_and_the_holder_gives_it(served: Served, two: Two, clock: Clock) -> None:
+    first, second, strips = two
+    press(second, strips[1].ask)
+    until(lambda: shown(strips, "Client 2 asks for control", "Asked. Wait for an answer."), "both are told")
+    assert served.guard.operator.holder == 0
+    assert strips[0].release.label == "Give"
+    assert strips[1].ask.disabled
+    second.set(served.lab.force._impl.uuid, value=90.0)
+    until(lambda: served.guard.refused["not the operator"] == 1, "to ask is not to have")
+    press(first, strips[0].release)
+    until(lambda: shown(strips, "Watching: Client 2 has control", "You have control"), "given")
+    assert strips[1].release.label == "Release"
+    second.set(served.lab.force._impl.uuid, value=90.0)
+    until(lambda: served.hand.cap == 90.0, "client 2 may act")
+
+
+def test_a_request_ends_with_who_asked_and_with_who_was_asked(served: Served, two: Two, clock: Clock) -> None:
+    _, second, strips = two
+    press(second, strips[1].ask)
+    until(lambda: shown(strips, "asks for control", "Asked."), "asked")
+    second.close()
+    until(lambda: "You have control" in strips[0].text.shown, "who asked has gone")
+    third = join_again(served)
+    press(third, strips[2].ask)
+    until(lambda: "Client 3 asks" in strips[0].text.shown, "asked again")
+    clock.now += SILENCE
+    until(lambda: strips[2].take.visible, "it is free")
+    press(third, strips[2].take)
+    until(lambda: "You lost control" in strips[0].text.shown and "You have control" in strips[2].text.shown, "taken")
+    third.close()
+
+
+def test_the_request_of_another_client_cannot_be_pressed(served: Served, two: Two) -> None:
+    first, _, strips = two
+    press(first, strips[1].ask)
+    until(lambda: served.guard.refused["unknown control"] == 1, "refused")
+    assert "asks" not in strips[0].text.shown

@@ -7,12 +7,12 @@ from collections.abc import Callable
 import pytest
 
 from app.web.server import Served
-from app.web.tabs.jog_tab import HOLD_ON, LIFT_FIRST, NOT_NOW, STILL, JogTab
+from app.web.tabs.jog_tab import HOLD_ON, HOME, LIFT_FIRST, NOT_NOW, STILL, STRAIGHT, THERE, JogTab, Which
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
-from pendant.program.jog_move import JogMove
+from pendant.program.jog_move import JogMove, MoveStraight, MoveThere
 from pendant.tick.modes import TICK_RATE, Mode
-from tests.app.web.fake_loop import FakeLoop
+from tests.app.web.fake_loop import ARM, FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 Join = Callable[[], RawClient]
@@ -36,6 +36,12 @@ class Hand:
         self.word(axis, sign)
         self.loop.tick += round(STILL * TICK_RATE)
         self.word(axis, sign)
+
+    def press(self, which: Which) -> None:
+        """Keep still on the button of a posture until that is meant."""
+        asyncio.run(self.tab._held(which)(self))  # type: ignore[arg-type]
+        self.loop.tick += round(STILL * TICK_RATE)
+        asyncio.run(self.tab._held(which)(self))  # type: ignore[arg-type]
 
     def lift(self) -> None:
         asyncio.run(self.tab._lifted(self))  # type: ignore[arg-type]
@@ -122,3 +128,50 @@ def test_the_speed_override_goes_to_the_desk_and_shows_what_holds(served: Served
     until(lambda: loop.advance() is None and loop.wishes[-1].inputs.settings == {"program.speed": 0.4}, "the wish")
     loop.settings = apply(Settings(), {"program.speed": 0.7})
     until(lambda: slider.value == 70, "what holds")
+
+
+def test_home_and_the_sliders_are_moved_to_while_their_button_is_held(
+    served: Served, join: Join, hand: Hand, loop: FakeLoop
+) -> None:
+    client, tab = join(), hand.tab
+    hand.press(HOME)
+    assert loop.desk.take().inputs.jog == MoveThere(q=tuple(ARM.chain.home), name="home")
+    hand.lift()
+    assert loop.desk.take().inputs.jog_released
+    client.set(tab.sliders[2]._impl.uuid, value=12.5)
+    until(lambda: tab.sliders[2].value == 12.5, "moved")
+    until(lambda: tab.ghost.posture is not None and tab.ghost.posture[2] == math.radians(12.5), "seen in the picture")
+    hand.press(THERE)
+    asked = loop.desk.take().inputs.jog
+    assert isinstance(asked, MoveThere)
+    assert asked.q[2] == math.radians(12.5)
+    hand.lift()
+    loop.q[2] = math.radians(30.0)
+    client.set(tab.here._impl.uuid, value=True)
+    until(lambda: tab.sliders[2].value == 30.0, "as the arm is now")
+
+
+def test_nobody_slides_a_joint_beyond_its_range_by_a_message(served: Served, join: Join, hand: Hand) -> None:
+    client, slider = join(), hand.tab.sliders[2]
+    before = slider.value
+    client.set(slider._impl.uuid, value=slider.max + 1.0)
+    until(lambda: served.guard.refused["value not allowed"] == 1, "refused")
+    assert slider.value == before
+
+
+def test_a_typed_pose_is_moved_to_straight_while_its_button_is_held(
+    served: Served, join: Join, hand: Hand, loop: FakeLoop
+) -> None:
+    client, tab = join(), hand.tab
+    client.set(tab.at._impl.uuid, value=(400.0, -100.0, 300.0))
+    client.set(tab.turned._impl.uuid, value=(180.0, 0.0, 0.0))
+    until(lambda: tab.at.value == (400.0, -100.0, 300.0) and tab.turned.value == (180.0, 0.0, 0.0), "typed")
+    hand.press(STRAIGHT)
+    asked = loop.desk.take().inputs.jog
+    assert isinstance(asked, MoveStraight)
+    assert asked.position == (0.4, -0.1, 0.3)
+    assert [round(abs(part), 9) for part in asked.quaternion] == [0.0, 1.0, 0.0, 0.0]
+    hand.lift()
+    assert loop.desk.take().inputs.jog_released
+    client.set(tab.now._impl.uuid, value=True)
+    until(lambda: tab.at.value == (0.0, 0.0, 0.0) and tab.turned.value == (0.0, 0.0, 0.0), "as the tool is now")

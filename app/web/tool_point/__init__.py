@@ -1,0 +1,1 @@
+"""The tool centre point from poses in which the tool touches one point. Uses web/widgets/."""
