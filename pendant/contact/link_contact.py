@@ -51,15 +51,15 @@ GONE = 12
 LETTING_GO = 30
 """Ticks within which a hand lets go, with the mean that shows it: 50 ms and half of that mean."""
 BEFOREHAND = 120
-"""Ticks that letting go is looked for in: `HELD`, `GONE`, and what an arm swings meanwhile."""
+"""Ticks that it is looked for in: `HELD`, `GONE`, and what an arm swings meanwhile."""
 DROP = 0.65
-"""Share of what is felt for sure that letting go takes at least: all of it but for a swing. A lever that shrinks as the arm moves
-took 0.58 of it at most (guarded by the bench `link_hands`),"""
-CLEARLY = 2.0
-"""where so many bounds were felt: a lever that goes through zero takes any share of less."""
+"""Share of what is felt for sure that letting go takes at least: all of it but for a swing,"""
+SUDDEN = 2.0
+"""so many times what as many ticks took before: a lever that goes through zero as the arm moves takes as much in them;"""
+CLEARLY = 1.5
+"""and so many bounds were felt: a swing takes such a share of less (guarded by the bench `link_hands`)."""
 FADED = 250
-"""Ticks after which a contact that faded has gone, too. Until then a hand may still push with levers too short to be felt: where
-60 N are within a bound, an arm at 0.3 m/s has passed in that time."""
+"""Ticks after which a contact that faded has gone, too: an arm at 0.3 m/s has passed the levers at which 60 N are not felt."""
 CALM = 25
 """Ticks in a row in which the torques change by less than their bound, before a contact may begin again (CD-9a)."""
 SETTLED = 20
@@ -241,13 +241,14 @@ class LinkWatch:
         return self._reported(Change.LOST, link, new, touched)
 
     def _let_go(self, limit: Array, signals: ContactSignals) -> bool:
-        """What was felt went as fast as a hand goes. Where it faded, the arm may have moved until its joints have no lever."""
+        """What was felt went as fast as a hand goes. Where it faded, the arm may have moved until no joint has a lever."""
         felt = []
         for age in range(0, min(BEFOREHAND, self._age, self.torques.count - NEWEST), NEWEST):
             torques, bound = self._felt_now(self.torques.mean(age, NEWEST), limit, signals)
             felt.append(float((np.abs(torques) / bound)[: signals.elbow + 1].max()))
-        pairs = zip(felt[LETTING_GO // NEWEST :], felt, strict=False)
-        return any(before >= CLEARLY and after <= (1.0 - DROP) * before for before, after in pairs)
+        n = LETTING_GO // NEWEST
+        triples = zip(felt, felt[n:], felt[2 * n :] + felt[-1:] * n, strict=False)
+        return any(old >= CLEARLY and old - new >= max(DROP * old, SUDDEN * (older - old)) for new, old, older in triples)
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0
