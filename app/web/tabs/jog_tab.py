@@ -8,7 +8,6 @@ import viser
 
 from app.web.running import Running
 from app.web.scene.ghost import Ghost
-from app.web.tabs.tool_frame import rpy_of
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
 from pendant.event_table import render
@@ -16,7 +15,7 @@ from pendant.events.event import Event, Kind
 from pendant.program.jog_move import TURNS, Jogged, JogMove, MoveStraight, MoveThere
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 from sim.arm.arm_file import Arm
-from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy, rpy_from_matrix
 from sim.exchange.snapshot import Snapshot
 from sim.motion.jog import MANUAL
 
@@ -162,7 +161,7 @@ class JogTab:
         R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
         x, y, z = (round(1000.0 * float(value), 1) for value in seen.tcp[:3])
         self.at.value = (x, y, z)
-        roll, pitch, yaw = (round(math.degrees(angle), 2) for angle in rpy_of(R_BT))
+        roll, pitch, yaw = (round(math.degrees(angle), 2) for angle in rpy_from_matrix(R_BT))
         self.turned.value = (roll, pitch, yaw)
 
     def _angles(self) -> tuple[float, ...]:
