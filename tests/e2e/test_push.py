@@ -40,6 +40,7 @@ def test_guided_by_hand_the_flange_follows_the_pointer_and_stays(visit: Visit, c
     assert moved @ way / np.linalg.norm(way) > 0.050
     page.mouse.up()
     cell.wait(lambda: not cell.loop.desk._touches, "let go")
+    cell.wait(lambda: cell.loop.latest().decision.static, "it has come to rest")
     cell.pass_time(0.5)
     at = cell.position(part, point)
     cell.pass_time(0.5)
