@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 from app.kept_setup import setup_of
 from app.web.tabs.tool_frame import SCALE as FRAME_SCALE
@@ -97,6 +97,7 @@ def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) 
     click(page, "All locked")
     cell.wait(lambda: not cell.loop.settings.joints.j3, "all are locked")
     elbow = page.get_by_role("checkbox", name="Elbow", exact=True)
+    expect(elbow).not_to_be_checked(timeout=20_000)
     tap(elbow)
     cell.wait(lambda: cell.loop.settings.joints.j3, "the elbow is free")
     start = cell.loop.latest().truth_q.copy()
