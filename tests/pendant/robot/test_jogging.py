@@ -81,6 +81,14 @@ def test_only_the_middle_of_the_enabling_device_lets_it_begin_and_go_on(move: Jo
 
 
 @pytest.mark.parametrize("move", ALL)
+def test_not_while_free_drive_is_tried(move: Jogged) -> None:
+    bench = rested()
+    bench.run(3, Inputs(held=frozenset({Button.FREE_DRIVE})))
+    (refused,) = bench.step(held(move, Button.FREE_DRIVE)).events
+    assert refused.values == {"what": move.what, "reason": "free-drive is being tried"}
+
+
+@pytest.mark.parametrize("move", ALL)
 def test_not_while_the_payload_is_being_changed(move: Jogged) -> None:
     bench = rested()
     bench.step(Inputs(load=Load(mass=1.0)))
