@@ -137,7 +137,7 @@ ENTRY: dict[Kind, EventRow] = {
         Effect.INFO,
         Severity.WARNING,
         "The force stays: check the payload",
-        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Measure the payload, or correct it, with hands off.",
+        "Still {force:.0f} N: {mass:+.1f} kg against what is configured. Measure the payload, or correct it, with hands off.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
