@@ -35,7 +35,7 @@ from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
 from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
-from app.session.session_file import Session, Setup, find_all, opened
+from app.session.session_file import FIRST_START, Session, Setup, find_all, opened
 from app.session.timeline_checks import Prepared
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
@@ -92,7 +92,7 @@ def serve(
     """
     from app.serving import Network, serve_until_interrupted
 
-    prepared = _set_up(robot, config, any_file, "serve")
+    prepared = _set_up(robot, config, any_file, "serve", shipped=FIRST_START)
     keeper, lesson = None, None
     if not fresh and (config is None or keep is not None):
         prepared, keeper, lesson = as_kept(prepared, keep)
@@ -129,7 +129,7 @@ def robot_(
     """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
     from app.robot_serving import Network, robot_until_interrupted, until_stopped
 
-    prepared = _set_up(robot, config, any_file, "robot")
+    prepared = _set_up(robot, config, any_file, "robot", shipped=Setup())
     with robot_until_interrupted(prepared, Network(host, port_offset, programs), record, until_stopped()) as interfaces:
         announce_robot(prepared.arm, interfaces)
 
@@ -252,9 +252,9 @@ def _source(arm: Arm) -> str:
     return " ".join(arm.masses.source.split()).partition(";")[0]
 
 
-def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str) -> Prepared:
-    """What the options of a command ask for."""
-    setup = Setup() if config is None else opened(config, Setup, any_file)
+def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str, *, shipped: Setup) -> Prepared:
+    """What the options of a command ask for; `shipped` where no file says it."""
+    setup = shipped if config is None else opened(config, Setup, any_file)
     if robot is not None:
         setup = msgspec.structs.replace(setup, robot=robot)
     return prepare(setup, command if config is None else config.name)

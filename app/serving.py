@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+import msgspec
+
 from app.files.checked import BadInput
 from app.files.library import mesh_path, robots
 from app.files.taught_program import Lesson
@@ -24,7 +26,7 @@ from app.robot_interface.interfaces import JOINTS, RobotInterfaces
 from app.robot_serving import Network, open_interfaces, until_stopped
 from app.runs.runner import simulate
 from app.session.prepare import Prepared, prepare
-from app.session.session_file import Setup
+from app.session.session_file import FIRST_START
 from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.listening import access_through, free_port
 from app.web.access.site import Site
@@ -160,7 +162,7 @@ class ServedArms:
 
     def ready(self, name: str) -> ReadyArm:
         """See `ArmChange`."""
-        shipped = prepare(Setup(robot=name), "the page")
+        shipped = prepare(msgspec.structs.replace(FIRST_START, robot=name), "the page")
         keeper = None if self._folder is None else keeper_for(shipped.arm, self._folder)
         prepared, kept = shipped, None
         try:

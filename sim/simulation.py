@@ -1,7 +1,5 @@
 """One tick of all of it: sensors, estimator, supervisor, controller, plant, in this order and no other."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -78,8 +76,7 @@ class Simulation:
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
-        reach = (math.inf, math.inf) if wrench is None else (wrench.force.range, wrench.torque.range)
-        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, reach, self.estimator.momentum)
+        self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
         self.supervisor = Supervisor(
             settings,
             arm.n,

@@ -31,6 +31,10 @@
   // A finger that has been still on such a button holds it, and scrolls no more.
   addEventListener("touchmove", (event) => { if (pressed && event.cancelable && performance.now() - pressed.since > STILL) event.preventDefault(); },
     { capture: true, passive: false });
+  // Whatever lies over the stop, as the palette of commands or a list that is open: a press on its place stops.
+  addEventListener("pointerdown", ({ clientX: x, clientY: y, target }) => { const button = stop(); if (!button || button.contains(target)) return;
+    const { left, right, top, bottom } = button.getBoundingClientRect();
+    if (left < x && x < right && top < y && y < bottom) button.click(); }, true);
   // A finger that holds a button asks for no menu.
   addEventListener("contextmenu", (event) => { if (event.target.closest && event.target.closest("button,canvas")) event.preventDefault(); });
 

@@ -24,6 +24,7 @@ class ContactLimits(NamedTuple):
     acceleration_sq: float  # [m²/s⁴]
     clear_sq: float  # over the variance of the contact force: beyond, it needs no second tick (CD-9)
     clear_acceleration_sq: float  # [m²/s⁴]
+    driven: float  # the arm moves its load beyond so many deviations of noise (CD-0)
     ratio: float  # ratio rule: beyond minus this (CD-5) [kg]
     ratio_acceleration_sq: float  # its second threshold [m²/s⁴]
     value_force: float  # instant rule, beside what a wrong payload explains (CD-3) [N]
@@ -80,6 +81,7 @@ def limits(use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, s
         acceleration_sq=(hard * noise_a) ** 2,
         clear_sq=(1.0 + 1.0 / OLDER) * (use.clear_limit * scale) ** 2,
         clear_acceleration_sq=(use.clear_acceleration * scale) ** 2,
+        driven=use.noise_limit,
         ratio=scale * min(use.ratio_share * max(mass, LIGHTEST), ARM_SHARE * effective_mass),
         ratio_acceleration_sq=(use.ratio_acceleration * scale) ** 2,
         value_force=scale * use.value_force,

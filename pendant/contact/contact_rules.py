@@ -10,6 +10,7 @@ from typing import NamedTuple
 from pendant.contact.contact_limits import OLDER, ContactLimits
 from pendant.contact.history import History, Six
 from pendant.tick.pose import Vector
+from pendant.tick.source_signal import Signal
 from pendant.tick.words import Word
 
 STEP = 3
@@ -63,6 +64,8 @@ def hard(history: History, limit: ContactLimits, age: int = 0) -> Hard:
     if history.count <= max(i, j) + age:
         return NOTHING
     new, old = history.sample(age), history.sample(age + i)
+    if _arm_moves_load(new, limit):
+        return NOTHING
     fx, fy, fz = new[0] - old[0], new[1] - old[1], new[2] - old[2]
     if i != j:
         old = history.sample(age + j)
@@ -76,6 +79,11 @@ def hard(history: History, limit: ContactLimits, age: int = 0) -> Hard:
         return NOTHING
     difference = ff > limit.force_sq and aa > limit.acceleration_sq
     return Hard(difference, aa > limit.ratio_acceleration_sq and abs(dot) > limit.ratio * aa)
+
+
+def _arm_moves_load(sample: Signal, limit: ContactLimits) -> bool:
+    """The arm moves its load, as a push on a link lets it: no contact of the load does (`sim.estimation.flange_drive`)."""
+    return sample.driven > limit.driven and limit.opposite
 
 
 def clear(history: History, limit: ContactLimits) -> bool:
@@ -94,6 +102,8 @@ def clear(history: History, limit: ContactLimits) -> bool:
     new, old = history.sample(0), history.mean(1, OLDER)
     f = (new[0] - old[0], new[1] - old[1], new[2] - old[2])
     a = (new[3] - old[3], new[4] - old[4], new[5] - old[5])
+    if _arm_moves_load(new, limit):
+        return False
     if not _lies_against(f, a, 0.0, limit):  # most often; how restless it was takes a look at all samples
         return False
     restless = max(limit.acceleration_variance, history.variances(1, OLDER, old)[1], RESTLESS * _turning(history))
@@ -162,7 +172,7 @@ def statistical(history: History, limit: ContactLimits) -> bool:
     F - m·A, shows it (CD-0).
     """
     tested, window = limit.tested, limit.window
-    if history.clean < tested + window:
+    if history.clean < tested + window or _arm_moves_load(history.sample(0), limit):
         return False
     nfx, nfy, nfz, nax, nay, naz = history.mean(0, tested)
     old = history.mean(tested, window)

@@ -48,6 +48,18 @@ HALF = 0.45
 """this share of a contact's largest torque lately is enough to call it gone."""
 GONE = 12
 """Ticks in a row for which it must be gone: an arm that swings back feels little for less."""
+LETTING_GO = 30
+"""Ticks within which a hand lets go, with the mean that shows it: 50 ms and half of that mean."""
+BEFOREHAND = 120
+"""Ticks that it is looked for in: `HELD`, `GONE`, and what an arm swings meanwhile."""
+DROP = 0.65
+"""Share of what is felt for sure that letting go takes at least: all of it but for a swing,"""
+SUDDEN = 2.0
+"""so many times what as many ticks took before: a lever that goes through zero as the arm moves takes as much in them;"""
+CLEARLY = 1.5
+"""and so many bounds were felt: a swing takes such a share of less (guarded by the bench `link_hands`)."""
+FADED = 250
+"""Ticks after which a contact that faded has gone, too: an arm at 0.3 m/s has passed the levers at which 60 N are not felt."""
 CALM = 25
 """Ticks in a row in which the torques change by less than their bound, before a contact may begin again (CD-9a)."""
 SETTLED = 20
@@ -210,7 +222,7 @@ class LinkWatch:
         return self._reported(Change.GAINED, link, new, old)
 
     def _held(self, new: Array, limit: Array, signals: ContactSignals) -> LinkChange | None:
-        """In contact: it has gone where little is left of its torques."""
+        """In contact: it has gone where little is left of its torques, at once if they went as fast as a hand lets go."""
         self._age += 1
         if self._age < HELD:  # that mean still holds ticks from before the contact
             return None
@@ -218,12 +230,25 @@ class LinkWatch:
         left = float((np.abs(felt) / limit)[: signals.elbow + 1].max())
         self._largest = max(left, LATELY * self._largest)
         gone = max(1.0, LEFT * self._largest, min(STRAYED, HALF * self._largest))
+        if self._calm > GONE:  # it has faded: what strays meanwhile is no hand that is felt again
+            gone = max(gone, STRAYED)
         self._calm = self._calm + 1 if left < gone else 0
-        if self._calm < GONE or self.touched is None:
+        gone_now = self._calm == GONE and self._let_go(limit, signals)
+        if self.touched is None or not (gone_now or self._calm == FADED):
             return None
         link, touched = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
         self._over()
         return self._reported(Change.LOST, link, new, touched)
+
+    def _let_go(self, limit: Array, signals: ContactSignals) -> bool:
+        """What was felt went as fast as a hand goes. Where it faded, the arm may have moved until no joint has a lever."""
+        felt = []
+        for age in range(0, min(BEFOREHAND, self._age, self.torques.count - NEWEST), NEWEST):
+            torques, bound = self._felt_now(self.torques.mean(age, NEWEST), limit, signals)
+            felt.append(float((np.abs(torques) / bound)[: signals.elbow + 1].max()))
+        n = LETTING_GO // NEWEST
+        triples = zip(felt, felt[n:], felt[2 * n :] + felt[-1:] * n, strict=False)
+        return any(old >= CLEARLY and old - new >= max(DROP * old, SUDDEN * (older - old)) for new, old, older in triples)
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0

@@ -136,12 +136,12 @@ ENTRY: dict[Kind, EventRow] = {
     Kind.RESIDUAL_STAYED: EventRow(
         Effect.INFO,
         Severity.WARNING,
-        "The force stays: check the payload",
-        "Still {force:.0f} N: {mass:+.1f} kg more than configured. Measure the payload, or correct it, with hands off.",
+        "Free-drive refused: the force stays",
+        "Still {force:.0f} N: the payload seems to differ by {mass:+.1f} kg from the configured one. Correct or measure it.",
         ("force", "mass", "zero"),
         variant=(
             "zero",
-            "Still {force:.0f} N: the payload, {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or measure the payload.",
+            "Still {force:.0f} N: the payload, by {mass:+.1f} kg, or the sensor's zero is wrong. Zero it, or measure the load.",
         ),
     ),
     # A signal that does not count yet (FD-7, FD-12c)

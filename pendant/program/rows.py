@@ -30,7 +30,7 @@ def _touched(headline: str) -> EventRow:
         Effect.INFO,
         Severity.NOTICE,
         headline,
-        "Force change {force:.1f} N, noticed by rule {rule}. Action: {action}.",
+        "The force changed by {force:.1f} N (rule: {rule}). Action: {action}.",
         keys,
     )
 

@@ -31,6 +31,7 @@ class Signal(NamedTuple):
     sx: float = 0.0  # change within the tick of what that turning adds, known up to a tick and a half late [m/s²]
     sy: float = 0.0
     sz: float = 0.0
+    driven: float = 0.0  # in deviations of noise: above 0 the arm moves its load, below 0 the load moves the arm
 
 
 class ContactSignals(msgspec.Struct, frozen=True, gc=False):

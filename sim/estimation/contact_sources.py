@@ -10,10 +10,12 @@ from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.source_signal import ContactSignals, Signal
+from sim.arm.arm_file import SensorNumbers
 from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
+from sim.estimation.flange_drive import driven, flange_drive
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
@@ -27,7 +29,7 @@ force at the most, its noise at a load's usual distance within that of the accel
 MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
-MASS, EFFECTIVE_MASS, LEVER = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever"))
+MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
 SENSOR_FORCE, SENSOR_TORQUE = 1.0, 0.1
 """Deviation of what a flange sensor that was not zeroed tells when the flange has turned: part of its offset of 4 N [N, N·m]."""
 TURNED = 0.3
@@ -60,11 +62,13 @@ class ContactSources:
     Args:
         dynamics: the controller's model, already updated to this tick's posture when `read` is called.
         elbow: index of the joint that the elbow is.
-        reach: force and torque at which the flange sensor saturates [N, N·m].
+        sensors: of the arm, with their ranges and their noise.
         momentum: external torques of this tick.
     """
 
-    def __init__(self, dynamics: Dynamics, elbow: int, reach: tuple[float, float], momentum: MomentumObserver) -> None:
+    def __init__(self, dynamics: Dynamics, elbow: int, sensors: SensorNumbers, momentum: MomentumObserver) -> None:
+        wrench = sensors.force_torque
+        reach = (math.inf, math.inf) if wrench is None else (wrench.force.range, wrench.torque.range)
         self._dynamics, self._range, self._momentum = dynamics, np.array(reach), momentum
         n = dynamics.recursion.origins.shape[0]
         self._record = record(
@@ -84,6 +88,7 @@ class ContactSources:
         own = self._own = self._record[0]
         own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
         own["turn"] = np.nan  # not known yet
+        self._drive = flange_drive(sensors, float(own["smoothing"]))
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
         self._out, self._started = own["signals"], False
@@ -118,7 +123,7 @@ class ContactSources:
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
         motion = (sample.values, estimate.qd, estimate.qdd)
-        models = (self._dynamics.recursion.record, self._momentum.record)
+        models = (self._dynamics.recursion.record, self._momentum.record, self._drive)
         _read(self._record, models, motion, (*watched, sample.wrench_valid))
         self._started = links
         valid = (pair, flange, links, links)
@@ -148,7 +153,7 @@ def _read(sources, models, felt, watched) -> None:
     """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
-    own, rigid, momentum = sources[0], models[0][0], models[1][0]
+    own, rigid, momentum, drive = sources[0], models[0][0], models[1][0], models[2][0]
     rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]
     if watched.tool:
@@ -157,8 +162,10 @@ def _read(sources, models, felt, watched) -> None:
         if watched.arm_side:
             _transfer(own, rigid.R, (wrench, rest[6:9], moved), own.signals[1])
         own.added[:] = moved
+        own.signals[:2, DRIVEN] = driven(drive, wrench, rest[6:9], own.change)
     else:
         own.turn[:] = np.nan
+        drive.count = 0
     if watched.links:
         beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0]
         beyond = beyond or max(abs(wrench[3]), abs(wrench[4]), abs(wrench[5])) >= own.reach[1]

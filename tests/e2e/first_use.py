@@ -106,7 +106,7 @@ class FirstUse:
         self.fill(self.number(cell.served.lab.true), f"{WEIGHT:g}")
         page.get_by_text(f"+{WEIGHT:.1f} kg wrong").wait_for()
         hold_until(page, cell, lambda: cell.happened(Kind.REFUSED_PAYLOAD), "refused")
-        page.get_by_text("Consistent with").or_(page.get_by_text("kg more than configured")).first.wait_for()
+        page.get_by_text("Consistent with").or_(page.get_by_text("from the configured one")).first.wait_for()
         pointer(page).up()
         assert 1.0 < float(self.first(Kind.REFUSED_PAYLOAD).values["mass"]) < 3.0
         self.see("refused")

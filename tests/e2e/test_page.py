@@ -8,6 +8,7 @@ from playwright.sync_api import Browser, Page
 from websockets.sync.server import ServerConnection
 from websockets.sync.server import serve as serve_websocket
 
+from pendant.events.event import Kind
 from tests.e2e.cell import Cell
 
 pytestmark = pytest.mark.e2e
@@ -35,3 +36,13 @@ def test_the_page_bears_our_name_and_offers_no_tunnel(visit: Callable[[], Page])
     page = visit()
     assert page.title() == "pendant"
     assert page.get_by_label("Share").count() == 0
+
+
+def test_a_press_on_the_stop_stops_though_the_palette_lies_over_it(visit: Callable[[], Page], cell: Cell) -> None:
+    page = visit()
+    box = page.get_by_role("button", name="EMERGENCY STOP", exact=True).bounding_box()
+    assert box is not None
+    page.keyboard.press("Control+k")
+    page.locator(".mantine-Spotlight-content").wait_for()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    cell.wait(lambda: cell.happened(Kind.EMERGENCY_STOP), "it stops")

@@ -182,7 +182,7 @@ def test_a_contact_is_told_with_force_rule_and_action() -> None:
     values = {**EXAMPLE, "force": 17.62, "rule": "slow", "steps": 20, "action": "none", "part": "tool"}
     assert render(Event(Kind.CONTACT_GAINED, 0, values)) == (
         "Contact gained: tool",
-        "Force change 17.6 N, noticed by rule slow. Action: none.",
+        "The force changed by 17.6 N (rule: slow). Action: none.",
     )
 
 

@@ -33,6 +33,12 @@ STOPPING = {
 ENDED = frozenset({Effect.ENTER, Effect.TRY})
 """Effects after which what refused or ended free-drive before is the past."""
 
+CONTACTS = frozenset({Kind.CONTACT_GAINED, Kind.CONTACT_LOST, Kind.CONTACT_RESISTANCE, Kind.CONTACT_CLAMPING})
+"""Events that hide no reason why free-drive did not begin: who drags an arm that is not free makes contacts."""
+
+MENDED = frozenset({Kind.PAYLOAD_CHANGED, Kind.SENSOR_ZEROED, Kind.RESIDUAL_GONE})
+"""Events after which a force that stayed is the past."""
+
 
 class PanelText(NamedTuple):
     """What the panel says."""
@@ -89,6 +95,10 @@ class Remembered:
             return
         if row.effect in ENDED or event.kind in (Kind.ACTIVATION_STARTED, Kind.PROGRAM_STARTED):
             self.note = None
+        if event.kind in MENDED and self.note is not None and self.note.kind is Kind.RESIDUAL_STAYED:
+            self.note = None
+        if event.kind in CONTACTS and self._refused():
+            return
         worth = row.effect is not Effect.INFO or row.severity >= Severity.NOTICE or event.kind is Kind.ACTIVATION_CANCELLED
         if worth and row.effect is not Effect.TRY:
             self.note = event
@@ -112,11 +122,19 @@ class Remembered:
         if self.note is not None and tick >= self.note.tick and self._over(self.note, decision):
             self.note = None
 
+    def _refused(self) -> bool:
+        """Whether it is told why free-drive did not begin."""
+        if self.note is None:
+            return False
+        return (
+            self.note.kind in (Kind.RESIDUAL_STAYED, Kind.ACTIVATION_CANCELLED) or TABLE[self.note.kind].effect is Effect.NO_ENTRY
+        )
+
     def _over(self, note: Event, decision: Decision) -> bool:
         row = TABLE[note.kind]
         if row.clears is Clears.RESET:
             return decision.mode is not Mode.STOP
-        if row.effect is Effect.INFO:
+        if row.effect is Effect.INFO and note.kind is not Kind.RESIDUAL_STAYED:
             refused_in = note.values["mode"] if note.kind is Kind.COMMAND_REFUSED else decision.mode
             return self.tick - note.tick > PASSING or decision.mode != refused_in
         if decision.mode is Mode.STOP or (decision.mode is Mode.RUN and decision.program is ProgramState.RUNNING):

@@ -55,7 +55,7 @@ Which = tuple[int, int] | Literal["home", "there", "straight"]
 """A button: axis and sign, or where it moves to."""
 
 HOLD_ON = "Nothing moved: let go too early. The arm moves while a button is held."
-LIFT_FIRST = "Not moved: the end of the press before did not arrive. Let go, then press again."
+LIFT_FIRST = "The button fell silent, so the arm stopped. Let go, then press again."
 NOT_NOW = "Jogging is possible in TEACH and NORMAL, while free-drive is off."
 
 
@@ -82,6 +82,7 @@ class JogTab:
         self._loop, self._names = loop, [name.replace("_", " ").capitalize() for name in arm.chain.joints]
         self._press: JogPress | None = None
         self._over: set[int] = set()  # clients whose press is over, their pointer not lifted
+        self._presses = False  # one of them still presses
         self.frame = gui.add_dropdown("Move by", tuple(FRAMES), initial_value="Joints")
         self.chosen: Literal["joint", "base", "tool"] = "joint"
         self.steps = gui.add_dropdown("Stops after", tuple(STEPS), initial_value=LET_GO, hint="Or when the button is let go")
@@ -132,7 +133,8 @@ class JogTab:
         changed = [enable(button, may and axis < count) for (axis, _), button in self.buttons.items()]
         changed += [enable(button, may) for button in (self.home, self.there, self.straight)]
         changed.append(self.ghost.show(self._wanted(snapshot, may), snapshot, "Sliders"))
-        said = self.said.show(svg.two_lines((self._told or self._hint()) if may else NOT_NOW))
+        told = LIFT_FIRST if self._presses else self._told or self._hint()
+        said = self.said.show(svg.two_lines(told if may else NOT_NOW))
         return any([*changed, said, self.pose.show(svg.facts(self._facts(snapshot)))])
 
     def let_go(self, client: int) -> None:
@@ -145,6 +147,7 @@ class JogTab:
         """`client` has gone."""
         self.let_go(client)
         self._over.discard(client)
+        self._presses = self._presses and bool(self._over)
 
     def _wanted(self, snapshot: Snapshot, may: bool) -> tuple[float, ...] | None:
         """The posture of the sliders [rad], as long as it is to be seen; None: the arm is there, or nobody asked."""
@@ -206,7 +209,7 @@ class JogTab:
             if client is None:
                 return
             if client in self._over:
-                self._told = LIFT_FIRST
+                self._presses = True
                 return
             tick, before = self._loop.latest().tick, self._press
             if before is not None and tick - before.tick > self._loop.settings.hold.silence * TICK_RATE:
@@ -214,6 +217,7 @@ class JogTab:
                 if before.client == client:
                     return
             goes_on = before is not None and before[:2] == (client, which)
+            self._told = self._told if goes_on else ""
             self._press = press = JogPress(client, which, before.since if before is not None and goes_on else tick, tick)
             if not press.still:
                 return
@@ -225,6 +229,7 @@ class JogTab:
         if event.client_id is None:
             return
         self._over.discard(event.client_id)
+        self._presses = False
         if self._press is not None and self._press.client == event.client_id:
             if not self._press.still:
                 self._told = HOLD_ON

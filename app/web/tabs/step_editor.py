@@ -88,7 +88,7 @@ class StepEditor:
             self.fields: dict[str, Any] = {
                 "to": gui.add_dropdown("To", waypoints_of(edits.now)),
                 "way": gui.add_dropdown("Direction", tuple(WAYS)),
-                "distance": gui.add_number("Distance [mm]", 200.0, min=1.0, max=1000.0, step=1.0, hint="At most"),
+                "distance": gui.add_number("Distance [mm]", 500.0, min=1.0, max=1000.0, step=1.0, hint="At most"),
                 "speed": gui.add_number("Speed [mm/s]", 30.0, min=1.0, max=250.0, step=1.0),
                 "then": gui.add_dropdown("Then", tuple(AFTER)),
                 "back": gui.add_number("Retreat [mm]", 50.0, min=0.0, max=1000.0, step=1.0),

@@ -77,6 +77,22 @@ def test_a_difference_that_is_clear(df: tuple[float, float, float], da: tuple[fl
     assert clear(sudden(df, da), limit()) is seen
 
 
+@pytest.mark.parametrize(("driven", "seen"), [(-9.0, True), (3.0, True), (3.1, False)])
+def test_where_the_arm_moves_its_load_no_rule_of_directions_sees_a_contact(driven: float, seen: bool) -> None:
+    """CD-0: beyond 3 deviations of noise; whoever does not ask for opposite directions does not ask for this either."""
+    df, da = (3.0, 0.0, 0.0), (-3.0, 0.0, 0.0)
+    steps = {clear: (OLDER, 1), hard: (OLDER, STEP), statistical: (OLD, NEW)}
+    for rule, (older, newer) in steps.items():
+        now = Signal(*changed(df, da))._replace(driven=driven)
+        said = rule(history(*[BIAS] * older, *[now] * newer), limit())
+        assert said == ((seen, seen) if rule is hard else seen)
+        assert rule(history(*[BIAS] * older, *[now] * newer), limit(msgspec.structs.replace(USE, opposite=False)))
+    # It is the newer sample of a pair that tells.
+    then, now = Signal(*changed(df, da))._replace(driven=driven), Signal(*changed(df, da))
+    assert hard(history(BIAS, then, now, now), limit()).difference
+    assert hard(history(BIAS, then, then, then, then), limit(), 1).difference is seen
+
+
 def test_a_clear_difference_is_one_from_all_older_samples() -> None:
     """CD-9: from their mean; with fewer of them there is none."""
     df, da = (3.0, 0.0, 0.0), (-3.0, 0.0, 0.0)

@@ -7,7 +7,7 @@ import pytest
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.history import SIZE
-from pendant.contact.link_contact import CALM, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, LinkChange, LinkWatch, Torques
+from pendant.contact.link_contact import CALM, FADED, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, LinkChange, LinkWatch, Torques
 from pendant.contact.settings import ContactUse
 from pendant.tick.source_signal import ContactSignals, Signal
 
@@ -190,3 +190,43 @@ def test_a_contact_that_began_too_gently_is_lost_where_it_ends() -> None:
     torques = stream(1000, UPPER)
     torques[100:700] += np.linspace(0.0, 20.0, 600)[:, None] * np.array(UPPER)
     assert [felt.change for _, felt in run(torques)] == [Change.LOST]
+
+
+def fading(n: int, size: float, begin: int, zero: int, end: int) -> np.ndarray:
+    """A hand that comes at `START` and pushes on an arm that moves: from `begin` on its lever shrinks, through zero at `zero`."""
+    ticks = np.arange(n)
+    share = np.interp(ticks, [START, START + 5, begin, zero, 2 * zero - begin], [0.0, 1.0, 1.0, 0.0, -1.0])
+    return stream(n, UPPER) + np.where(ticks < end, size * share, 0.0)[:, None] * np.array(UPPER)
+
+
+def test_a_hand_whose_lever_goes_through_zero_is_one_contact() -> None:
+    """Its torques go to zero within 0.2 s and come back the other way; it is lost as the hand lets go."""
+    found = run(fading(1000, 40.0, 250, 350, 440))
+    assert [felt.change for _, felt in found] == [Change.GAINED, Change.LOST]
+    assert 440 < found[1][0] < 440 + HELD + GONE
+
+
+def test_a_hand_whose_lever_stays_at_zero_is_lost_later() -> None:
+    """Whether it has gone is not known. Torques of less than two bounds that stray meanwhile are no hand that is back."""
+    torques = fading(1000, 40.0, 250, 350, 360)
+    torques[450:, 1] += 9.0  # of bounds of 6
+    found = run(torques)
+    assert [felt.change for _, felt in found] == [Change.GAINED, Change.LOST]
+    assert 300 + FADED < found[1][0] < 360 + FADED + HELD
+
+
+@pytest.mark.parametrize(("size", "latest"), [(14.0, HELD + GONE), (8.0, HELD + FADED)])
+def test_what_was_felt_clearly_is_lost_at_once(size: float, latest: int) -> None:
+    """14 N·m are 2.3 bounds, and 8 N·m 1.3: what of so little goes may be a swing."""
+    (_, gained), (at, lost) = run(stream(900, UPPER, (START, 300, size), noise=0.01))
+    assert (gained.change, lost.change) == (Change.GAINED, Change.LOST)
+    assert 300 + latest - GONE - 25 < at < 300 + latest
+
+
+def test_a_hand_that_is_taken_away_slowly_is_lost_later() -> None:
+    """Over 0.3 s: the torques of a lever that shrinks are the same."""
+    torques = stream(900, UPPER, (START, 300, 30.0))
+    torques[300:450] += np.linspace(30.0, 0.0, 150)[:, None] * np.array(UPPER)
+    (_, gained), (at, lost) = run(torques)
+    assert (gained.change, lost.change) == (Change.GAINED, Change.LOST)
+    assert 400 + FADED < at < 450 + FADED + HELD

@@ -19,9 +19,9 @@ ARM, TOOL = load_arm("ur5e"), load_tool("sphere")
 IDLE = Wishes(NOTHING, (), ())
 
 
-def simulation(**changes: bool) -> Simulation:
+def simulation(soft: bool = False, **changes: bool) -> Simulation:
     load = Load(mass=2.0, com=[0.05, -0.03, 0.06])
-    scenario = Scenario(tool=TOOL, payload_true=load, payload_configured=load, mismatch="nominal", seed=3)
+    scenario = Scenario(tool=TOOL, payload_true=load, payload_configured=load, mismatch="nominal", soft_sensor=soft, seed=3)
     sim = Simulation(ARM, scenario, apply(Settings(), {f"contact.{name}": on for name, on in changes.items()}))
     for _ in range(READY + 2):  # the links' torques are known after that
         sim.tick(IDLE)
@@ -71,6 +71,23 @@ def test_a_force_against_the_tool_is_one_of_the_arm_the_other_way() -> None:
     assert R @ (after[0] - before[0]) == pytest.approx([0.0, -20.0, 0.0], abs=1.0)
     change, acceleration = R @ (first[0] - before[0]), R @ (first[1] - before[1])
     assert change[1] < 0.0 < acceleration[1]  # opposite
+
+
+@pytest.mark.parametrize(("part", "point", "way"), [("tool", (0.0, 0.0, 0.1), -1.0), ("elbow", (-0.3, 0.0, 0.0), 1.0)])
+@pytest.mark.parametrize("soft", [False, True])
+def test_who_moves_whom_at_the_flange(part: str, point: tuple[float, float, float], way: float, soft: bool) -> None:
+    """CD-0: what touches the tool moves the arm; a push on the forearm moves the tool, in its first ticks."""
+    sim = simulation(soft=soft)
+    for _ in range(30):
+        sim.tick(IDLE)
+    told = []
+    for force in (40.0, 80.0, 80.0, 80.0, 80.0):
+        sim.tick(Wishes(NOTHING, (Push(part, point, (0.0, force, 0.0)),), ()))
+        signal = sim.snapshot().estimate.signals.each()[0]
+        assert signal is not None
+        told.append(way * signal.driven)
+    assert max(told) > 10.0
+    assert next(one for one in told if abs(one) > 3.0) > 0.0  # later the load swings on a soft sensor
 
 
 def test_a_load_off_the_axis_that_is_shaken_keeps_its_force_along_its_acceleration() -> None:

@@ -11,6 +11,7 @@ from pendant.tick.modes import Mode, Safety
 from pendant.tooling.payload_wizard import Progress
 from tests.app.fakes import decision
 from tests.app.web.fake_loop import FakeLoop
+from tests.app.web.tabs.test_plots import TOUCH
 
 LIMIT = {"parameter": "flange acceleration", "part": "flange", "value": 9.0, "limit": 8.0, "unit": "m/s²", "time": 0.1}
 
@@ -114,6 +115,29 @@ def test_what_changes_no_mode_is_told_for_a_while(loop: FakeLoop, still: Served)
     assert headline(loop, still) == "Zero the force sensor"
     loop.tick += PASSING + 1
     assert headline(loop, still) == HINTS[Mode.TEACH].headline
+
+
+FORCE = {"force": 17.4, "mass": -1.77, "zero": False}
+
+
+def test_a_force_that_stays_is_told_until_payload_or_zero_is_another(loop: FakeLoop, still: Served) -> None:
+    for mend in (Kind.PAYLOAD_CHANGED, Kind.SENSOR_ZEROED):
+        loop.note(Kind.RESIDUAL_STAYED, **FORCE)
+        loop.tick += 2 * PASSING
+        assert headline(loop, still) == "Free-drive refused: the force stays"
+        assert "differ by -1.8 kg from the configured one" in still.panel.said.text
+        loop.note(mend, tool="none", mass=0.0, total=0.0, x=0.0, y=0.0, z=0.0, force=0.0, torque=0.0, old=0.0, new=0.0)
+        assert "the force stays" not in headline(loop, still)
+
+
+def test_a_contact_hides_no_reason_why_free_drive_did_not_begin(loop: FakeLoop, still: Served) -> None:
+    loop.note(Kind.ACTIVATION_CANCELLED, value=0.9, limit=1.0)
+    loop.note(Kind.CONTACT_LOST, **TOUCH)
+    assert headline(loop, still) == "Free-drive not started: let go too early"
+    loop.tick += PASSING + 1
+    headline(loop, still)
+    loop.note(Kind.CONTACT_LOST, **TOUCH)
+    assert "Contact lost" in headline(loop, still)
 
 
 def test_a_busy_machine_hides_nothing(loop: FakeLoop, still: Served) -> None:

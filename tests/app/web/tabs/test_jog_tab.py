@@ -89,8 +89,11 @@ def test_a_press_that_fell_silent_needs_the_pointer_up_first(hand: Hand, loop: F
     assert loop.desk.take().inputs.jog is None
     hand.hold(0, 1)
     assert loop.desk.take().inputs.jog is None
-    assert hand.tab._told == LIFT_FIRST
+    hand.tab.show(loop.latest(), [])
+    assert LIFT_FIRST in hand.tab.said.shown
     hand.lift()
+    hand.tab.show(loop.latest(), [])
+    assert LIFT_FIRST not in hand.tab.said.shown
     hand.hold(0, 1)
     assert loop.desk.take().inputs.jog is not None
 

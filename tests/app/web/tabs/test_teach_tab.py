@@ -199,7 +199,7 @@ def test_steps_are_inserted_changed_moved_deleted_and_all_of_it_undone(served: S
     client.set(steps.fields["then"]._impl.uuid, value="Retreat")
     until(lambda: steps.fields["back"].visible, "how far")
     press(client, steps.insert, "Replace")
-    until(lambda: texts(teach)[0] == "Until contact, tool +Z, 200 mm, retreat 50 mm", "changed")
+    until(lambda: texts(teach)[0] == "Until contact, tool +Z, 500 mm, retreat 50 mm", "changed")
     client.set(steps.kind._impl.uuid, value="Tell the user")
     until(lambda: steps.fields["says"].visible, "what")
     client.set(steps.fields["says"]._impl.uuid, value="Turn the part")

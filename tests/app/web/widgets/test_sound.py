@@ -54,6 +54,6 @@ def test_switched_off_it_is_silent_and_who_leaves_is_forgotten(served: Served, j
     anyone = len(served.guard._anyone)
     client.close()
     until(lambda: not pages, "forgotten")
-    assert len(served.guard._anyone) == anyone - 2
+    until(lambda: len(served.guard._anyone) == anyone - 3, "its switches and the request for control")
     loop.mode = Mode.STOP
     until(lambda: served.preferences._before is not None and served.preferences._before.mode is Mode.STOP, "seen by nobody")
