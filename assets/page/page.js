@@ -96,6 +96,14 @@
     const moved = (type, at_) => new PointerEvent(type, { bubbles: true, button: 0, buttons: 1, pointerId: 1, isPrimary: true, clientX: at_, clientY: 300 });
     strip.dispatchEvent(moved("pointerdown", x)); window.dispatchEvent(moved("pointermove", width));
     requestAnimationFrame(() => requestAnimationFrame(() => window.dispatchEvent(moved("pointerup", width)))); };
+  // The style sheet shares out the height of the left docks until somebody moves their border: viser begins from what is seen then.
+  addEventListener("pointerdown", (event) => { const border = event.isTrusted && event.target.closest('[data-dock-region="left"] [data-dock-divider="column"]');
+    const docks = border ? [border.previousElementSibling, border.nextElementSibling] : [];
+    if (!border || docks.some((dock) => !dock || dock.style.flexGrow !== "0.5")) return;
+    const [upper, lower] = docks.map((dock) => dock.getBoundingClientRect().height), whole = border.parentElement.getBoundingClientRect().height;
+    const moved = (type, at_) => new PointerEvent(type, { bubbles: true, button: 0, buttons: 1, pointerId: 0, isPrimary: true, clientX: event.clientX, clientY: at_ });
+    border.dispatchEvent(moved("pointerdown", 0)); const by = whole * (upper / (upper + lower) - 0.5);
+    window.dispatchEvent(moved("pointermove", by)); window.dispatchEvent(moved("pointerup", by)); }, true);
   addEventListener("pointerup", () => setTimeout(() => { if (!restored) return;
     const side = left(); if (side && innerWidth > 1000) { const width = Math.round(side.getBoundingClientRect().width); if (width > 60) keep("width", width); } }, 400), true);
   addEventListener("click", () => setTimeout(() => { if (restored)

@@ -11,8 +11,11 @@ from pendant.tick.estimate import Estimate
 LONGEST = 1.0
 """Of a single step [m or rad]."""
 
+NAMES = ("x", "y", "z", "rx", "ry", "rz")
+"""Along x, y, z, and about them."""
+
 TURNS = 3
-"""Axes from here on are turned about: x, y, z along, then x, y, z about."""
+"""Axes from here on are turned about."""
 
 
 class JogMove(Move, tag="jog", frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -29,7 +32,8 @@ class JogMove(Move, tag="jog", frozen=True, forbid_unknown_fields=True, kw_only=
         sign = "+" if self.sign > 0 else "-"
         if self.frame == "joint":
             return f"joint {self.axis + 1} {sign}"
-        return f"{self.frame} {('x', 'y', 'z', 'rx', 'ry', 'rz')[self.axis]} {sign}"
+        axis = NAMES[self.axis] if 0 <= self.axis < len(NAMES) else f"axis {self.axis}"
+        return f"{self.frame} {axis} {sign}"
 
     def moved(self, start: "JogPlace", now: "JogPlace") -> str:
         """How far it has gone from `start` to `now`, and of how much, in words: of the joint, or of the tool centre point."""

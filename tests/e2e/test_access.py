@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 
 from pendant.tick.modes import Mode
 from tests.e2e.cell import Cell
-from tests.e2e.finger import tap
+from tests.e2e.finger import middle, tap
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
@@ -22,6 +22,7 @@ FURTHER = [pytest.param(*size, marks=pytest.mark.every_size) for size in ((1024,
 SIZES = [(820, 1180), *FURTHER]
 NARROW = [(1024, 768), pytest.param(820, 1180, marks=pytest.mark.every_size)]
 GRAVE = ("serious", "critical")
+BORDER = '[data-dock-region="left"] [data-dock-divider="column"]'
 
 CUT = """() => {
   const seen = (e) => {
@@ -125,6 +126,21 @@ def test_what_is_always_needed_is_in_sight_without_scrolling(visit: Visit, cell:
     for name in ("Hold for free-drive", "Leave free-drive", "TEACH", "NORMAL", "EMERGENCY STOP", "Reset", "Run", "Stop", "After"):
         expect(page.get_by_role("button", name=name, exact=True)).to_be_in_viewport(ratio=0.95)
     expect(page.get_by_role("slider", name="Speed [%]")).to_be_in_viewport(ratio=0.95)
+
+
+@pytest.mark.every_size
+def test_the_border_between_the_docks_begins_where_it_is_seen(visit: Visit) -> None:
+    page = ready(visit(1440, 900))
+    (x, y), mouse = middle(page.locator(BORDER)), page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    for to in (y - 12.0, y - 60.0):
+        mouse.move(x, to)
+        # it snaps where a dock has just the height of its content
+        page.wait_for_function(
+            "([it, to]) => Math.abs(document.querySelector(it).getBoundingClientRect().y - to) < 10", arg=[BORDER, to]
+        )
+    mouse.up()
 
 
 def test_the_first_stop_of_the_keyboard_leads_to_the_stop_of_the_arm(visit: Visit, cell: Cell) -> None:

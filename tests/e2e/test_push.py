@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page
 
+from app.web.access import operator
 from pendant.events.event import Kind
 from pendant.tick.modes import Mode, Phase
 from sim.plant.touch import Pull
@@ -40,6 +41,7 @@ def test_guided_by_hand_the_flange_follows_the_pointer_and_stays(visit: Visit, c
     assert moved @ way / np.linalg.norm(way) > 0.050
     page.mouse.up()
     cell.wait(lambda: not cell.loop.desk._touches, "let go")
+    cell.wait(lambda: cell.loop.latest().decision.static, "it has come to rest")
     cell.pass_time(0.5)
     at = cell.position(part, point)
     cell.pass_time(0.5)
@@ -97,7 +99,8 @@ def test_the_stop_of_a_second_finger_is_not_lost_while_the_button_is_held(visit:
     page.mouse.up()
 
 
-def test_the_second_client_watches_can_stop_and_takes_over(visit: Visit, cell: Cell) -> None:
+def test_the_second_client_watches_can_stop_and_takes_over(visit: Visit, cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(operator, "SILENCE", 120.0)  # two pages that draw in software need more than 10 s for a few presses
     first, second = visit(), visit()
     first.get_by_role("button", name="Take").click()
     second.get_by_text("Client 1 has control").wait_for()

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page
+from playwright.sync_api import Page, expect
 
 from app.kept_setup import setup_of
 from app.web.tabs.tool_frame import SCALE as FRAME_SCALE
@@ -60,7 +60,7 @@ def pull_handle(page: Page, cell: Cell, by: float) -> None:
 
 @pytest.mark.parametrize(("width", "height"), LATER)
 def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, height: int) -> None:
-    """A plane 100 mm below the tool, pulled up by its handle; the hand cannot lead the tool through it."""
+    """A plane 100 mm below the tool, pulled up by its handle; free-drive ends at it, as shipped, and the arm holds there."""
     page = visit(width, height)
     tab = cell.served.docks.walls
     open_tab(page, "Walls")
@@ -73,16 +73,18 @@ def test_add_a_wall_and_be_stopped_by_it(visit: Visit, cell: Cell, width: int, h
     assert np.hypot(moved[0] - first[0], moved[1] - first[1]) < 0.005
     use = FirstUse(page, cell)
 
-    def reached() -> bool:
-        return any(event.kind is Kind.WALL_REACHED and event.values["wall"] == "plane 1" for event in cell.loop.events(0))
+    def ended() -> bool:
+        return any(event.kind is Kind.LEFT_WALL and event.values["wall"] == "plane 1" for event in cell.loop.events(0))
 
-    use.drag((0.0, 220.0), reached, "the wall", use.be_free)
-    cell.pass_time(0.5)
+    use.be_free()
+    cell.wait(lambda: tab.handles._gizmo is None, "nothing moves a wall that holds")
+    use.drag((0.0, 220.0), ended, "free-drive ends at the wall", use.be_free)
+    cell.wait(lambda: cell.loop.latest().decision.mode is Mode.TEACH, "left")
+    page.get_by_text("beyond plane 1").first.wait_for()
+    cell.wait(lambda: cell.loop.latest().decision.static, "at rest")
     stopped = float(cell.position("flange")[2])
     cell.pass_time(0.5)
     assert cell.loop.latest().touches, "the hand still pulls, to a place far below"
-    assert cell.loop.latest().decision.mode is Mode.FREE_DRIVE
-    assert tab.handles._gizmo is None, "nothing moves a wall that holds"
     assert abs(float(cell.position("flange")[2]) - stopped) < 0.003
     assert moved[2] - 0.05 < stopped < moved[2] + 0.02  # a hand that pulls with all its force arrives fast
     use.let_go()
@@ -95,6 +97,7 @@ def test_free_only_the_elbow(visit: Visit, cell: Cell, width: int, height: int) 
     click(page, "All locked")
     cell.wait(lambda: not cell.loop.settings.joints.j3, "all are locked")
     elbow = page.get_by_role("checkbox", name="Elbow", exact=True)
+    expect(elbow).not_to_be_checked(timeout=20_000)
     tap(elbow)
     cell.wait(lambda: cell.loop.settings.joints.j3, "the elbow is free")
     start = cell.loop.latest().truth_q.copy()

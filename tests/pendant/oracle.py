@@ -11,7 +11,7 @@ from pendant.all_settings import Settings
 from pendant.event_table import TABLE, render
 from pendant.events.event import Kind
 from pendant.inputs import Button, Command, Inputs
-from pendant.program.jog_move import JogMove
+from pendant.program.jog_move import Jogged, JogMove, MoveStraight, MoveThere
 from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
@@ -20,6 +20,9 @@ from tests.pendant.estimates import estimate
 
 PROGRAM = Program(name="two moves", steps=(JointMove(q=(0.0,) * 6), JointMove(q=(0.1,) * 6)))
 JOG = JogMove(frame="joint", axis=0, sign=1)
+THERE = MoveThere(q=(0.1,) * 6, name="home")
+STRAIGHT = MoveStraight(position=(0.1, 0.2, 0.3), quaternion=(1.0, 0.0, 0.0, 0.0))
+UNFIT = MoveThere(q=(0.0,) * 5)
 WRONG = Program(name="five joints", steps=(JointMove(q=(0.0,) * 5),))
 
 Seen = tuple[Mode, Safety, Phase, Law, ProgramState, int, tuple[Kind, ...]]
@@ -40,7 +43,7 @@ class Step:
     done: bool = False  # the FOLLOW law has finished the present move
     cannot: bool = False  # the FOLLOW law cannot do the move
     load: Program | None = None
-    jog: bool = False  # a jog button is held
+    jog: Jogged | None = None  # what a button that is held moves
     jog_released: bool = False
     settings: dict[str, float | bool | str] = field(default_factory=dict)
 
@@ -125,7 +128,7 @@ def _given(step: Step) -> tuple[Estimate, Inputs]:
         step.commands,
         step.settings,
         step.load,
-        jog=JOG if step.jog else None,
+        jog=step.jog,
         jog_released=step.jog_released,
     )
 
@@ -156,7 +159,7 @@ class World:
     at: int = 0
     jog_refreshed: float = -inf
     jog_let_go: float = -inf
-    jog_pressed: bool = False  # in the last tick
+    jog_asked: Jogged | None = None  # by the press that lasts
     jogging: bool = False
     jog_spent: bool = False  # the press does not count any more
     forces: list[float] = field(default_factory=list)  # of the last tenth of a second, the sensor being valid
@@ -362,24 +365,29 @@ def _load(w: World, i: Step, kinds: list[Kind]) -> None:
 
 
 def _jog(w: World, t: int, i: Step, s: Settings, static: bool, kinds: list[Kind]) -> None:
-    """In TEACH and NORMAL, free-drive off, the arm moves while a jog button is held; what ends that needs a new press."""
+    """In TEACH and NORMAL, free-drive off, the arm moves while a jog button is held; what ends that needs a new press, or another
+    button, and five angles are no posture of six joints."""
     if i.jog:
         w.jog_refreshed = t
     if i.jog_released:
         w.jog_let_go = t
     held = w.jog_let_go < w.jog_refreshed and t - w.jog_refreshed <= _n(s.hold.silence)
     may = w.mode in (Mode.NORMAL, Mode.TEACH) and w.phase is Phase.OFF and i.joints
-    if w.jogging and (not held or i.done or i.cannot or not may):
+    other = i.jog is not None and i.jog != w.jog_asked
+    if w.jogging and (not held or other or i.done or i.cannot or not may):
         kinds.append(Kind.JOG_ENDED)
         w.jogging, w.jog_spent, w.brake = False, True, True
-    elif held and not w.jogging and not (w.jog_pressed and w.jog_spent):
-        w.jog_spent = not may
-        if not may:
+    if held and other:
+        w.jog_asked, w.jog_spent = i.jog, False
+    if held and not w.jogging and not w.jog_spent:
+        w.jog_spent = not may or w.jog_asked is UNFIT
+        if w.jog_spent:
             kinds.append(Kind.JOG_REFUSED)
         elif static:
             kinds.append(Kind.JOG_STARTED)
             w.jogging = True
-    w.jog_pressed = held
+    if not held:
+        w.jog_asked = None
 
 
 def _programs(w: World, t: int, i: Step, s: Settings, static: bool, present: bool, kinds: list[Kind]) -> None:

@@ -1,5 +1,7 @@
 """Every situation x every input, against the oracle; then random streams of inputs."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import settings as hypothesis_settings
@@ -9,7 +11,7 @@ from pendant.all_settings import Settings, apply
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Law, Mode, Phase, Safety
-from tests.pendant.oracle import PROGRAM, WRONG, Agreement, Step, agree, ticks_of
+from tests.pendant.oracle import JOG, PROGRAM, STRAIGHT, THERE, UNFIT, WRONG, Agreement, Step, agree, ticks_of
 
 SHORT = apply(
     Settings(),
@@ -57,7 +59,7 @@ REST = ticks_of(15)
 ON = REST + ticks_of(11, held=True)
 IN_PERIOD = ON + ticks_of(1, released=True) + ticks_of(5)
 IN_GUIDED = IN_PERIOD + ticks_of(3, qd=0.2)
-IN_JOG = REST + ticks_of(3, jog=True)
+IN_JOG = REST + ticks_of(3, jog=JOG)
 IN_RUN = [*REST, Step(load=PROGRAM), Step(commands=(Command.START_PROGRAM,)), Step()]
 
 SITUATIONS = {
@@ -69,8 +71,8 @@ SITUATIONS = {
     "RUN paused": ([*IN_RUN, Step(commands=(Command.PAUSE_PROGRAM,))], Mode.RUN, Phase.OFF),
     "TEACH braking": ([*IN_RUN, *ticks_of(2, qd=0.5), Step(commands=(Command.STOP_PROGRAM,), qd=0.3)], Mode.TEACH, Phase.OFF),
     "jogging": (IN_JOG, Mode.TEACH, Phase.OFF),
-    "jog refused": ([*ON, *ticks_of(2, jog=True, held=True)], Mode.FREE_DRIVE, Phase.HELD),
-    "jog spent": ([*IN_JOG, Step(jog=True, cannot=True)], Mode.TEACH, Phase.OFF),
+    "jog refused": ([*ON, *ticks_of(2, jog=JOG, held=True)], Mode.FREE_DRIVE, Phase.HELD),
+    "jog spent": ([*IN_JOG, Step(jog=JOG, cannot=True)], Mode.TEACH, Phase.OFF),
     "emergency stop": ([*REST, Step(commands=(Command.EMERGENCY_STOP,))], Mode.STOP, Phase.OFF),
     "emergency stop, moving": ([*ON, Step(commands=(Command.EMERGENCY_STOP,), qd=0.4)], Mode.STOP, Phase.OFF),
     "safeguard stop": ([*REST, Step(commands=(Command.SAFEGUARD_OPEN,))], Mode.STOP, Phase.OFF),
@@ -119,12 +121,12 @@ INPUTS = {
     "move done": Step(done=True),
     "move not possible": Step(cannot=True),
     "move done and not possible": Step(done=True, cannot=True, qd=0.1),
-    "jog": Step(jog=True),
-    "jog and let go": Step(jog=True, jog_released=True),
+    "jog": Step(jog=JOG),
+    "jog and let go": Step(jog=JOG, jog_released=True),
     "jog let go": Step(jog_released=True),
-    "jog, moving": Step(jog=True, qd=0.2),
-    "jog, held": Step(jog=True, held=True),
-    "jog without sensors": Step(jog=True, joints=False),
+    "jog, moving": Step(jog=JOG, qd=0.2),
+    "jog, held": Step(jog=JOG, held=True),
+    "jog without sensors": Step(jog=JOG, joints=False),
     "load": Step(load=PROGRAM),
     "load wrong": Step(load=WRONG),
     "start without sensors": Step(commands=(Command.START_PROGRAM,), joints=False),
@@ -139,6 +141,9 @@ INPUTS = {
     **{f"{command}, held": Step(commands=(command,), held=True) for command in Command},
 }
 
+JOGS = {"a joint": JOG, "to a posture": THERE, "straight to a pose": STRAIGHT, "to an unfit posture": UNFIT}
+"""What a held button may ask for."""
+
 FOR_OPTIONS = {
     name: step
     for name, step in INPUTS.items()
@@ -148,7 +153,7 @@ FOR_OPTIONS = {
 AFTER = {
     "rest": ticks_of(270),
     "hold on": ticks_of(80, held=True) + ticks_of(55),
-    "jog on": ticks_of(20, jog=True) + ticks_of(55),
+    "jog on": ticks_of(20, jog=JOG) + ticks_of(55),
     "press again later": ticks_of(70) + ticks_of(15, held=True) + ticks_of(2),
 }
 
@@ -178,6 +183,37 @@ def test_every_input_in_every_situation_does_what_the_spec_says(name: str, after
     agreement = Agreement(SHORT, AFTER[after])
     for step in INPUTS.values():
         agreement.agree([*stream, step])
+
+
+@pytest.mark.parametrize("asked", JOGS)
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_every_jog_in_every_situation_does_what_the_spec_says(name: str, asked: str) -> None:
+    """Pressed where nothing was, or in place of what moves; kept, and let go."""
+    for count in (1, 12):
+        agree([*SITUATIONS[name][0], *ticks_of(count, jog=JOGS[asked]), Step(jog_released=True), *ticks_of(12)], SHORT)
+
+
+@pytest.mark.parametrize("asked", ["to a posture", "straight to a pose"])
+def test_every_input_while_the_arm_is_jogged_somewhere_does_what_the_spec_says(asked: str) -> None:
+    """What ends it once is not begun again by the same press."""
+    stream = [*REST, *ticks_of(3, jog=JOGS[asked])]
+    assert agree(stream, SHORT)[-1][3] is Law.FOLLOW
+    agreement = Agreement(SHORT, [*ticks_of(20, jog=JOGS[asked]), *ticks_of(55), *ticks_of(3, jog=JOGS[asked])])
+    for step in INPUTS.values():
+        agreement.agree([*stream, step])
+        agreement.agree([*stream, replace(step, jog=JOGS[asked])])
+
+
+@pytest.mark.parametrize("asked", JOGS)
+def test_around_its_limits_a_jog_is_as_the_spec_says(asked: str) -> None:
+    """Silent for 50 ticks it goes on, and an arm that has stood for 10 begins."""
+    held = JOGS[asked]
+    for silent in (1, 48, 49, 50, 51, 52):
+        agree([*REST, *ticks_of(3, jog=held), *ticks_of(silent), *ticks_of(3, jog=held), *ticks_of(60)], SHORT)
+    for still in (0, 1, 8, 9, 10, 11):
+        agree([*REST, *ticks_of(3, qd=0.2), *ticks_of(still), *ticks_of(1, jog=held), *ticks_of(12)], SHORT)
+    for speed in (0.00999, 0.01, 0.01001):
+        agree([*REST, *ticks_of(12, qd=speed), *ticks_of(3, jog=held, qd=speed)], SHORT)
 
 
 @pytest.mark.parametrize("name", SITUATIONS)
@@ -218,7 +254,7 @@ STEPS = st.builds(
     done=st.booleans(),
     cannot=st.sampled_from([False] * 9 + [True]),
     load=st.sampled_from([None, None, PROGRAM, WRONG]),
-    jog=st.sampled_from([False, False, True]),
+    jog=st.sampled_from([None, None, None, JOG, JOG, THERE, STRAIGHT, UNFIT]),
     jog_released=st.sampled_from([False, False, False, True]),
 )
 USUAL = st.sampled_from(
@@ -228,7 +264,7 @@ USUAL = st.sampled_from(
         ticks_of(60, held=True),
         ticks_of(140, held=True),
         [Step(released=True)],
-        ticks_of(20, jog=True),
+        ticks_of(20, jog=JOG),
         ticks_of(60),
         ticks_of(152),
         ticks_of(20, qd=0.2),

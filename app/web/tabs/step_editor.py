@@ -191,8 +191,9 @@ class StepEditor:
         }
         if step.to is not None:
             values["to"] = step.to
-        for name, value in values.items():
-            self.fields[name].value = value
+        for name in FIELDS.get(step.do, ()):  # what it does not have stays as it was typed, or as it begins
+            if name in values:
+                self.fields[name].value = values[name]
         self.when.value = next(text for text, when in CONDITIONS.items() if when == step.when)
         self._see_fields()
         self._edited(step.to)

@@ -223,7 +223,7 @@ class Teach:
     def _rename(self, new: str) -> None:
         old = self.choice.value
         taken = any(waypoint.name == new for waypoint in self.lesson.waypoints)
-        if old != NO_WAYPOINT and 0 < len(new) <= 40 and not taken:
+        if old != NO_WAYPOINT and len(new) <= 40 and not taken:
             self.edits.to(self.lesson.renamed(old, new))
             self._refresh(new)
         else:

@@ -213,7 +213,7 @@ class WallsTab:
 
     def _rename(self, name: str) -> None:
         border, names = self.chosen, [each.name for each in self.borders]
-        if border is None or not name or (name in names and name != border.name):
+        if border is None or (name in names and name != border.name):
             self.message.show(svg.note("Not renamed", "Each wall needs a name of its own.", Colour.AMBER))
             self._refresh()
             return

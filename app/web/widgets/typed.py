@@ -30,10 +30,11 @@ class Typed:
             self._waiting = asyncio.get_running_loop().call_later(SETTLED, self._settle)
 
     def bring(self, text: str) -> None:
-        """Let the field say `text`, unless somebody types."""
-        if self._waiting is None and self._field.value != text:
+        """Let the field say `text`, unless somebody types; a blank at its end is of what is typed next."""
+        if self._waiting is None and self._field.value.strip() != text:
             self._field.value = text
 
     def _settle(self) -> None:
         self._waiting = None
-        self._meant(self._field.value.strip())
+        if text := self._field.value.strip():  # else it is only emptied
+            self._meant(text)

@@ -197,6 +197,24 @@ def test_what_it_wanted_is_begun_again_after_a_pause() -> None:
     assert again.id > first.id
 
 
+def test_after_a_hand_has_guided_for_a_script_the_script_asks_for_what_comes_next() -> None:
+    """Free-drive ends, the arm comes to rest, and the script may ask again."""
+    bench = running(free_drive__allowed_from__run=True)
+    guided = Guided(id=1, axes=(True, True, False, False, False, False))
+    for _ in range(2000):
+        said(bench, guided)
+        if bench.last.mode is Mode.FREE_DRIVE:
+            break
+    bench.step(Inputs(script=Scripted(move=guided), commands=(Command.LEAVE_FREE_DRIVE,)))
+    assert bench.last.mode is Mode.RUN
+    for _ in range(60):
+        said(bench, guided)
+    assert isinstance(bench.last.move, RunScript)
+    assert bench.last.script_done == 1
+    said(bench, joints(2))
+    assert isinstance(bench.last.move, ScriptedJoints)
+
+
 def test_an_arm_that_a_script_has_guided_leaves_free_drive_before_it_moves() -> None:
     bench = running(free_drive__allowed_from__run=True)
     said(bench, Guided(id=1, axes=(True, True, False, False, False, False)))

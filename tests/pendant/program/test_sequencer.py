@@ -2,8 +2,9 @@
 
 import pytest
 
+from pendant.contact.contact_change import ArmPose
 from pendant.program.sequencer import PATIENCE, Sequencer
-from pendant.program.steps import ApplyForce, JointMove, Program, ProgramState, Wait, ZeroSensor
+from pendant.program.steps import ApplyForce, ContactMove, JointMove, LinearMove, Program, ProgramState, Wait, ZeroSensor
 from pendant.tick.pose import UNTURNED
 
 STEPS = (Wait(duration=0.01), JointMove(q=(0.0,) * 6))
@@ -76,3 +77,15 @@ def test_the_sensor_may_be_zeroed_before_any_program_begins() -> None:
     sequencer.start((0.5, 0.0, 0.0))
     assert isinstance(sequencer.move, ApplyForce)
     assert sequencer.move.untouched == (0.5, 0.0, 0.0)
+
+
+def test_until_it_is_known_where_the_arm_is_a_move_until_contact_has_no_line() -> None:
+    sequencer = Sequencer()
+    sequencer.load(Program(steps=(ContactMove(),)))
+    sequencer.start()
+    step = sequencer.move
+    assert not sequencer.step(0)
+    assert sequencer.move is step
+    assert not sequencer.step(0, lambda: ArmPose((0.0,) * 6, (0.1, 0.2, 0.3), UNTURNED))
+    assert isinstance(sequencer.move, LinearMove)
+    assert sequencer.move.position == pytest.approx((0.1, 0.2, 0.1))

@@ -226,6 +226,21 @@ def test_a_wall_gets_another_name_once_it_is_typed(served: Served, join: Join, l
     assert loop.borders == (replace(BALL, name="round the part"), FLOOR)
 
 
+def test_who_types_slowly_is_not_interrupted(served: Served, join: Join, loop: FakeLoop) -> None:
+    """An emptied field is no name yet, and a blank before the next word stays."""
+    have(loop, BALL)
+    client, tab = join(), served.docks.walls
+    until(lambda: tab.name.value == "ball", "its name")
+    client.set(tab.name._impl.uuid, value="")
+    until(lambda: tab._typed._waiting is not None, "it is emptied")
+    until(lambda: tab._typed._waiting is None, "for a while")
+    assert (tab.name.value, tab.message.shown) == ("", "")
+    client.set(tab.name._impl.uuid, value="round ")
+    wished(loop, lambda walls: walls == (replace(BALL, name="round"),), "renamed")
+    until(lambda: tab.choice.value == "round", "and chosen")
+    assert tab.name.value == "round "
+
+
 def test_walls_that_are_switched_off_at_all_are_told(served: Served, loop: FakeLoop) -> None:
     have(loop, BALL)
     tab = served.docks.walls
