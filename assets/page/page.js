@@ -125,9 +125,11 @@
       if (text.length < 2) set(group, "aria-label", `${labelled(group)}: ${{ "↑": "up", "↓": "down", "✕": "delete" }[text] || text}`); }
     for (const one of all(".mantine-Button-root[data-size=compact-xs]")) if (/^(TEACH|NORMAL)$/.test(one.textContent.trim()))
       set(one, "aria-pressed", String(one.textContent.trim() === mode()));
-    // viser greets each file before anybody has looked into it: what became of it stands beside the button.
+    // viser greets each file before anybody has looked into it: what became of it stands below the button.
     for (const note of all(".mantine-Notification-description")) { const text = note.firstChild;
-      if (text && text.nodeValue === "File uploaded successfully.") text.nodeValue = "The file has arrived. What became of it stands beside the button."; }
+      if (text && text.nodeValue === "File uploaded successfully.") text.nodeValue = "The file has arrived. What became of it stands below the button."; }
+    // viser tells every page of a file that one of them sent, and pages that come later; only the sender knows its name.
+    for (const title of all(".mantine-Notification-title")) if (title.textContent.startsWith("Uploading undefined")) title.closest(".mantine-Notification-root").style.display = "none";
     for (const fold of all('[aria-label="Collapse panel area"]')) set(fold, "title", "Fold this side away");
     for (const close of all(".mantine-Notification-closeButton")) set(close, "aria-label", "Close this message");
     all("button.mantine-ActionIcon-root:not([aria-label])").forEach((icon, i) => set(icon, "aria-label", i ? "Connection and view" : "Command palette"));

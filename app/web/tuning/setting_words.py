@@ -36,6 +36,8 @@ TITLES = {
 }
 
 SAFETY = {
+    "free_drive.period": "Free-drive, no motion",
+    "free_drive.restart_period": "Free-drive, standstill",
     "limits.operation.tcp_speed.max": "Tool speed, guided",
     "limits.operation.elbow_speed.max": "Elbow speed, guided",
     "limits.operation.joint_speed.max": "Joint speed, guided",
@@ -46,8 +48,6 @@ SAFETY = {
     "joint_limits.on": "Stop at joint ranges",
     "button.hold_to_run": "Hold-to-run free-drive",
     "enabling.on": "Enabling device",
-    "free_drive.period": "Free-drive, no motion",
-    "free_drive.restart_period": "Free-drive, standstill",
 }
 """The values of a robot's safety screen, with the names that they have there."""
 
