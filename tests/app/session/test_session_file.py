@@ -198,8 +198,8 @@ def test_what_the_schema_forbids_is_refused_in_one_line(fields: dict[str, Any], 
 
 
 LASTS = {"payload-by-itself": 42.0, "contact-3-compared": 17.0, "contact-4-compared": 17.0}
-"""Sessions that cannot be short [s]: the wrist goes through six postures, there and back, and stands in each; one rule after the other
-is held against a push below and one above its limit."""
+"""Sessions that cannot be short [s]: the wrist goes through six postures, there and back, and stands in each; one
+rule after the other is held against a push below and one above its limit."""
 
 
 @pytest.mark.parametrize("name", bundled("sessions"))
