@@ -190,9 +190,11 @@ def uploads(report: Report, loop: "Loop", served: "Served") -> None:
     dropped, answered = loop.dropped, 0
     editor, teach = served.docks.tools.editor, served.docks.teach
     with join(served.url) as client:
+        while not served.server.get_clients():
+            time.sleep(0.005)
         for number in range(200):
             name, content = f"file-{number}.yaml", files[number % len(files)]
-            where, said = (teach.load, teach.message) if number % 2 else (editor.load, editor.message)
+            where, said = (teach.load, teach.filed) if number % 2 else (editor.load, editor.message)
             if not number % 2:  # disabled while the arm is free: handed over as if it were not
                 served.server.get_event_loop().call_soon_threadsafe(editor.read, name, content)
             else:
