@@ -102,11 +102,12 @@ def test_the_operator_sets_every_control_to_its_other_end(served: Served, join: 
     usable = {u: c for u, c in controls(served).items() if c.visible and not c.disabled}
     able = [u for u, c in usable.items() if not isinstance(c, viser.GuiUploadButtonHandle)]
     settings = served.docks.settings
-    view = settings.view._impl.uuid
     before = (settings.section.visible, settings.preset.visible)
     assert len(able) > 40
     teach = served.docks.teach
-    late = ["", teach.register._impl.uuid, teach.steps.insert._impl.uuid, view]  # they make other options and controls
+    # They make other options and controls, or take some away.
+    makers = (teach.steps.kind, teach.steps.loop, teach.register, teach.steps.insert, settings.view)
+    late = ["", *(control._impl.uuid for control in makers)]
     for uuid in sorted(able, key=lambda uuid: late.index(uuid) if uuid in late else 0):
         client.set(uuid, value=other_value(controls(served)[uuid]))
     until(lambda: (settings.section.visible, settings.preset.visible) != before, "the last of them")
