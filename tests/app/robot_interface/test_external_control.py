@@ -192,9 +192,9 @@ def test_a_trajectory_is_canceled_on_its_way(cell: Cell) -> None:
 
 def test_free_drive_goes_through_the_activation_although_it_is_asked_for_again_and_again(cell: Cell) -> None:
     cell.control.do(ControlMode.FREE_DRIVE, [1e-6, *ZEROS[1:]])
-    cell.robot.wait_until(15.0, mode="FREE_DRIVE")
+    assert cell.robot.wait_until(15.0, mode="FREE_DRIVE")["mode"] == "FREE_DRIVE"
     cell.control.do(ControlMode.IDLE)
-    cell.robot.wait_until(15.0, mode="RUN")
+    assert cell.robot.wait_until(15.0, mode="RUN")["mode"] == "RUN"
 
 
 def test_commands_of_the_moment(cell: Cell) -> None:

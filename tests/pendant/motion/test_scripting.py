@@ -100,8 +100,9 @@ def test_a_push_that_cannot_be_says_so(changes: dict[str, Any], told: str) -> No
 
 
 def test_a_push_may_be_as_strong_as_it_can_and_what_is_not_free_does_not_count() -> None:
-    replace(PUSHING, wrench=(999.0, 0.0, 90.0, 10.0, 0.0, 0.0))
-    replace(PUSHING, wrench=(0.0, 0.0, 90.0, 0.0, 0.0, 10.0), free=(True,) * 6, limits=(0.0,) * 6)
+    strong, still = (999.0, 0.0, 90.0, 10.0, 0.0, 0.0), (0.0, 0.0, 90.0, 0.0, 0.0, 10.0)
+    assert replace(PUSHING, wrench=strong).wrench == strong
+    assert replace(PUSHING, wrench=still, free=(True,) * 6, limits=(0.0,) * 6).limits == (0.0,) * 6
 
 
 def test_until_it_asks_for_something_the_arm_stands() -> None:

@@ -28,6 +28,7 @@ def test_another_seed_posture_or_belief_compiles_nothing(monkeypatch: pytest.Mon
     model_of(ARM, Scenario(), Step())
     monkeypatch.setattr(model, "build", None)
     model_of(ARM, Scenario(seed=3, posture=[0.1] * 6, payload_configured=Load(mass=1.0)), Step())
+    assert len(model._compiled) == 1
 
 
 @pytest.mark.parametrize(

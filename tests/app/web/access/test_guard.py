@@ -349,6 +349,7 @@ def test_a_foreign_host_is_refused(served: Served, host: str) -> None:
 @pytest.mark.parametrize("host", ["localhost", "127.0.0.1:9999", "localhost:8080", "[::1]:8080"])
 def test_a_host_of_this_machine_is_let_in(served: Served, host: str) -> None:
     _with_host(served.url, host)
+    assert dict(served.guard.refused) == {}
 
 
 def test_two_hosts_are_refused(served: Served) -> None:
