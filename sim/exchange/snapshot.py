@@ -9,6 +9,7 @@ from pendant.decision import Decision
 from pendant.tick.estimate import Estimate
 from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder
+from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Scenario
 
 
@@ -41,3 +42,15 @@ class Snapshot:
     scenario: Scenario | None = None  # what the simulation started from; the same object for all of its ticks
     reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]
     places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B
+
+    @property
+    def p_FT(self) -> NDArray[np.float64]:
+        """(3,) The centre point of the tool in use, in F [m]; the flange's own where none is fitted."""
+        fitting = self.decision.fitting
+        return np.zeros(3) if fitting is None else np.array(fitting.tool.tcp)
+
+    @property
+    def R_FT(self) -> NDArray[np.float64]:
+        """(3, 3) How the tool in use is turned in F; not at all where none is fitted."""
+        fitting = self.decision.fitting
+        return np.eye(3) if fitting is None else rotation_from_rpy(fitting.tool.rpy)

@@ -1,7 +1,7 @@
 """Who has control, shown to each client in its own words, with buttons to take it, to ask for it, to give it back.
 
-Of three one is shown: a single one could be drawn anew between a press and what the press does, and would then do the opposite
-of what was pressed.
+One of the three is shown. A single button with three labels could change its label between a press and what the press does, and
+would then do the opposite of what was pressed.
 """
 
 import math

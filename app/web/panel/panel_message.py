@@ -36,7 +36,7 @@ ENDED = frozenset({Effect.ENTER, Effect.TRY})
 CONTACTS = frozenset({Kind.CONTACT_GAINED, Kind.CONTACT_LOST, Kind.CONTACT_RESISTANCE, Kind.CONTACT_CLAMPING})
 """Events that hide no reason why free-drive did not begin: who drags an arm that is not free makes contacts."""
 
-MENDED = frozenset({Kind.PAYLOAD_CHANGED, Kind.SENSOR_ZEROED, Kind.RESIDUAL_GONE})
+MENDED = frozenset({Kind.PAYLOAD_CHANGED, Kind.SENSOR_ZEROED})
 """Events after which a force that stayed is the past."""
 
 

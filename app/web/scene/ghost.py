@@ -57,9 +57,8 @@ class Ghost:
             shape = limbs(self._arm, wanted)
             base = snapshot.truth_links[0]
             vertices = shape.vertices @ matrix_from_quaternion(base[3:]).T + base[:3]
-            flange, fitting = joint_frames(self._arm, np.array(wanted))[-1], snapshot.decision.fitting
-            tip = np.zeros(3) if fitting is None else np.array(fitting.tool.tcp)
-            self._label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ tip + flange[:3, 3]) + base[:3]
+            flange = joint_frames(self._arm, np.array(wanted))[-1]
+            self._label.position = matrix_from_quaternion(base[3:]) @ (flange[:3, :3] @ snapshot.p_FT + flange[:3, 3]) + base[:3]
             points, faces = vertices.astype(np.float32), shape.faces
             self._node = self._server.scene.add_mesh_simple(
                 self._name, points, faces, color=self._colour, opacity=0.3, cast_shadow=False, receive_shadow=False

@@ -10,6 +10,7 @@ from app.web.running import Running
 from app.web.scene.ghost import Ghost
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html, enable
+from app.web.widgets.vector_field import vector
 from pendant.event_table import render
 from pendant.events.event import Event, Kind
 from pendant.program.jog_move import TURNS, Jogged, JogMove, MoveStraight, MoveThere
@@ -93,14 +94,11 @@ class JogTab:
             for sign in (-1, 1):
                 button = gui.add_button(self._label(axis, sign), color="gray", hint="Hold it")
                 self.buttons[axis, sign] = button
-                button.on_hold(callback_hz=HOLD_RATE)(self._held((axis, sign)))
-                button.on_click(self._lifted)
+                self._holds(button, (axis, sign))
         self.home = gui.add_button("Home", color="gray", icon=viser.Icon.HOME, hint="Hold it: to the home posture")
         self.there = gui.add_button("To the sliders", color="gray", hint="Hold it: to the angles of the sliders")
-        self.home.on_hold(callback_hz=HOLD_RATE)(self._held(HOME))
-        self.there.on_hold(callback_hz=HOLD_RATE)(self._held(THERE))
-        for button in (self.home, self.there):
-            button.on_click(self._lifted)
+        self._holds(self.home, HOME)
+        self._holds(self.there, THERE)
         Html(gui, style.pairs([button._impl.uuid for button in (*self.buttons.values(), self.home, self.there)]))
         self.pose = Html(gui)
         with gui.add_folder("Joint angles to move to", expand_by_default=False):
@@ -110,12 +108,11 @@ class JogTab:
             ]
             self.here = gui.add_button("As the arm is now", color="gray")
         with gui.add_folder("Pose of the tool to move to", expand_by_default=False):
-            self.at = _vector(gui, "Place [mm]", FARTHEST, 0.1, hint="x, y, z in the base")
-            self.turned = _vector(gui, "Turned [°]", FULLEST, 0.01, hint="Roll, pitch, yaw")
+            self.at = vector(gui, "Place [mm]", FARTHEST, 0.1, hint="x, y, z in the base")
+            self.turned = vector(gui, "Turned [°]", FULLEST, 0.01, hint="Roll, pitch, yaw")
             self.now = gui.add_button("As the tool is now", color="gray")
             self.straight = gui.add_button("Straight to it", color="gray", hint="Hold it: along a straight line")
-            self.straight.on_hold(callback_hz=HOLD_RATE)(self._held(STRAIGHT))
-            self.straight.on_click(self._lifted)
+            self._holds(self.straight, STRAIGHT)
             Html(gui, style.held(self.straight._impl.uuid))
         self._fill_pose()
         self.ghost = Ghost(server, arm, "/ghost/posture", BLUE)
@@ -160,11 +157,10 @@ class JogTab:
     def _fill_pose(self) -> None:
         """Let the typed pose be where the tool is."""
         snapshot = self._loop.latest()
-        seen, fitting = snapshot.estimate, snapshot.decision.fitting
-        R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
+        seen = snapshot.estimate
         x, y, z = (round(1000.0 * float(value), 1) for value in seen.tcp[:3])
         self.at.value = (x, y, z)
-        roll, pitch, yaw = (round(math.degrees(angle), 2) for angle in rpy_from_matrix(R_BT))
+        roll, pitch, yaw = (round(math.degrees(angle), 2) for angle in rpy_from_matrix(seen.R_BF @ snapshot.R_FT))
         self.turned.value = (roll, pitch, yaw)
 
     def _angles(self) -> tuple[float, ...]:
@@ -202,6 +198,11 @@ class JogTab:
             return [(name, f"{math.degrees(angle):.1f}°") for name, angle in zip(self._names, seen.q, strict=True)]
         x, y, z = (1000.0 * value for value in seen.tcp[:3])
         return [("Tool, in the base", f"{x:.1f}, {y:.1f}, {z:.1f} mm")]
+
+    def _holds(self, button: viser.GuiButtonHandle, which: Which) -> None:
+        """Let the arm move while the button is held."""
+        button.on_hold(callback_hz=HOLD_RATE)(self._held(which))
+        button.on_click(self._lifted)
 
     def _held(self, which: Which) -> Callable[[viser.GuiEvent], Coroutine[Any, Any, None]]:
         async def held(event: viser.GuiEvent) -> None:
@@ -272,7 +273,3 @@ class JogTab:
 def _farthest(arm: Arm) -> list[float]:
     """The largest angle of each joint, either way [°]; down to a tenth, which the page shows."""
     return [math.floor(10.0 * math.degrees(most)) / 10.0 for most in arm.limits.position]
-
-
-def _vector(gui: viser.GuiApi, label: str, most: float, step: float, *, hint: str) -> viser.GuiVector3Handle:
-    return gui.add_vector3(label, (0.0, 0.0, 0.0), min=(-most, -most, -most), max=(most, most, most), step=step, hint=hint)

@@ -20,7 +20,7 @@ from pendant.inputs import Command
 from pendant.program.steps import ProgramState, misfit
 from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
-from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.frames import quaternion_from_matrix
 from sim.exchange.snapshot import Snapshot
 
 BLUE = (25, 113, 194)
@@ -112,13 +112,11 @@ class Teach:
     def _here(self, snapshot: Snapshot, name: str) -> Waypoint:
         """Where the arm is, as a waypoint."""
         seen = snapshot.estimate
-        fitting = snapshot.decision.fitting
-        R_BT = seen.R_BF if fitting is None else seen.R_BF @ rotation_from_rpy(fitting.tool.rpy)
         return Waypoint(
             name=name,
             q=np.round(seen.q, 6).tolist(),
             position=np.round(seen.tcp[:3], 6).tolist(),
-            quaternion=np.round(quaternion_from_matrix(R_BT), 8).tolist(),
+            quaternion=np.round(quaternion_from_matrix(seen.R_BF @ snapshot.R_FT), 8).tolist(),
         )
 
     def _edited(self, place: str | None) -> None:

@@ -17,6 +17,7 @@ from app.web.tabs.tool_frame import ToolPlace
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
 from app.web.widgets.svg import Colour
+from app.web.widgets.vector_field import vector
 from pendant.equipment.tools import MOST, Tool, tool_problem
 from pendant.settings.bounds import FARTHEST
 from sim.arm.arm_file import Arm
@@ -29,6 +30,11 @@ class Unit(NamedTuple):
 
     many: float
     digits: int
+
+    @property
+    def step(self) -> float:
+        """The least difference that is shown."""
+        return 10.0**-self.digits
 
 
 MILLIMETRES, DEGREES, SQUARE_CENTIMETRES = Unit(1e3, 1), Unit(180.0 / math.pi, 2), Unit(1e4, 2)
@@ -67,12 +73,14 @@ class ToolEditor:
         with gui.add_folder("Edit the table", expand_by_default=False):
             self.name = gui.add_text("Name", BARE.name)
             self.mass = gui.add_number("Mass [kg]", 0.0, min=0.0, max=OVERLOAD * arm.payload, step=0.001)
-            self.com = _vector(gui, "Centre [mm]", MILLIMETRES, FAR, hint="Centre of mass in the flange: x, y, z")
-            self.tcp = _vector(gui, "TCP [mm]", MILLIMETRES, FAR, hint="Tool centre point in the flange: x, y, z")
-            self.rpy = _vector(gui, "Turned [°]", DEGREES, FULLEST, hint="Roll, pitch, yaw of the tool in the flange")
+            self.com = vector(gui, "Centre [mm]", FAR, MILLIMETRES.step, hint="Centre of mass in the flange: x, y, z")
+            self.tcp = vector(gui, "TCP [mm]", FAR, MILLIMETRES.step, hint="Tool centre point in the flange: x, y, z")
+            self.rpy = vector(gui, "Turned [°]", FULLEST, DEGREES.step, hint="Roll, pitch, yaw of the tool in the flange")
             self.known = gui.add_checkbox("Own inertia", False, hint="Else it follows from mass and shape")
-            self.moments = _vector(gui, "I [kg·cm²]", SQUARE_CENTIMETRES, HEAVIEST, hint="xx, yy, zz about the centre")
-            self.products = _vector(gui, "I xy xz yz", SQUARE_CENTIMETRES, HEAVIEST, hint="Products about the centre [kg·cm²]")
+            self.moments = vector(gui, "I [kg·cm²]", HEAVIEST, SQUARE_CENTIMETRES.step, hint="xx, yy, zz about the centre")
+            self.products = vector(
+                gui, "I xy xz yz", HEAVIEST, SQUARE_CENTIMETRES.step, hint="Products about the centre [kg·cm²]"
+            )
             self.change = gui.add_button_group(
                 "Table", (ADD, SET, DELETE), hint="Add this, set the chosen one to it, delete that"
             )
@@ -219,11 +227,6 @@ class ToolEditor:
         @self.load.on_upload
         async def _(_: viser.GuiEvent) -> None:
             self.read(self.load.value.name, self.load.value.content)
-
-
-def _vector(gui: viser.GuiApi, label: str, unit: Unit, most: float, *, hint: str) -> viser.GuiVector3Handle:
-    step = 10.0**-unit.digits
-    return gui.add_vector3(label, (0.0, 0.0, 0.0), min=(-most, -most, -most), max=(most, most, most), step=step, hint=hint)
 
 
 def _shown(values: Sequence[float], unit: Unit) -> tuple[float, ...]:

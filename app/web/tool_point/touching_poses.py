@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import viser
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from app.web.widgets import svg
 from app.web.widgets.html import Html, enable
@@ -63,9 +63,7 @@ def tip_of(poses: Sequence[FlangePose]) -> TipPoint | None:
 
 def flange_of(snapshot: Snapshot) -> FlangePose:
     """Where the flange is, as the controller knows it."""
-    seen, fitting = snapshot.estimate, snapshot.decision.fitting
-    tip: ArrayLike = np.zeros(3) if fitting is None else fitting.tool.tcp
-    return FlangePose(seen.tcp[:3] - seen.R_BF @ np.asarray(tip), seen.R_BF.copy())
+    return FlangePose(snapshot.estimate.p_BF.copy(), snapshot.estimate.R_BF.copy())
 
 
 class TouchingPoses:

@@ -15,7 +15,6 @@ from pendant.walls.barrier import Place
 from pendant.walls.definitions import AnyBorder, Area
 from pendant.walls.settings import Reaction
 from pendant.walls.shapes import AnyShape, Box, Cylinder, HalfSpace, Sphere
-from sim.arm.frames import rotation_from_rpy
 from sim.exchange.snapshot import Snapshot
 
 Array = NDArray[np.float64]
@@ -136,10 +135,9 @@ def tool_pose(p_BF: Array, R_BF: Array, tcp: Vector, R_FT: Array) -> Pose:
 
 def tool_now(snapshot: Snapshot) -> Pose:
     """Of the tool centre point, in B, as the controller knows it."""
-    fitting, seen = snapshot.decision.fitting, snapshot.estimate
-    tcp, rpy = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)) if fitting is None else (fitting.tool.tcp, fitting.tool.rpy)
-    x, y, z = tcp
-    return tool_pose(seen.p_BF, seen.R_BF, (x, y, z), rotation_from_rpy(rpy))
+    seen = snapshot.estimate
+    x, y, z = snapshot.p_FT.tolist()
+    return tool_pose(seen.p_BF, seen.R_BF, (x, y, z), snapshot.R_FT)
 
 
 def inwards(area: Area) -> Vector:

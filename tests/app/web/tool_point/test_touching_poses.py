@@ -75,5 +75,5 @@ def test_on_the_page_the_tools_tcp_is_set(
 
 def test_the_flange_is_where_the_controller_knows_it(loop: FakeLoop) -> None:
     snapshot: Snapshot = loop.latest()
-    snapshot.estimate.tcp[:3] = (0.1, 0.2, 0.3)
+    snapshot.estimate.p_BF[:] = (0.1, 0.2, 0.3)
     np.testing.assert_allclose(flange_of(snapshot).p, (0.1, 0.2, 0.3))
