@@ -31,10 +31,12 @@ class Client:
         self._socket: ClientConnection
 
     def come(self) -> None:
-        """Open the page; nothing of it has been seen yet."""
+        """Open the page, and wait until its free-drive button is there: nobody uses what is not seen yet."""
         self.things.clear()
         self._socket = connect(self._url, subprotocols=[VERSION], max_size=None, proxy=None)
         self.send(CAMERA)
+        while not any(thing.get("label") in FREE_DRIVE for thing in self.things.values()):
+            self.look(0.1)
 
     def go(self) -> None:
         """Close the page."""
