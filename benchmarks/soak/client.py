@@ -14,6 +14,8 @@ from benchmarks.viewer import CAMERA, VERSION
 
 FREE_DRIVE = ("Hold for free-drive", "Press to confirm")  # one button: what it is called depends on what is asked for
 
+BUILT = 30.0  # within which a page is there again [s]
+
 HOLD_RATE = 20.0  # of the messages of a held button and of a drag, as a browser sends them [Hz]
 
 
@@ -35,8 +37,7 @@ class Client:
         self.things.clear()
         self._socket = connect(self._url, subprotocols=[VERSION], max_size=None, proxy=None)
         self.send(CAMERA)
-        while not any(thing.get("label") in FREE_DRIVE for thing in self.things.values()):
-            self.look(0.1)
+        self.called(*FREE_DRIVE)
 
     def go(self) -> None:
         """Close the page."""
@@ -64,8 +65,18 @@ class Client:
         self.send({"type": "GuiUpdateMessage", "uuid": name, "updates": {"value": value}})
 
     def called(self, *labels: str) -> str:
-        """The name of the control with one of these labels."""
-        return next(name for name, thing in self.things.items() if thing.get("label") in labels)
+        """The name of the control with one of these labels. While the page is built again, as for another arm, it is waited for.
+
+        Raises:
+            LookupError: it does not come.
+        """
+        end = time.monotonic() + BUILT
+        while time.monotonic() < end:
+            for name, thing in self.things.items():
+                if thing.get("label") in labels:
+                    return name
+            self.look(0.1)
+        raise LookupError(f"none of {labels} is on the page after {BUILT:g} s")
 
     def hold(self) -> None:
         """Say that the free-drive button is held, and look for as long as that is good."""
