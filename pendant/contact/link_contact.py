@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.contact_rules import HEAVIEST
-from pendant.contact.history import MASK, SIZE, History
+from pendant.contact.history import History
+from pendant.contact.joint_torques import Torques
 from pendant.contact.settings import ContactUse
 from pendant.tick.pose import Vector
 from pendant.tick.source_signal import ContactSignals
@@ -57,7 +58,7 @@ DROP = 0.65
 SUDDEN = 2.0
 """so many times what as many ticks took before: a lever that goes through zero as the arm moves takes as much in them;"""
 CLEARLY = 1.5
-"""and so many bounds were felt: a swing takes such a share of less (guarded by the bench `link_hands`)."""
+"""and so many bounds: a swing takes less (guarded by the bench `link_hands`)."""
 FADED = 250
 """Ticks after which a contact that faded has gone, too: an arm at 0.3 m/s has passed the levers at which 60 N are not felt."""
 CALM = 25
@@ -82,33 +83,23 @@ class LinkChange(NamedTuple):
     steps: int  # ticks back to its beginning
 
 
-class Torques:
-    """The last torques of n joints, and means over any part of them from running sums; age 0 is the newest."""
+def _felt(change: Array, signals: ContactSignals) -> tuple[Array, Array]:
+    """What each joint feels of a contact in a change of torques and causes, and how wrong that may be, each (n,) [N·m]."""
+    n = signals.doubt.size
+    causes = change[n:].reshape(signals.misfit.shape)
+    wrong = signals.misfit * causes
+    return change[:n] - np.vecdot(signals.shares, causes), np.sqrt(np.vecdot(wrong, wrong))
 
-    __slots__ = ("_at", "_sums", "count")
 
-    def __init__(self) -> None:
-        self._sums: Array = np.zeros((SIZE, 0))
-        self._at = 0
-        self.count = 0  # since the last gap, at most SIZE - 1
+def _size(change: Array, limit: Array, signals: ContactSignals) -> float:
+    """What a joint up to the elbow feels in a change, in bounds; the largest."""
+    return float(np.abs(_felt(change, signals)[0] / limit)[: signals.elbow + 1].max())
 
-    def push(self, torques: Array) -> None:
-        """Take one tick (n,) [N·m]."""
-        if self._sums.shape[1] != torques.size:
-            self._sums, self.count = np.zeros((SIZE, torques.size)), 0
-        before, self._at = self._at, (self._at + 1) & MASK
-        self._sums[self._at] = self._sums[before] + torques
-        self.count = min(self.count + 1, MASK)
 
-    def gap(self) -> None:
-        """A tick is missing: what was before it counts no more."""
-        self._sums[self._at] = 0.0
-        self.count = 0
-
-    def mean(self, age: int, length: int) -> Array:
-        """Mean (n,) of `length` ticks, the newest of them `age` ticks old; age + length <= count [N·m]."""
-        sums = self._sums
-        return (sums[(self._at - age) & MASK] - sums[(self._at - age - length) & MASK]) / length
+def _sure(change: Array, limit: Array, signals: ContactSignals) -> float:
+    """What a joint up to the elbow feels for sure in a change, beyond what its errors may make, in bounds; the largest."""
+    felt, wrong = _felt(change, signals)
+    return max(float(((np.abs(felt) - wrong) / limit)[: signals.elbow + 1].max()), 0.0)
 
 
 class LinkWatch:
@@ -119,6 +110,7 @@ class LinkWatch:
         "_begun",
         "_calm",
         "_count",
+        "_faded",
         "_largest",
         "_left_out",
         "_rest",
@@ -130,15 +122,16 @@ class LinkWatch:
 
     def __init__(self) -> None:
         self.points = (History(), History())  # force and acceleration at the elbow, and at the forearm's end
-        self.torques = Torques()  # that the joints feel, then those that their gears bear
+        self.torques = Torques()  # that the joints feel, then the causes of their errors
         self.touched: int | None = None  # which of `LINKS`
         self.silent = False  # after a release, until the torques have settled
         self._begun = False  # there is something to forget
         self._left_out = False  # of this tick nothing is known
         self._count = Confirmation()
-        self._rest: Array = np.zeros(0)  # both torques where nothing is touched [N·m]; empty: not known
+        self._rest: Array = np.zeros(0)  # torques and causes where nothing is touched; empty: not known
         self._largest = 0.0  # contact torque lately, over its bound
         self._calm = 0  # ticks for which the contact has been gone, or the torques calm
+        self._faded = 0  # ticks for which nothing of the contact is felt
         self._age = 0  # ticks since the last change
 
     def sense(self, signals: ContactSignals) -> None:
@@ -153,7 +146,7 @@ class LinkWatch:
         self._left_out = bool(elbow.saturated)
         if self._left_out:
             return
-        self.torques.push(np.concatenate((signals.behind, signals.borne)))
+        self.torques.push(np.concatenate((signals.behind, signals.causes.ravel())))
         self.points[0].push(elbow)
         self.points[1].push(forearm)
 
@@ -190,20 +183,14 @@ class LinkWatch:
             return None
         return self._onset(new, limit, use, signals)
 
-    def _felt_now(self, torques: Array, limit: Array, signals: ContactSignals) -> tuple[Array, Array]:
-        """What each joint feels of a contact (n,) [N·m], and the bound (n,) of what is none."""
-        n = limit.size
-        change = torques - self._rest
-        borne = change[n:]
-        return change[:n] - signals.stiffer * borne, limit + signals.misfit * np.abs(borne)
-
     def _onset(self, new: Array, limit: Array, use: ContactUse, signals: ContactSignals) -> LinkChange | None:
         """Free: what a joint up to the elbow feels beyond errors of model and sensors is a contact that begins.
 
         Or it is one that ends, where less is felt than before: it began too gently to be seen.
         """
         elbow, n = signals.elbow, limit.size
-        felt, bound = self._felt_now(new, limit, signals)
+        felt, wrong = _felt(new - self._rest, signals)
+        bound = limit + wrong
         largest = float((np.abs(felt) / bound)[: elbow + 1].max())
         if not self._count.step(min(int(largest), HEAVIEST), use.slow_count, use.misses):
             if largest < 1.0:
@@ -214,41 +201,50 @@ class LinkWatch:
         last = int(told[-1]) if told.size else elbow - 1
         link = min(max(last - elbow + 1, 0), len(LINKS) - 1)
         old = self._rest
-        before, now = (np.abs(torques[:n] - signals.stiffer * torques[n:]) / bound for torques in (old, new))
+        shape = signals.shares.shape
+        before, now = (np.abs(all_[:n] - np.vecdot(signals.shares, all_[n:].reshape(shape))) / bound for all_ in (old, new))
         if now.max() < ENDED * before.max() and before.max() > 2.0:
             self._over()
-            return self._reported(Change.LOST, link, new, old)
+            return self._reported(Change.LOST, link, new[:n], old[:n])
         self.touched, self._calm, self._age, self._largest = link, 0, 0, 0.0
-        return self._reported(Change.GAINED, link, new, old)
+        self._faded = 0
+        return self._reported(Change.GAINED, link, new[:n], old[:n])
 
     def _held(self, new: Array, limit: Array, signals: ContactSignals) -> LinkChange | None:
         """In contact: it has gone where little is left of its torques, at once if they went as fast as a hand lets go."""
         self._age += 1
         if self._age < HELD:  # that mean still holds ticks from before the contact
             return None
-        felt, _ = self._felt_now(self.torques.mean(0, HELD), limit, signals)
-        left = float((np.abs(felt) / limit)[: signals.elbow + 1].max())
+        change = self.torques.mean(0, HELD) - self._rest
+        left = _sure(change, limit, signals)
         self._largest = max(left, LATELY * self._largest)
         gone = max(1.0, LEFT * self._largest, min(STRAYED, HALF * self._largest))
         if self._calm > GONE:  # it has faded: what strays meanwhile is no hand that is felt again
             gone = max(gone, STRAYED)
         self._calm = self._calm + 1 if left < gone else 0
-        gone_now = self._calm == GONE and self._let_go(limit, signals)
-        if self.touched is None or not (gone_now or self._calm == FADED):
+        # What may be an error may as well be a hand: only what is not felt at all has faded.
+        self._faded = self._faded + 1 if _size(change, limit, signals) < gone else 0
+        gone_now = self._calm > 0 and self._calm % GONE == 0 and self._let_go(limit, signals)
+        if self.touched is None or not (gone_now or self._faded == FADED):
             return None
         link, touched = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
         self._over()
-        return self._reported(Change.LOST, link, new, touched)
+        return self._reported(Change.LOST, link, new[: limit.size], touched[: limit.size])
 
     def _let_go(self, limit: Array, signals: ContactSignals) -> bool:
-        """What was felt went as fast as a hand goes. Where it faded, the arm may have moved until no joint has a lever."""
-        felt = []
-        for age in range(0, min(BEFOREHAND, self._age, self.torques.count - NEWEST), NEWEST):
-            torques, bound = self._felt_now(self.torques.mean(age, NEWEST), limit, signals)
-            felt.append(float((np.abs(torques) / bound)[: signals.elbow + 1].max()))
-        n = LETTING_GO // NEWEST
-        triples = zip(felt, felt[n:], felt[2 * n :] + felt[-1:] * n, strict=False)
-        return any(old >= CLEARLY and old - new >= max(DROP * old, SUDDEN * (older - old)) for new, old, older in triples)
+        """What some joint felt went as fast as a hand goes. Where it faded, the arm may have moved until no joint has a lever."""
+        ages = range(0, min(BEFOREHAND + LETTING_GO, self._age, self.torques.count - NEWEST), NEWEST)
+        means, n, last = [self.torques.mean(age, NEWEST) for age in ages], LETTING_GO // NEWEST, signals.elbow + 1
+        for new, old, older in zip(means, means[n : BEFOREHAND // NEWEST], means[2 * n :] + means[-1:] * n, strict=False):
+            felt, wrong = (each[:last] for each in _felt(old - self._rest, signals))
+            left, _ = _felt(new - self._rest, signals)
+            went, doubt = _felt(old - new, signals)
+            before, _ = _felt(older - old, signals)
+            sudden = np.maximum(DROP * (np.abs(felt) - wrong), SUDDEN * np.abs(before[:last]))
+            sudden = np.maximum(sudden, CLEARLY * limit[:last])
+            if ((np.abs(left[:last]) < np.abs(felt)) & (np.abs(went[:last]) - doubt[:last] >= sudden)).any():
+                return True
+        return False
 
     def _over(self) -> None:
         self.touched, self.silent, self._calm, self._age = None, True, 0, 0
@@ -258,19 +254,18 @@ class LinkWatch:
         """After a release: silent until the torques are calm; then statistics start again (CD-9a)."""
         self._age += 1
         self._rest = self.torques.mean(SETTLED, NEWEST)
-        felt, bound = self._felt_now(new, limit, signals)
-        calm = bool((np.abs(felt) < bound)[: signals.elbow + 1].all())
+        calm = _sure(new - self._rest, limit, signals) < 1.0
         self._calm = self._calm + 1 if calm else 0
         if self._calm >= CALM or self._age >= SILENCE:
             self.silent = False
 
     def _reported(self, change: Change, link: int, new: Array, old: Array) -> LinkChange:
         """What is reported: force and acceleration at the link, as the newest mean and the stored one tell them (CD-16)."""
-        point, n = self.points[min(link, 1)], new.size // 2
+        point, n = self.points[min(link, 1)], new.size
         oldest = min(BEFORE, self.torques.count - NEWEST)
-        way = (new - old)[:n]
+        way = new - old
         least, steps = BEGUN * float(way @ way), 0
-        while steps < oldest and float((self.torques.mean(steps, 1) - old)[:n] @ way) > least:
+        while steps < oldest and float((self.torques.mean(steps, 1)[:n] - old) @ way) > least:
             steps += 1
         lag = min(steps + NEWEST, oldest)
         now, then = point.mean(0, SEEN), point.mean(lag, min(SEEN, point.count - lag))

@@ -41,9 +41,9 @@ class ContactSignals(msgspec.Struct, frozen=True, gc=False):
     valid: tuple[bool, ...] = ()  # of each source
     behind: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) torques of contacts behind the sensor
     doubt: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) deviation of their changes [N·m]
-    borne: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) torques through the gears [N·m]
-    stiffer: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) share of these that `behind` holds
-    misfit: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) how wrong that share may be
+    causes: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) of what `behind` is wrong by
+    shares: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) of them that it holds
+    misfit: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) how wrong these shares may be
     elbow: int = 2  # which joint the elbow is
 
     def each(self) -> tuple[Signal | None, ...]:

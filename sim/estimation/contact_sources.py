@@ -30,10 +30,6 @@ MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
-SENSOR_FORCE, SENSOR_TORQUE = 1.0, 0.1
-"""Deviation of what a flange sensor that was not zeroed tells when the flange has turned: part of its offset of 4 N [N, N·m]."""
-TURNED = 0.3
-"""Time over which it turns: contacts are looked for within it (`pendant.contact.link_contact.FOLLOW`) [s]."""
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -53,7 +49,6 @@ class WatchedSources(NamedTuple):
     arm_side: bool
     links: bool
     went_on: bool  # the links were watched in the last tick, too
-    with_sensor: bool  # the flange sensor's wrench is valid
 
 
 class ContactSources:
@@ -80,7 +75,6 @@ class ContactSources:
             gravity=(3,),
             reach=(2,),
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
-            doubt=(n,),  # standard deviation of its changes
             felt=(n,),  # what the joints feel and the flange sensor does not
             joints="2i8",  # whose origins are elbow and end of the forearm
             signals=(4, len(Signal._fields)),
@@ -104,7 +98,7 @@ class ContactSources:
     def set_zero(self, zero: Array) -> None:
         """So much (6,) is subtracted from the sensor's values, in F [N, N·m]: it may saturate at a force that seems less."""
         self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
-        self._momentum.forget()
+        self._momentum.forget_zero()
 
     def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
         """Put this tick's signals into `estimate`.
@@ -123,17 +117,17 @@ class ContactSources:
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
         motion = (sample.values, estimate.qd, estimate.qdd)
-        models = (self._dynamics.recursion.record, self._momentum.record, self._drive)
-        _read(self._record, models, motion, (*watched, sample.wrench_valid))
+        torques = self._momentum
+        models = (self._dynamics.recursion.record, torques.record, torques.errors.record, self._drive)
+        _read(self._record, models, motion, watched)
         self._started = links
         valid = (pair, flange, links, links)
         if not links:
             estimate.signals = ContactSignals(self._out.copy(), valid)
             return
-        own, torques = self._own, self._momentum
-        kept = (torques.residual, own["doubt"], torques.borne, torques.stiffer, torques.misfit)
-        behind, doubt, borne, stiffer, misfit = (column.copy() for column in kept)
-        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, borne, stiffer, misfit, self._elbow)
+        kept = (torques.residual, torques.doubt, torques.errors.causes, torques.errors.shares, torques.errors.misfit)
+        behind, doubt, causes, shares, misfit = (known.copy() for known in kept)
+        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, causes, shares, misfit, self._elbow)
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
@@ -153,7 +147,7 @@ def _read(sources, models, felt, watched) -> None:
     """All sources that are on, into the rows of `signals`. One kernel: handing arrays over costs as much as its work."""
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
-    own, rigid, momentum, drive = sources[0], models[0][0], models[1][0], models[2][0]
+    own, rigid, momentum, errors, drive = sources[0], models[0][0], models[1][0], models[2][0], models[3][0]
     rest = felt.values[3 * felt.qd.size :]
     wrench = rest[:6]
     if watched.tool:
@@ -169,7 +163,7 @@ def _read(sources, models, felt, watched) -> None:
     if watched.links:
         beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0]
         beyond = beyond or max(abs(wrench[3]), abs(wrench[4]), abs(wrench[5])) >= own.reach[1]
-        _feel_behind(own, rigid, momentum, watched.with_sensor)
+        _feel_behind(own, momentum, errors)
         for which in range(2):
             own.signals[2 + which, 11] = 1.0 if beyond else 0.0
             _derive(own, rigid, felt, (which, watched.went_on))
@@ -215,17 +209,12 @@ def _transfer(own, R, felt, out) -> None:
 
 
 @kernel
-def _feel_behind(own, rigid, momentum, with_sensor) -> None:
-    """The joints' external torques that the flange sensor does not feel, as known best, and their deviation (n,) [N·m].
-
-    The sensor's offset is in them: as the flange turns, it changes.
-    """
-    w, jacobian = rigid.v_F[3:], rigid.jacobian
-    turned = min(TURNED * np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), 1.0) if with_sensor else 0.0
+def _feel_behind(own, momentum, errors) -> None:
+    """The joints' external torques that the flange sensor does not feel, as known best (n,) [N·m]."""
     for i in range(own.felt.size):
-        own.felt[i] = momentum.residual[i] - momentum.stiffer[i] * momentum.borne[i]
-        lever = SENSOR_FORCE**2 * (jacobian[0, i] ** 2 + jacobian[1, i] ** 2 + jacobian[2, i] ** 2)
-        own.doubt[i] = np.sqrt(momentum.doubt[i] ** 2 + turned * turned * (lever + SENSOR_TORQUE**2))
+        own.felt[i] = momentum.residual[i]
+        for k in range(errors.causes.shape[1]):
+            own.felt[i] -= errors.shares[i, k] * errors.causes[i, k]
 
 
 @kernel

@@ -21,10 +21,10 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.transmission_torque import CONTACT, SETTLE_TICKS, SOFTEST, STIFFEST
+from sim.estimation.torque_errors import TorqueErrors, begin, forget, learn, look, touched
+from sim.estimation.transmission_torque import SETTLE_TICKS
 from sim.rigid_body.dynamics import Dynamics
 from sim.rigid_body.newton_euler import cross, turned, turned_back
-from sim.sensing.calibration import ENCODER_RIPPLE, LINK_MASS, MOTOR_CONSTANT, STIFFNESS
 
 Array = NDArray[np.float64]
 
@@ -34,14 +34,7 @@ output encoder's noise, which is differentiated twice, makes a newton metre of i
 READY = 25
 """Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
 FLOOR = 0.004
-"""Deviation of what model, gear and encoders leave within some tenths of a second, relative to a joint's torque limit."""
-OFFSET_WALK = 0.05  # of the gear's offset, relative to the ripple's torque [1/sqrt(s)]
-STIFFNESS_WALK = 2e-3  # of its stiffness error [1/sqrt(s)]
-CORRELATED = 100.0  # ticks over which errors of the deflection stay alike
-CARRIED = 0.15
-"""Share of what the gears bear that a payload may be wrong by: up to a fifth of a payload, which is most of what they bear. It
-counts without the flange sensor alone."""
-SURE = 3.0  # deviations of a stiffness that is learned
+"""Deviation of what the model leaves within some tenths of a second, relative to a joint's torque limit."""
 
 
 class Driven(NamedTuple):
@@ -63,14 +56,12 @@ class MomentumObserver:
     With the flange sensor they are those of contacts before it. Without it the configured load counts as a part of the arm, and
     they are those of all contacts. Of a joint without deflection the motor's torque less its friction is taken.
 
-    What the gears bear is wrong by their stiffness, known to a fifth at first: it is learned where planned motion bends them and
-    nothing is touched, from these torques, in which no payload's error is.
+    What gears, encoders and the flange sensor's zero put into them is learned in planned motion while nothing is touched, from
+    these torques, in which no payload's error is.
 
     Attributes:
         residual: the torques (n,) [N·m].
-        borne: what passes through the gears (n,), with the lag of the torques [N·m].
-        stiffer: share of `borne` (n,) that the residual holds by the gears' stiffness, as learned.
-        misfit: share of a change of `borne` (n,) by which the residual may still be wrong.
+        errors: what they are wrong by, as learned.
         doubt: standard deviation of a change of the residual within some tenths of a second, for other reasons (n,) [N·m].
 
     Args:
@@ -80,13 +71,12 @@ class MomentumObserver:
 
     def __init__(self, arm: Arm, dynamics: Dynamics) -> None:
         self._rigid = dynamics.recursion
-        n, spring, body = arm.n, arm.transmissions, dynamics.bare
+        n, body = arm.n, dynamics.bare
         self.record = record(
             bare=(13,),  # last link without load: mass, centre, inertia about it
             gain=(),
             output_share=(),  # of friction
             floor=(n,),
-            ripple=(n,),  # torque of the output encoder's ripple [N·m]
             count="i8",  # ticks in a row, at most `READY`
             q=(n,),  # a tick ago
             p=(n,),  # momentum, a tick ago [N·m·s]
@@ -94,23 +84,16 @@ class MomentumObserver:
             load=(n,),  # what the gears bore, a tick ago
             first=(2, n),  # residual and load behind the first of both filters
             residual=(n,),
-            borne=(n,),
-            offset=(n,),
-            covariance=(n, 3),  # of stiffer, of both, of offset
-            stiffer=(n,),
-            misfit=(n,),
+            borne=(n,),  # what passes through the gears, with the lag of the torques
             doubt=(n,),
             quiet="i8",  # ticks since something was touched, as far as these torques tell
         )
         own = self._own = self.record[0]
-        self.residual, self.borne, self.stiffer = own["residual"], own["borne"], own["stiffer"]
-        self.misfit, self.doubt = own["misfit"], own["doubt"]
+        self.residual, self.doubt, self.errors = own["residual"], own["doubt"], TorqueErrors(arm)
         own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
         own["bare"] = np.concatenate([[body.mass], body.com, body.inertia.ravel()])
         own["output_share"] = arm.frictions.output_share
         own["floor"] = FLOOR * np.array(arm.limits.torque)
-        own["ripple"] = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
-        own["covariance"][:, 0], own["covariance"][:, 2] = STIFFNESS**2 / 3.0, own["ripple"] ** 2  # of a uniform error
         self._with_sensor = False
 
     @property
@@ -119,8 +102,13 @@ class MomentumObserver:
         return bool(self._own["count"] == READY)
 
     def forget(self) -> None:
-        """What was before counts no more: a tick is missing, or the flange sensor tells something else from now on."""
+        """What was before counts no more: a tick is missing, or the flange sensor came or went."""
         self._own["count"] = 0
+
+    def forget_zero(self) -> None:
+        """What was before counts no more: the flange sensor tells something else from now on."""
+        self.forget()
+        self.errors.forget_zero()
 
     def update(self, driven: tuple[Array, ...], *, with_sensor: bool, valid: bool, learn: bool) -> None:
         """One tick.
@@ -135,14 +123,14 @@ class MomentumObserver:
             self.forget()
         self._with_sensor = with_sensor
         if valid:
-            _update(self.record, self._rigid.record, driven, (with_sensor, learn))
+            _update((self.record, self.errors.record), self._rigid.record, driven, (with_sensor, learn))
 
 
 @kernel
-def _update(observer, model, driven, state) -> None:
+def _update(records, model, driven, state) -> None:
     driven = Driven(*driven)
-    own, rigid = observer[0], model[0]
-    with_sensor, learn = state
+    own, errors, rigid = records[0][0], records[1], model[0]
+    with_sensor, learns = state
     n = driven.q.size
     speed, p, drive = np.empty(n), np.empty(n), np.empty(n)
     for i in range(n):
@@ -168,55 +156,26 @@ def _update(observer, model, driven, state) -> None:
             own.first[1, i] += own.gain * (own.load[i] - own.first[1, i])
             own.borne[i] += own.gain * (own.first[1, i] - own.borne[i])
         own.p[i], own.drive[i], own.load[i] = p[i], drive[i], load
-        _doubt(own, driven, (with_sensor, by_deflection), i)
-    own.quiet = 0 if _touched(own, driven.use) else min(own.quiet + 1, SETTLE_TICKS)
-    if learn and own.quiet == SETTLE_TICKS:
-        for i in range(n):
-            if driven.use[1, i]:
-                _learn(own, i)
+        _doubt(own, driven, by_deflection, i)
+    look(errors, rigid, own.borne, (driven.q, driven.use[1], with_sensor))
+    if own.count < READY:
+        begin(errors, own.residual)
+    own.quiet = min(own.quiet + 1, SETTLE_TICKS)
+    if touched(errors, own.residual, own.doubt, driven.use[1]):
+        own.quiet = 0
+        forget(errors)
+    if learns and own.quiet == SETTLE_TICKS:
+        learn(errors, own.residual, own.doubt, driven.use[1])
     own.count = min(own.count + 1, READY)
 
 
 @kernel
-def _touched(own, use) -> bool:
-    """Some joint feels more than gear and model may be wrong by, as far as is known now."""
-    for i in range(own.borne.size):
-        P, x = own.covariance[i], own.borne[i]
-        error = own.residual[i] - own.stiffer[i] * x - own.offset[i]
-        known = max(x * x * P[0] + 2.0 * x * P[1] + P[2], 0.0)
-        if use[1, i] and error * error > CONTACT**2 * (known + (0.5 * own.ripple[i]) ** 2 + own.doubt[i] ** 2):
-            return True
-    return False
-
-
-@kernel
-def _doubt(own, driven, known, i) -> None:
-    """How wrong the residual of joint i may be."""
-    with_sensor, by_deflection = known
-    rubs = own.output_share * driven.friction_deviation[i]
-    own.doubt[i] = np.sqrt(own.floor[i] ** 2 + rubs**2)
-    gear = min(STIFFNESS, SURE * np.sqrt(own.covariance[i, 0]))
+def _doubt(own, driven, by_deflection, i) -> None:
+    """How wrong the residual of joint i may be, beyond what its errors' causes make."""
+    rubs = driven.friction_deviation[i]
+    own.doubt[i] = np.sqrt(own.floor[i] ** 2 + (own.output_share * rubs) ** 2)
     if not by_deflection:
-        own.doubt[i] = np.sqrt(own.floor[i] ** 2 + driven.friction_deviation[i] ** 2 + driven.stiction[i] ** 2)
-        gear, own.stiffer[i] = MOTOR_CONSTANT, 0.0
-    own.misfit[i] = LINK_MASS + gear + (0.0 if with_sensor else CARRIED)
-
-
-@kernel
-def _learn(own, i) -> None:
-    """A Kalman filter's step on residual = stiffer · borne + offset."""
-    P, x = own.covariance[i], own.borne[i]
-    # What nothing bends tells nothing of its stiffness: it may drift, but never beyond what was believed at first.
-    P[0] = min(P[0] + STIFFNESS_WALK**2 * TICK, STIFFNESS**2 / 3.0)
-    P[2] = min(P[2] + (OFFSET_WALK * own.ripple[i]) ** 2 * TICK, own.ripple[i] ** 2)
-    error = own.residual[i] - own.stiffer[i] * x - own.offset[i]
-    a, b = P[0] * x + P[1], P[1] * x + P[2]
-    spread = a * x + b + (0.5 * own.ripple[i]) ** 2 * CORRELATED
-    own.stiffer[i] = min(max(own.stiffer[i] + a * error / spread, SOFTEST), STIFFEST)
-    own.offset[i] += b * error / spread
-    P[0] -= a * a / spread
-    P[1] -= a * b / spread
-    P[2] -= b * b / spread
+        own.doubt[i] = np.sqrt(own.floor[i] ** 2 + rubs**2 + driven.stiction[i] ** 2)
 
 
 @kernel

@@ -7,7 +7,8 @@ import pytest
 from pendant.contact.confirmation import Confirmation
 from pendant.contact.contact_change import Change
 from pendant.contact.history import SIZE
-from pendant.contact.link_contact import CALM, FADED, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, LinkChange, LinkWatch, Torques
+from pendant.contact.joint_torques import Torques
+from pendant.contact.link_contact import CALM, FADED, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, LinkChange, LinkWatch
 from pendant.contact.settings import ContactUse
 from pendant.tick.source_signal import ContactSignals, Signal
 
@@ -15,15 +16,28 @@ USE = ContactUse()
 DOUBT = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
 LOAD = np.array([5.0, 60.0, 30.0, 2.0, 1.0, 0.0])
 """What the gears bear [N·m]."""
-MISFIT = 0.1
+SHOULDER = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+MISFIT = 0.1  # of their stiffness
+LEVER, ZERO = 0.5, 3.0  # of the flange sensor's zero, and by how much that may be wrong [m], [N]
 START = 100
 
 
-def tick(torques: np.ndarray, borne: np.ndarray = LOAD, stiffer: float = 0.0, saturated: float = 0.0) -> ContactSignals:
-    """Torques on the joints; the force at both points is a tenth of their sum along x, in the other direction."""
+def tick(
+    torques: np.ndarray,
+    *,
+    borne: np.ndarray = LOAD,
+    lever: float = LEVER,
+    shares: tuple[float, float] = (0.0, 0.0),
+    saturated: float = 0.0,
+) -> ContactSignals:
+    """Torques on the joints; the force at both points is a tenth of their sum along x, in the other direction.
+
+    Two causes of error: what the gears bear, and a lever of the flange sensor's zero, with the `shares` that are known.
+    """
     force = -0.1 * float(torques.sum())
     row = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
-    known = (torques, DOUBT, borne, np.full(6, stiffer), np.full(6, MISFIT))
+    causes = np.stack([borne, np.full(6, lever)], axis=1)
+    known = (torques, DOUBT, causes, np.tile(shares, (6, 1)), np.tile([MISFIT, ZERO], (6, 1)))
     return ContactSignals(np.tile(row, (4, 1)), (False, False, True, True), *known)
 
 
@@ -230,3 +244,41 @@ def test_a_hand_that_is_taken_away_slowly_is_lost_later() -> None:
     (_, gained), (at, lost) = run(torques)
     assert (gained.change, lost.change) == (Change.GAINED, Change.LOST)
     assert 400 + FADED < at < 450 + FADED + HELD
+
+
+def known(*, shares: tuple[float, float], size: float, borne: float, lever: float) -> list[LinkChange]:
+    """From `START` on the shoulder's gear bears so much more, the lever is longer, and the shoulder feels `size` N·m."""
+    watch, found = LinkWatch(), []
+    for k, row in enumerate(stream(300, (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (START, 300, size), noise=0.01)):
+        later = float(k >= START)
+        signals = tick(row, borne=LOAD + later * borne * SHOULDER, lever=LEVER + later * lever, shares=shares)
+        watch.sense(signals)
+        felt = watch.step(USE, signals, 1.0)
+        found += [] if felt is None else [felt]
+    return found
+
+
+@pytest.mark.parametrize(("size", "seen"), [(9.8, False), (10.7, True)])
+def test_shares_that_are_known_little_widen_the_bound_by_their_causes_change(size: float, seen: bool) -> None:
+    """6 N·m of all else; 0.1 of 30 N·m and 3 N on 0.9 m, together the root of the squares: 4.04 N·m. At rest nothing is added."""
+    assert bool(known(shares=(0.0, 0.0), size=size, borne=30.0, lever=0.9)) is seen
+    assert known(shares=(0.0, 0.0), size=6.2, borne=0.0, lever=0.0)
+
+
+def test_what_known_shares_explain_is_no_contact() -> None:
+    """A gear that is 0.2 stiffer and bears 60 N·m more makes 12, and a zero of 4 N on 2 m makes 8: all that is felt."""
+    assert not known(shares=(0.2, 4.0), size=20.0, borne=60.0, lever=2.0)
+    assert known(shares=(0.0, 0.0), size=20.0, borne=60.0, lever=2.0)
+
+
+def test_a_release_that_errors_may_hide_is_a_release() -> None:
+    """What is left of 30 N·m is 9, of a bound of 6; by 0.1 of a gear's 50 it may all be an error."""
+    watch, found = LinkWatch(), []
+    torques = stream(700, UPPER, (START, 300, 30.0), (300, 700, 9.0), noise=0.01)
+    for k, row in enumerate(torques):
+        signals = tick(row, borne=LOAD + 50.0 * float(k > 200) * SHOULDER)
+        watch.sense(signals)
+        felt = watch.step(USE, signals, 1.0)
+        found += [] if felt is None else [(k, felt.change)]
+    assert [change for _, change in found] == [Change.GAINED, Change.LOST]
+    assert 300 < found[1][0] < 300 + HELD + GONE

@@ -105,31 +105,30 @@ def test_a_known_force_on_a_link_turns_the_joints_by_its_lever(true: float) -> N
     assert after - before == pytest.approx(np.array(expected), abs=0.8)
 
 
-def moved(sim: Simulation) -> list[np.ndarray]:
-    """To and fro at full speed, then residual, load and stiffness of each tick."""
+def moved(sim: Simulation, ticks: int = 1500) -> list[tuple[np.ndarray, ...]]:
+    """To and fro at full speed, then torque, causes, shares and misfit of each tick."""
     home = np.array(ARM.chain.home)
-    steps = tuple(JointMove(q=tuple((home + way).tolist())) for way in ([1.0, 0.4, -0.6, 1.0, 0.5, 1.0], NONE) * 2)
+    steps = tuple(JointMove(q=tuple((home + way).tolist())) for way in ([1.0, 0.4, -0.6, 1.0, 0.5, 1.0], NONE) * (ticks // 700))
     sim.tick(Wishes(Inputs(program=Program(steps=steps)), (), ()))
     rows = []
-    for k in range(1500):
+    for k in range(ticks):
         sim.tick(Wishes(Inputs(commands=(Command.START_PROGRAM,)), (), ()) if k == 150 else IDLE)
-        observer = sim.estimator.momentum
-        rows.append(np.concatenate([observer.residual, observer.borne, observer.stiffer, observer.misfit]))
+        observer, errors = sim.estimator.momentum, sim.estimator.momentum.errors
+        rows.append(tuple(each.copy() for each in (observer.residual, errors.causes, errors.shares, errors.misfit)))
     return rows
 
 
 def test_a_payload_that_is_wrong_is_no_torque_of_a_link_and_stiffness_is_learned() -> None:
     """2.4 kg where 2 are configured move at full speed: no joint feels as much as a hand, once its gear is known."""
     sim = simulation(2.4)
-    rows = np.array(moved(sim))[200:].reshape(-1, 4, 6)
-    residual, borne, stiffer, misfit = rows.swapaxes(0, 1)
-    left = residual - stiffer[-1] * borne
+    residual, causes, shares, misfit = map(np.array, zip(*moved(sim)[200:], strict=True))
+    left = residual - np.vecdot(shares[-1], causes)
     smooth = np.array([left[k : k + 10].mean(axis=0) for k in range(0, len(left) - 10, 10)])
     change = np.abs(smooth[15:] - smooth[:-15])  # over 0.3 s
     assert change[:, :3].max() < 8.0
     assert change[:, 3:].max() < 1.5
-    assert misfit[-1, 1] < 0.12  # the shoulder is bent most; it was 0.22 at first
-    assert abs(stiffer[-1, 1] - (1.0 / sim.calibration.stiffness[1] - 1.0)) < misfit[-1, 1]
+    assert misfit[-1, 1, 0] < 0.12  # the shoulder is bent most; it was 0.22 at first
+    assert abs(shares[-1, 1, 0] - (1.0 / sim.calibration.stiffness[1] - 1.0)) < misfit[-1, 1, 0]
 
 
 def test_without_deflection_the_motors_torque_is_taken_and_doubted() -> None:

@@ -1,0 +1,229 @@
+"""What the external torques of the joints are wrong by: gears, output encoders, the zero of the flange sensor. It is learned.
+
+Three constants of an arm make torques where nothing is touched, each with a shape of its own: the error of a gear's stiffness
+makes a share of what the gear bears; the ripple of an output encoder, which is the deflection's, goes with the first and the
+second harmonic of its angle (a disc off its centre, and one that is not round); the zero of the flange sensor, fixed in the
+flange, makes torques by the levers of the posture. So the torques without a contact are a linear function of known causes with
+constant shares, and shares that are known little make a doubt that grows with the change of their causes.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.transmission_torque import CONTACT, SOFTEST, STIFFEST
+from sim.sensing.calibration import ENCODER_RIPPLE, FORCE_OFFSET, LINK_MASS, MOTOR_CONSTANT, STIFFNESS, TORQUE_OFFSET
+
+Array = NDArray[np.float64]
+
+ZERO, OWN = 6, 5
+"""Constants that all joints share: the zero of the flange sensor; and those of each: of its gear, then of its encoder."""
+CAUSES = OWN + ZERO
+"""Of a joint's torque: what its gear bears, the levers of the sensor's zero, cosine and sine of angle and of twice the angle."""
+STIFFNESS_WALK = 2e-3  # of the stiffness error [1/sqrt(s)]
+RIPPLE_WALK = 0.01  # of each harmonic, relative to the ripple's torque [1/sqrt(s)]
+FORCE_WALK, TORQUE_WALK = 0.1, 0.01  # of the sensor's zero, which drifts with its warmth [N/sqrt(s)], [N·m/sqrt(s)]
+CORRELATED = 100.0  # ticks over which errors of the torques stay alike
+CARRIED = 0.15
+"""Share of what the gears bear that a payload may be wrong by: up to a fifth of a payload, which is most of what they bear. It
+counts without the flange sensor alone."""
+SMOOTH = 0.02
+"""Share a tick by which what is felt is smoothed, to tell a contact: a tenth of a second, over which an arm's swing on its
+gears is little."""
+FOLLOW = 0.0066
+"""Share a tick by which what is felt while nothing is touched follows: a time constant of 0.3 s, as the links' watch has it."""
+WAIT = 60
+"""Ticks until a torque is learned from: a hand that comes is known by then, and nothing is learned of it."""
+SURE = 3.0  # deviations of a constant that is learned
+
+
+class TorqueErrors:
+    """Constants of n joints and of the flange sensor, by a Kalman filter over all of them.
+
+    Attributes:
+        causes: of each joint's torque in this tick (n, CAUSES) [N·m], [m], [1], [1].
+        shares: constants that they come with, as learned (n, CAUSES) [1], [N], [N·m], [N·m].
+        misfit: by how much each share may still be wrong (n, CAUSES).
+
+    Args:
+        arm: the arm's numbers.
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        n, spring = arm.n, arm.transmissions
+        size = ZERO + OWN * n
+        self.record = record(
+            causes=(n, CAUSES),
+            shares=(n, CAUSES),
+            misfit=(n, CAUSES),
+            known=(size,),  # the constants
+            covariance=(size, size),
+            most=(size,),  # what each may be
+            walk=(size,),  # variance that a tick adds
+            felt=(n, 1 + CAUSES),  # torque and causes, smoothed
+            rest=(n, 1 + CAUSES),  # the same, as they were while nothing was touched
+            waiting=(WAIT, 2 + CAUSES),  # torque, its variance and causes of one joint a tick, yet to be learned from
+            joint=f"{WAIT}i8",  # whose they are
+            at="i8",  # where the next one goes
+            count="i8",  # so many are there
+        )
+        own = self._own = self.record[0]
+        self.causes, self.shares, self.misfit = own["causes"], own["shares"], own["misfit"]
+        ripple = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
+        most, walk = own["most"], own["walk"]
+        most[:3], most[3:ZERO], walk[:3], walk[3:ZERO] = FORCE_OFFSET, TORQUE_OFFSET, FORCE_WALK, TORQUE_WALK
+        most[ZERO:], walk[ZERO:] = np.repeat(ripple, OWN), np.repeat(RIPPLE_WALK * ripple, OWN)
+        most[ZERO::OWN], walk[ZERO::OWN] = STIFFNESS, STIFFNESS_WALK
+        walk[:] = walk * walk * TICK
+        np.fill_diagonal(own["covariance"], most * most / 3.0)  # of a uniform error
+
+    def forget_zero(self) -> None:
+        """The flange sensor tells something else from now on."""
+        own = self._own
+        own["known"][:ZERO] = 0.0
+        own["covariance"][:ZERO] = own["covariance"][:, :ZERO] = 0.0
+        own["covariance"][np.arange(ZERO), np.arange(ZERO)] = own["most"][:ZERO] ** 2 / 3.0
+
+
+@kernel
+def look(errors, rigid, borne, state) -> None:
+    """Causes of this tick, and what is known of their shares.
+
+    Args:
+        errors: `TorqueErrors.record`.
+        rigid: row of the rigid model's recursion.
+        borne: torques through the gears (n,) [N·m].
+        state: output angles (n,) [rad], which joints' torques come from the deflection (n,), and whether the sensor is there.
+    """
+    own = errors[0]
+    q, by_deflection, with_sensor = state
+    R, jacobian = rigid.R, rigid.jacobian
+    for i in range(q.size):
+        causes, shares, misfit = own.causes[i], own.shares[i], own.misfit[i]
+        causes[0] = borne[i]
+        for k in range(3):
+            causes[1 + k] = causes[4 + k] = 0.0
+            if with_sensor:
+                for r in range(3):
+                    causes[1 + k] += R[r, k] * jacobian[r, i]
+                    causes[4 + k] += R[r, k] * jacobian[3 + r, i]
+        ripples = 1.0 if by_deflection[i] else 0.0
+        c, s = np.cos(q[i]), np.sin(q[i])
+        causes[7], causes[8], causes[9], causes[10] = ripples * c, ripples * s, ripples * (c * c - s * s), ripples * 2.0 * c * s
+        for k in range(CAUSES):
+            at = _place(i, k)
+            shares[k] = own.known[at]
+            misfit[k] = min(own.most[at], SURE * np.sqrt(own.covariance[at, at]))
+        if not by_deflection[i]:
+            shares[0], misfit[0] = 0.0, MOTOR_CONSTANT
+        misfit[0] += LINK_MASS + (0.0 if with_sensor else CARRIED)
+
+
+@kernel
+def _place(i, k):
+    """Where the constant of cause k of joint i stands among all."""
+    if k == 0:
+        return ZERO + OWN * i
+    return k - 1 if k <= ZERO else ZERO + OWN * i + k - ZERO
+
+
+@kernel
+def _noise(own, doubt, i):
+    """Variance of what is not explained of joint i: of links' masses, which go with what is borne, and of all else [N²·m²]."""
+    masses = LINK_MASS * own.causes[i, 0]
+    return doubt[i] * doubt[i] + masses * masses
+
+
+@kernel
+def _left(shares, torque, causes):
+    """What the causes leave of a joint's torque [N·m]."""
+    for k in range(CAUSES):
+        torque -= shares[k] * causes[k]
+    return torque
+
+
+@kernel
+def _beyond(own, doubt, i, felt) -> bool:
+    """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
+    left, causes = _left(own.shares[i], felt[0], felt[1:]), felt[1:]
+    known = 0.0
+    for k in range(CAUSES):
+        for m in range(CAUSES):
+            known += causes[k] * own.covariance[_place(i, k), _place(i, m)] * causes[m]
+    return left * left > CONTACT**2 * (max(known, 0.0) + _noise(own, doubt, i))
+
+
+@kernel
+def begin(errors, residual) -> None:
+    """What is felt now is what is felt where nothing is touched, as far as is known."""
+    own = errors[0]
+    for i in range(residual.size):
+        own.felt[i, 0], own.felt[i, 1:] = residual[i], own.causes[i]
+    own.rest[:] = own.felt
+
+
+@kernel
+def touched(errors, residual, doubt, by_deflection) -> bool:
+    """Some joint feels more than all causes and the rest may be wrong by, as far as is known now, or such a change.
+
+    What is known little may be large, but it changes no more than its causes do: a hand that comes is seen by that.
+    """
+    own, found = errors[0], False
+    for i in range(residual.size):
+        own.felt[i, 0] += SMOOTH * (residual[i] - own.felt[i, 0])
+        for k in range(CAUSES):
+            own.felt[i, 1 + k] += SMOOTH * (own.causes[i, k] - own.felt[i, 1 + k])
+        if by_deflection[i] and not found:
+            found = _beyond(own, doubt, i, own.felt[i]) or _beyond(own, doubt, i, own.felt[i] - own.rest[i])
+    if not found:
+        own.rest += FOLLOW * (own.felt - own.rest)
+    return found
+
+
+@kernel
+def learn(errors, residual, doubt, by_deflection) -> None:
+    """Take one joint's torque of this tick, and learn from the one of `WAIT` ticks ago."""
+    own = errors[0]
+    n, at = residual.size, own.at
+    full = own.count == WAIT
+    if full:
+        _learn(own, own.joint[at], own.waiting[at], n)
+    i = (own.joint[at - 1] + 1) % n
+    own.joint[at], own.at, own.count = i, (at + 1) % WAIT, min(own.count + 1, WAIT)
+    waiting = own.waiting[at]
+    waiting[0], waiting[1], waiting[2:] = residual[i], _noise(own, doubt, i), own.causes[i]
+    if not by_deflection[i]:
+        waiting[2:] = 0.0  # it tells nothing
+
+
+@kernel
+def forget(errors) -> None:
+    """Something is touched: what was felt lately is not learned from."""
+    errors[0].count = 0
+
+
+@kernel
+def _learn(own, i, felt, n) -> None:
+    """A Kalman filter's step on torque = sum of causes times shares, of joint i; each joint has one tick in n."""
+    P, size, causes = own.covariance, own.known.size, felt[2:]
+    # What has no cause tells nothing of its share: it may drift, but never beyond what was believed at first.
+    for at in range(size):
+        P[at, at] += min(own.walk[at], max(own.most[at] ** 2 / 3.0 - P[at, at], 0.0))
+    gains = np.zeros(size)
+    for k in range(CAUSES):
+        for at in range(size):
+            gains[at] += P[at, _place(i, k)] * causes[k]
+    spread, left = felt[1] * CORRELATED / n, felt[0]
+    for k in range(CAUSES):
+        spread += causes[k] * gains[_place(i, k)]
+        left -= own.known[_place(i, k)] * causes[k]
+    for a in range(size):
+        own.known[a] += gains[a] * left / spread
+        for b in range(a + 1):
+            P[a, b] -= gains[a] * gains[b] / spread
+            P[b, a] = P[a, b]
+    gear = ZERO + OWN * i
+    own.known[gear] = min(max(own.known[gear], SOFTEST), STIFFEST)
