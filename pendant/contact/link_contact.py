@@ -227,9 +227,9 @@ class LinkWatch:
         gone_now = self._calm > 0 and self._calm % GONE == 0 and self._let_go(limit, signals)
         if self.touched is None or not (gone_now or self._faded == FADED):
             return None
-        link, touched = self.touched, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
+        link, n, touched = self.touched, limit.size, self.torques.mean(min(BEFORE, self.torques.count - NEWEST), NEWEST)
         self._over()
-        return self._reported(Change.LOST, link, new[: limit.size], touched[: limit.size])
+        return self._reported(Change.LOST, link, new[:n], touched[:n])
 
     def _let_go(self, limit: Array, signals: ContactSignals) -> bool:
         """What some joint felt went as fast as a hand goes. Where it faded, the arm may have moved until no joint has a lever."""
