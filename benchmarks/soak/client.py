@@ -73,12 +73,20 @@ class Client:
         """The name of the control with one of these labels.
 
         Raises:
-            LookupError: there is none.
+            LookupError: there is none, or more than one.
         """
         names = self._seen(labels)
-        if not names:
-            raise LookupError(f"the page has none of {labels}")
+        if len(names) != 1:
+            raise LookupError(f"{len(names)} controls of the page are called {' or '.join(labels)}")
         return names[0]
+
+    def offering(self, option: str) -> str:
+        """The name of the control that offers `option`.
+
+        Raises:
+            StopIteration: there is none.
+        """
+        return next(name for name, thing in self.things.items() if option in (thing.get("options") or ()))
 
     def hold(self) -> None:
         """Say that the free-drive button is held, and look for as long as that is good."""
