@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from app.web.panel.mode_panel import CONFIRM, HOLD
+from app.web.panel.mode_panel import CONFIRM, HOLD, LEAVE
 from app.web.server import serve
 from benchmarks.common import Options, Report
 from benchmarks.soak import first_use
@@ -22,8 +22,15 @@ from benchmarks.soak.served import BUILD, Pace, State
 from benchmarks.soak.user import User
 from pendant.event_table import render
 from pendant.events.event import Event, Kind
+from pendant.tick.modes import Mode, Phase
 from sim.arm.scenario import Scenario
 from tests.app.web.fake_loop import ARM, FakeLoop
+
+MODES_OF_THE_BUTTON = (
+    (HOLD, Mode.TEACH, Phase.OFF),
+    (CONFIRM, Mode.TEACH, Phase.CONFIRM),
+    (LEAVE, Mode.FREE_DRIVE, Phase.GUIDED),
+)
 
 
 def test_a_user_uses_the_page_as_it_may_and_comes_back(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -45,25 +52,32 @@ def test_a_user_uses_the_page_as_it_may_and_comes_back(monkeypatch: pytest.Monke
     assert loop.desk.take().touches == ()
 
 
-def test_a_user_knows_the_free_drive_button_by_whatever_it_is_called() -> None:
-    assert (HOLD, CONFIRM) == FREE_DRIVE
-
-
 def test_whoever_comes_back_knows_the_page() -> None:
     """All that a first use presses, reads and drags is on the page under that name."""
-    app = serve(FakeLoop(), ARM, Scenario())
+    loop = FakeLoop()
+    app = serve(loop, ARM, Scenario())
     client = Client(app.url)
     client.come()
+    button = client.called(HOLD)
     client.look(1.0)
     named = {thing.get("label"): thing for thing in client.things.values()}
+    used = ("Take", "Release", "Clock", "Run", "Begin", "Reset", "Hand [N]", "True [kg]", "Configured")
+    pressed = {client.called(label) for label in used}
+    chosen = client.offering(first_use.SCENARIO)
     client.set(client.called("View"), "All settings")
     client.look(0.5)
     kept = {thing.get("label") for thing in client.things.values()}
     said, mode = first_use.page_text(client), first_use.mode(client)
+    for label, loop.mode, loop.phase in MODES_OF_THE_BUTTON:
+        end = time.monotonic() + 10.0
+        while client.things[button]["label"] != label and time.monotonic() < end:
+            client.look(0.1)
+        assert client.things[button]["label"] == label
+        assert client.called(*FREE_DRIVE) == button
     client.go()
     app.close()
-    assert {"Take", "Release", "Clock", "Run", "Begin", "Reset", "Hand [N]", "True [kg]", "Configured"} <= set(named)
-    assert first_use.SCENARIO in named["Chosen"]["options"]
+    assert client.things[chosen]["label"] == "Chosen"
+    assert len(pressed) == len(used)
     assert client.things[first_use.FLANGE]["drag"]
     assert mode == first_use.READY
     assert said.startswith("TEACH Ready")

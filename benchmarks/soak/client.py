@@ -10,11 +10,12 @@ import msgspec
 import zstandard
 from websockets.sync.client import ClientConnection, connect
 
+from app.web.panel.mode_panel import CONFIRM, HOLD, LEAVE
 from benchmarks.viewer import CAMERA, VERSION
 
-FREE_DRIVE = ("Hold for free-drive", "Press to confirm")  # one button: what it is called depends on what is asked for
+FREE_DRIVE = (HOLD, CONFIRM, LEAVE)  # one button: what it is called depends on the mode
 
-BUILT = 30.0  # within which a page is there again [s]
+BUILT = 30.0  # within which a page is there [s]
 
 HOLD_RATE = 20.0  # of the messages of a held button and of a drag, as a browser sends them [Hz]
 
@@ -37,7 +38,11 @@ class Client:
         self.things.clear()
         self._socket = connect(self._url, subprotocols=[VERSION], max_size=None, proxy=None)
         self.send(CAMERA)
-        self.called(*FREE_DRIVE)
+        end = time.monotonic() + BUILT
+        while not self._seen(FREE_DRIVE):
+            if time.monotonic() > end:
+                raise TimeoutError(f"the page has none of {FREE_DRIVE} after {BUILT:g} s")
+            self.look(0.1)
 
     def go(self) -> None:
         """Close the page."""
@@ -65,18 +70,23 @@ class Client:
         self.send({"type": "GuiUpdateMessage", "uuid": name, "updates": {"value": value}})
 
     def called(self, *labels: str) -> str:
-        """The name of the control with one of these labels. While the page is built again, as for another arm, it is waited for.
+        """The name of the control with one of these labels.
 
         Raises:
-            LookupError: it does not come.
+            LookupError: there is none, or more than one.
         """
-        end = time.monotonic() + BUILT
-        while time.monotonic() < end:
-            for name, thing in self.things.items():
-                if thing.get("label") in labels:
-                    return name
-            self.look(0.1)
-        raise LookupError(f"none of {labels} is on the page after {BUILT:g} s")
+        names = self._seen(labels)
+        if len(names) != 1:
+            raise LookupError(f"{len(names)} controls of the page are called {' or '.join(labels)}")
+        return names[0]
+
+    def offering(self, option: str) -> str:
+        """The name of the control that offers `option`.
+
+        Raises:
+            StopIteration: there is none.
+        """
+        return next(name for name, thing in self.things.items() if option in (thing.get("options") or ()))
 
     def hold(self) -> None:
         """Say that the free-drive button is held, and look for as long as that is good."""
@@ -88,6 +98,9 @@ class Client:
         message = {"type": "SceneNodeDragMessage", "phase": phase, "name": name, "instance_index": None, "owner": ""}
         message |= {"start_position": start, "start_screen_pos": [0.5, 0.5], "button": "left", "modifier": modifier}
         self.send(message | {"end_position": here, "end_screen_pos": [0.6, 0.5]})
+
+    def _seen(self, labels: tuple[str, ...]) -> list[str]:
+        return [name for name, thing in self.things.items() if thing.get("label") in labels]
 
     def _see(self, message: dict[str, Any]) -> None:
         name = message.get("uuid") or message.get("name")

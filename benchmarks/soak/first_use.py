@@ -77,7 +77,7 @@ def tidy(client: Client, mass: float) -> None:
         client.set(take, True)
     client.set(client.called("Clock"), "Run")
     client.set(client.called("Run"), "Stop")
-    client.set(client.called("Chosen"), SCENARIO)
+    client.set(client.offering(SCENARIO), SCENARIO)
     client.look(0.5)
     client.set(client.called("Begin"), "Set up")
     client.look(BUILT)

@@ -54,11 +54,13 @@ def test_what_is_added_is_chosen_has_handles_and_is_undone(served: Served, join:
     client, tab = join(), served.docks.walls
     until(lambda: tab.delete.disabled and not tab.delete.visible, "there is none")
     assert tab.choice.options == (NONE,)
+    assert "Programs and jogging pass through it" in tab.list.shown
     client.set(tab.add._impl.uuid, value="Box")
     wished(loop, lambda walls: [wall.name for wall in walls] == ["box 1"], "the box")
     until(lambda: tab.choice.value == "box 1" and tab.handles._gizmo is not None, "chosen, with handles")
     assert [control.value for control in tab.size] == [400.0, 400.0, 400.0]
     assert "box 1" in tab.list.shown
+    assert "No wall yet" not in tab.list.shown
     client.set(tab.undo._impl.uuid, value=True)
     wished(loop, lambda walls: walls == (), "undone")
     until(lambda: tab.handles._gizmo is None and tab.undo.disabled, "nothing is left")
