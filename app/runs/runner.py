@@ -218,22 +218,27 @@ def run(
 
 
 def _compare(watches: list[Watch], session: Session, prepared: Prepared) -> None:
-    """Hand each comparison its other run."""
+    """Hand each comparison what it measures in the same session with its other settings; those with the same share that run."""
+    runs: list[list[ComparedWatch]] = []
     for each in watches:
         if isinstance(each, ComparedWatch):
-            each.other = _of_other_run(session, prepared, each)
+            alike = next((run for run in runs if run[0].wanted.settings == each.wanted.settings), None)
+            runs.append([each]) if alike is None else alike.append(each)
+    for run in runs:
+        for each, measured in zip(run, _of_other_run(session, prepared, run), strict=True):
+            each.other = measured
 
 
-def _of_other_run(session: Session, prepared: Prepared, watched: ComparedWatch) -> float:
-    """What a comparison measures in the same session with the other settings."""
-    other = msgspec.structs.replace(session, settings={**session.settings, **watched.wanted.settings})
+def _of_other_run(session: Session, prepared: Prepared, watched: list[ComparedWatch]) -> list[float]:
+    """What comparisons with the same other settings measure with them."""
+    other = msgspec.structs.replace(session, settings={**session.settings, **watched[0].wanted.settings})
     again = prepare(other, prepared.where)
     simulation = simulate(again)
     timeline = Timeline(other.timeline, again.arm.chain.joints, again.program)
-    each = watch(watched.wanted, again.arm.chain.joints)
-    assert isinstance(each, ComparedWatch)
+    others = [watch(each.wanted, again.arm.chain.joints) for each in watched]
     for tick in range(1, ticks(session.duration) + 1):
         decision = _tick(simulation, again, timeline.wishes(tick, simulation.snapshot))
         timeline.see(tick, decision)
-        each.see(tick, decision, simulation.glance)
-    return each.measured
+        for each in others:
+            each.see(tick, decision, simulation.glance)
+    return [each.measured for each in others if isinstance(each, ComparedWatch)]

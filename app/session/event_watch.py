@@ -87,16 +87,18 @@ class ToneWatch(Watch):
 
     def settled(self) -> bool:
         """See `Watch.settled`."""
-        return len(self.found) >= self.wanted.times
+        return not self.wanted.exactly and len(self.found) >= self.wanted.times
 
     def expected(self) -> str:
         """See `Watch.expected`."""
-        times = f" {self.wanted.times} times" if self.wanted.times > 1 else ""
-        return f"tone {self.wanted.tone}{times} {self.span()}"
+        wanted = self.wanted
+        times = f" exactly {wanted.times} times" if wanted.exactly else f" {wanted.times} times" if wanted.times > 1 else ""
+        return f"tone {wanted.tone}{times} {self.span()}"
 
     def judge(self) -> tuple[bool, str]:
         """See `Watch.judge`."""
-        return self.settled(), listed(self.found)
+        count, times = len(self.found), self.wanted.times
+        return count == times if self.wanted.exactly else count >= times, listed(self.found)
 
 
 @dataclass(slots=True)

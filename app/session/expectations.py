@@ -130,10 +130,13 @@ class Never(OfEvents, tag="no_event", frozen=True, kw_only=True):
 
 
 class Heard(During, tag="tone", frozen=True, kw_only=True):
-    """A page with sound lets a tone be heard in the interval, after its first tick, at least `times` times (app/tones.py)."""
+    """A page with sound lets a tone be heard in the interval, after its first tick (app/tones.py): at least `times` times, or
+    `exactly` so many.
+    """
 
     tone: Literal["STOP", "ASK", "FREE", "HELD", "SIGN", "WALL", "COUNT"]
     times: Annotated[int, Meta(ge=1)] = 1
+    exactly: bool = False
 
 
 class Bounds(During, frozen=True, kw_only=True):

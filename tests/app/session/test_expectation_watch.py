@@ -115,6 +115,10 @@ def test_a_tone_is_heard_at_the_change_that_has_it() -> None:
     assert verdict.expected == "tone COUNT 3 times from 0.000 s to the end"
     assert verdict.seen == "3, at 0.200 s, 1.200 s, 2.200 s"
     assert not follow(Heard(tone="COUNT", times=4), 1700, decide).passed
+    exactly = follow(Heard(tone="COUNT", times=3, exactly=True), 1700, decide)
+    assert exactly.passed
+    assert exactly.expected == "tone COUNT exactly 3 times from 0.000 s to the end"
+    assert not follow(Heard(tone="COUNT", times=2, exactly=True), 1700, decide).passed
     assert follow(Heard(tone="COUNT", begin=2.0, end=2.4), 1700, decide).passed
     assert not follow(Heard(tone="COUNT", begin=2.3, end=2.4), 1700, decide).passed
     assert follow(Heard(tone="FREE"), 10, enters_at(5)).seen == "1, at 0.010 s"
