@@ -18,7 +18,8 @@ BIN := $(VENV)/bin
 # Not compiled at once: most of what is installed is never imported, and what is, is compiled then.
 INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
-WORKERS ?= 2
+# One more than two cores have: a third of the time, tests wait for a clock.
+WORKERS ?= 3
 SEED ?= 1000
 BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 # Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.
