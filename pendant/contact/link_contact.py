@@ -91,15 +91,11 @@ def _felt(change: Array, signals: ContactSignals) -> tuple[Array, Array]:
     return change[:n] - np.vecdot(signals.shares, causes), np.sqrt(np.vecdot(wrong, wrong))
 
 
-def _size(change: Array, limit: Array, signals: ContactSignals) -> float:
-    """What a joint up to the elbow feels in a change, in bounds; the largest."""
-    return float(np.abs(_felt(change, signals)[0] / limit)[: signals.elbow + 1].max())
-
-
-def _sure(change: Array, limit: Array, signals: ContactSignals) -> float:
-    """What a joint up to the elbow feels for sure in a change, beyond what its errors may make, in bounds; the largest."""
+def _sizes(change: Array, limit: Array, signals: ContactSignals) -> tuple[float, float]:
+    """What a joint up to the elbow feels in a change, and what of it its errors cannot make; the largest of each, in bounds."""
     felt, wrong = _felt(change, signals)
-    return max(float(((np.abs(felt) - wrong) / limit)[: signals.elbow + 1].max()), 0.0)
+    size = np.abs(felt)
+    return float((size / limit)[: signals.elbow + 1].max()), max(float(((size - wrong) / limit)[: signals.elbow + 1].max()), 0.0)
 
 
 class LinkWatch:
@@ -201,8 +197,7 @@ class LinkWatch:
         last = int(told[-1]) if told.size else elbow - 1
         link = min(max(last - elbow + 1, 0), len(LINKS) - 1)
         old = self._rest
-        shape = signals.shares.shape
-        before, now = (np.abs(all_[:n] - np.vecdot(signals.shares, all_[n:].reshape(shape))) / bound for all_ in (old, new))
+        before, now = (np.abs(_felt(each, signals)[0]) / bound for each in (old, new))
         if now.max() < ENDED * before.max() and before.max() > 2.0:
             self._over()
             return self._reported(Change.LOST, link, new[:n], old[:n])
@@ -216,14 +211,14 @@ class LinkWatch:
         if self._age < HELD:  # that mean still holds ticks from before the contact
             return None
         change = self.torques.mean(0, HELD) - self._rest
-        left = _sure(change, limit, signals)
+        size, left = _sizes(change, limit, signals)
         self._largest = max(left, LATELY * self._largest)
         gone = max(1.0, LEFT * self._largest, min(STRAYED, HALF * self._largest))
         if self._calm > GONE:  # it has faded: what strays meanwhile is no hand that is felt again
             gone = max(gone, STRAYED)
         self._calm = self._calm + 1 if left < gone else 0
         # What may be an error may as well be a hand: only what is not felt at all has faded.
-        self._faded = self._faded + 1 if _size(change, limit, signals) < gone else 0
+        self._faded = self._faded + 1 if size < gone else 0
         gone_now = self._calm > 0 and self._calm % GONE == 0 and self._let_go(limit, signals)
         if self.touched is None or not (gone_now or self._faded == FADED):
             return None
@@ -254,7 +249,7 @@ class LinkWatch:
         """After a release: silent until the torques are calm; then statistics start again (CD-9a)."""
         self._age += 1
         self._rest = self.torques.mean(SETTLED, NEWEST)
-        calm = _sure(new - self._rest, limit, signals) < 1.0
+        calm = _sizes(new - self._rest, limit, signals)[1] < 1.0
         self._calm = self._calm + 1 if calm else 0
         if self._calm >= CALM or self._age >= SILENCE:
             self.silent = False

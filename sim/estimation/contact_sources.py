@@ -17,6 +17,7 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.flange_drive import driven, flange_drive
 from sim.estimation.momentum_observer import MomentumObserver
+from sim.estimation.torque_errors import left_over
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
@@ -212,9 +213,7 @@ def _transfer(own, R, felt, out) -> None:
 def _feel_behind(own, momentum, errors) -> None:
     """The joints' external torques that the flange sensor does not feel, as known best (n,) [N·m]."""
     for i in range(own.felt.size):
-        own.felt[i] = momentum.residual[i]
-        for k in range(errors.causes.shape[1]):
-            own.felt[i] -= errors.shares[i, k] * errors.causes[i, k]
+        own.felt[i] = left_over(errors.shares[i], momentum.residual[i], errors.causes[i])
 
 
 @kernel

@@ -138,7 +138,7 @@ def _noise(own, doubt, i):
 
 
 @kernel
-def _left(shares, torque, causes):
+def left_over(shares, torque, causes):
     """What the causes leave of a joint's torque [N·m]."""
     for k in range(CAUSES):
         torque -= shares[k] * causes[k]
@@ -148,7 +148,7 @@ def _left(shares, torque, causes):
 @kernel
 def _beyond(own, doubt, i, felt) -> bool:
     """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
-    left, causes = _left(own.shares[i], felt[0], felt[1:]), felt[1:]
+    left, causes = left_over(own.shares[i], felt[0], felt[1:]), felt[1:]
     known = 0.0
     for k in range(CAUSES):
         for m in range(CAUSES):
