@@ -101,6 +101,11 @@ def look(errors, rigid, borne, state) -> None:
     own = errors[0]
     q, by_deflection, with_sensor = state
     R, jacobian = rigid.R, rigid.jacobian
+    # All drift, whether there is something to learn from or not, but never beyond what was believed at first: else an error that
+    # is taken for a touch, of which nothing is learned, would stay for good.
+    for at in range(own.known.size):
+        P = own.covariance[at, at]
+        own.covariance[at, at] = P + min(own.walk[at], max(own.most[at] ** 2 / 3.0 - P, 0.0))
     for i in range(q.size):
         causes, shares, misfit = own.causes[i], own.shares[i], own.misfit[i]
         causes[0] = borne[i]
@@ -209,9 +214,6 @@ def forget(errors) -> None:
 def _learn(own, i, felt, n) -> None:
     """A Kalman filter's step on torque = sum of causes times shares, of joint i; each joint has one tick in n."""
     P, size, causes = own.covariance, own.known.size, felt[2:]
-    # What has no cause tells nothing of its share: it may drift, but never beyond what was believed at first.
-    for at in range(size):
-        P[at, at] += min(own.walk[at], max(own.most[at] ** 2 / 3.0 - P[at, at], 0.0))
     gains = np.zeros(size)
     for k in range(CAUSES):
         for at in range(size):

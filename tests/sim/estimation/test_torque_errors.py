@@ -21,6 +21,7 @@ ZERO = np.array([3.0, -2.0, 2.5, 0.2, -0.1, 0.15])
 """Of the flange sensor [N, N·m]."""
 RIPPLE = ENCODER_RIPPLE * (np.array(ARM.transmissions.stiffness) + np.array(ARM.transmissions.hysteresis_stiffness))
 """The most that it makes [N·m]."""
+JUMP = 0.6  # of the flange sensor's zero [N·m]
 SPEED = np.array([0.7, 1.1, 1.6, 2.3, 2.9, 3.7])  # of each joint's swing [rad/s]
 
 
@@ -32,6 +33,7 @@ class Swinging:
         self.dynamics.set_load(NOTHING)
         self.observer, self.tick = MomentumObserver(ARM, self.dynamics), 0
         self.errors = self.observer.errors
+        self.zero = ZERO  # of the flange sensor (6,) [N, N·m]
 
     def run(self, ticks: int, hand: np.ndarray = NONE, use: np.ndarray = ALL, with_sensor: bool = True) -> None:
         """A hand (n,) turns the joints."""
@@ -43,7 +45,7 @@ class Swinging:
             self.dynamics.recursion.run(q, np.stack([q, qd, NONE]), np.zeros(3))
             # A gear is stiffer than believed: it bears more than its bending tells; what an encoder tells too much unbends it.
             told = load / (1.0 + STIFFER) - 0.8 * RIPPLE * np.sin(2.0 * q + 0.5)
-            driven = (q, told, load, NONE, NONE, NONE, use, ZERO if with_sensor else NONE)
+            driven = (q, told, load, NONE, NONE, NONE, use, self.zero if with_sensor else NONE)
             self.observer.update(driven, with_sensor=with_sensor, valid=True, learn=True)
 
 
@@ -109,6 +111,19 @@ def test_a_new_zero_of_the_sensor_is_learned_again(learned: Swinging) -> None:
     assert errors.shares[:, 1:7] == pytest.approx(0.0)
     assert errors.misfit[0, 1:7] == pytest.approx([FORCE_OFFSET] * 3 + [TORQUE_OFFSET] * 3)
     assert errors.shares[1, 0] == pytest.approx(STIFFER[1], abs=0.03)
+
+
+def test_a_zero_that_jumped_is_taken_for_a_touch_but_not_for_good() -> None:
+    """Nothing is learned while something seems to touch the arm, but what is known grows old meanwhile: then it is learned."""
+    arm = Swinging()
+    arm.run(4000)
+    arm.zero = ZERO + np.array([0.0, 0.0, 0.0, JUMP, 0.0, 0.0])
+    arm.run(100)
+    known = arm.errors.shares.copy()
+    arm.run(2000)
+    assert (arm.errors.shares == known).all()
+    arm.run(30_000)
+    assert arm.errors.shares[2, 4:7] == pytest.approx(arm.zero[3:], abs=0.1)
 
 
 def test_a_joint_without_deflection_has_no_gear_and_no_ripple_to_learn() -> None:
