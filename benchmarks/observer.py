@@ -3,8 +3,8 @@
 Payloads of 0.3 to 5 kg fall from an arm at rest; from a guided one whose hand lets go with it, or stays; and out of a hand that
 carries their weight. The sensor of an arm at rest steps by 5 to 20 N, or of a guided one. Hands grab, snatch and let go. Of what
 is told with 99 % or more, 98.5 % has to be true. Beside it, on the same ticks, the rule for payloads that it replaced
-(`benchmarks.wrenches.force_share`). Nothing ends free-drive here: a fall and a step are judged for 60 ms. Truth is read for
-scoring alone.
+(`benchmarks.wrenches.force_share`). Nothing ends free-drive here: a fall and a step are judged for 60 ms, the observer until it
+knows of a fall, for then STOP would follow. Truth is read for scoring alone.
 """
 
 import itertools
@@ -39,6 +39,7 @@ SIZES = (5.0, 20.0)  # of a step [N]
 JUDGED = 30  # ticks after the fall
 TOUCHES = 10  # on one arm
 LEVELS = (0.5, 0.9, 0.99, 1.0)
+SOME = 1e-9  # the odds are 0 at least, in nats: that much is told where nothing is
 HONEST = 0.985  # of what is told with 99 % or more
 
 
@@ -92,12 +93,13 @@ class Watch:
         self._ticks += 1
         if self._rule.step(estimate, self._hand, decision.baseline):
             self._ruled = min(self._ruled, self._ticks)
-        self._odds = max(self._odds, estimate.lost_odds)
-        if estimate.lost_odds >= KNOWN:
-            self._known = min(self._known, self._ticks)
-        self._stepped = max(self._stepped, estimate.step_odds)
-        if estimate.step_odds >= SUSPECTED:
-            self._told = min(self._told, self._ticks)
+        if self._known == math.inf:
+            self._odds = max(self._odds, estimate.lost_odds)
+            self._stepped = max(self._stepped, estimate.step_odds)
+            if estimate.lost_odds >= KNOWN:
+                self._known = self._ticks
+            if estimate.step_odds >= SUSPECTED:
+                self._told = min(self._told, self._ticks)
         return decision.mode is Mode.FREE_DRIVE
 
     def seen(self, what: str) -> Seen:
@@ -269,7 +271,7 @@ def reliability(report: Report, what: str, level: tuple[float, float], odds: lis
         true: which class it is.
     """
     low, high = (math.log(p / (1.0 - p)) if p < 1.0 else math.inf for p in level)
-    told = [sum(low <= one < high for one in some) for some in odds]
+    told = [sum(max(low, SOME) <= one < high for one in some) for some in odds]
     shares = [hits / max(len(some), 1) for hits, some in zip(told, odds, strict=True)]
     share = shares[true] / sum(shares) if sum(shares) > 0.0 else "no case"
     name = f"{what} is told with {100.0 * level[0]:g} to {100.0 * level[1]:g} %: it is one"

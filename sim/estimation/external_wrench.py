@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from pendant.sensor.sensor_spec import SensorSpec
+from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
 from sim.arm.frames import skew
@@ -20,6 +21,7 @@ from sim.estimation.wrench_hypotheses import (
     BEFORE,
     FREED,
     LATE,
+    LINE,
     LN_RARE,
     LOST,
     MORE,
@@ -37,7 +39,7 @@ from sim.estimation.wrench_steps import ahead, quiet, recent, sudden, unanswered
 LONGEST = 10
 """Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
 
-LN_ONSETS = math.log(LONGEST - SHORTEST + 1.0)
+LN_ONSETS = math.log(LONGEST + 1.0)
 
 KEPT = LONGEST + BEFORE + 1
 """Ticks: the longest change, the one in which it came, and those before."""
@@ -70,14 +72,16 @@ class ExternalWrench:
             rest=(3,),  # the same of what stays when the payload is gone
             moves=(),  # what a force at the flange moves at once [kg]
             x=(KEPT, 6),  # with the sensor's bias
-            p=(KEPT, 6),
+            p=(KEPT, 7),  # and its force along the line to its centre
+            line=(3,),  # that line's direction, in F
             before=(KEPT, 6),  # mean of x ahead of each tick
             steep=(KEPT, 2),  # square of its rise there, a tick
             ahead=(KEPT,),  # log likelihood of each tick if a hand goes on
             felt=(KEPT, 3),  # acceleration of the flange beyond gravity [m/s²], not a number where that is not valid
-            turn=(KEPT,),  # size of the angular acceleration [rad/s²]
+            gyro=(3,),  # its last value [rad/s]
+            turn=(KEPT,),  # size of the angular acceleration before its filter [rad/s²]
             fastest=(),  # of these the largest
-            sums=(7, 6),
+            sums=(10, 7),
             next="i8",
             count="i8",
             lost=(),
@@ -111,7 +115,8 @@ class ExternalWrench:
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         own, rest = self._own, load - payload
-        turned = skew(payload.com)
+        turned, lever = skew(payload.com), float(np.linalg.norm(payload.com))
+        own["line"] = payload.com / lever if lever > 0.0 else 0.0
         own["mass"], own["com"], own["inertia"] = payload.mass, payload.com, payload.inertia - payload.mass * turned @ turned
         for moments, body in (("whole", load), ("rest", rest)):
             own[moments] = max(body.mass, 0.0) * np.linalg.norm(body.com) ** np.arange(3.0)
@@ -141,13 +146,18 @@ class ExternalWrench:
 def _update(wrenches, forces, bias, accelerations) -> None:
     own, felt = wrenches[0], forces[0]
     here = own.next
-    needed((own.mass, own.com, own.inertia), (felt.specific, felt.gyro, felt.turn), own.p[here])
+    p = own.p[here]
+    needed((own.mass, own.com, own.inertia), (felt.specific, felt.gyro, felt.turn), p)
+    p[LINE] = own.line[0] * p[0] + own.line[1] * p[1] + own.line[2] * p[2]
     for k in range(6):
         own.x[here, k] = felt.missing[k]
     for k in range(3):
         own.felt[here, k] = felt.a_felt[k] if accelerations else np.nan
-    a, b, c = felt.turn[0], felt.turn[1], felt.turn[2]
-    own.turn[here] = np.sqrt(a * a + b * b + c * c)
+    turned = 0.0
+    for k in range(3):
+        turned += ((felt.gyro[k] - own.gyro[k]) / TICK) ** 2
+        own.gyro[k] = felt.gyro[k]
+    own.turn[here] = np.sqrt(turned) if own.count else 0.0
     own.fastest = own.turn.max()
     for axis in range(2):
         unsure = noise(own, own.whole, axis, 0.0)
@@ -192,9 +202,10 @@ def _both(a, b):
 @kernel
 def _weigh(own, here, bias) -> None:
     """The odds, where all hypotheses explain the same ticks."""
-    sums, before = own.sums, own.sums[6]
+    sums, before = own.sums, own.sums[9]
     sums[:] = 0.0
-    seen = Seen(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5])
+    seen = Seen(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8])
+    seen.newest[:] = own.p[here]
     earlier, change = 0.0, quiet(own)  # what is between two wrenches is explained as well as noise
     for age in range(LONGEST + 1):
         earlier += own.ahead[(here - age) % KEPT]
@@ -202,6 +213,7 @@ def _weigh(own, here, bias) -> None:
     other, lost, stepped = earlier + LN_ONSETS, -np.inf, -np.inf
     gone = -np.inf  # the likeliest of these
     earlier -= own.ahead[here]
+    other = _both(other, earlier + change)  # it came now: by what, no tick can tell yet
     for length in range(1, LONGEST + 1):
         first = (here - length) % KEPT  # the tick in which it came
         place = (first + 1) % KEPT
@@ -214,8 +226,14 @@ def _weigh(own, here, bias) -> None:
             seen.p[k] += p
             seen.pp[k] += p * p
             seen.px[k] += p * x
+        for k in range(LINE + 1):
+            p = own.p[place, k]
+            if length > 1:
+                seen.swing[k] += (p - seen.oldest[k]) ** 2
+            seen.oldest[k] = p
         earlier -= own.ahead[first]
         if length < SHORTEST:
+            other = _both(other, earlier + change + anything(seen, length))
             continue
         known, steep = earlier + change, own.steep[first]
         total = anything(seen, length)

@@ -15,7 +15,7 @@ it, i the age of a tick after it:
     payload lost    x(i) = x0 + s p(i) + c + e,      what touches the arm stays; s is 1 within what is known of the payload
     lost and freed  x(i) = s p(i) + c + e,           and a hand lets go in the same moment
     more payload    x(i) = x0 + s p(i) + c + e,      s is negative: as much may have come again; rare at once
-    carried         as any of these three,           but it is a hand that takes the weight on: not at once
+    carried         as any of these three,           but it is a hand that takes the weight on: not at once, and p may not swing
     sensor stepped  x(i) = x0 + d + e,               d as large as a hand's force; nothing moves the flange in the first two ticks
     knock           x(i) = x0 + d + e,               the same, but a force: it moves the flange; rare
 
@@ -86,6 +86,8 @@ calls for (sim/control/)."""
 
 LOST, FREED, MORE = range(3)  # what became of the payload
 
+LINE = 6  # place of what is along the line from the flange to the payload's centre, behind three forces and three torques
+
 
 class Seen(NamedTuple):
     """What followed a change, summed over its ticks, an axis each: of x, of the payload's p, and of their products."""
@@ -96,6 +98,9 @@ class Seen(NamedTuple):
     p: Array
     pp: Array
     px: Array
+    swing: Array  # of what p, and its force along the `LINE`, changes by from a tick to the next, squared (7,)
+    newest: Array  # they in the newest tick
+    oldest: Array  # and in the first
 
 
 @kernel
@@ -202,9 +207,34 @@ def payload(own, seen, change, kind):
     off = px - mean * pp
     step = off / (1.0 / variance + pp)
     square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, least(length)), mean + step
-    carried = 0.0
-    for k in range(6):
-        start = before[k] if kind == FREED else 0.0
-        way = share * share * seen.pp[k] - 2.0 * share * start * seen.p[k] + length * start * start
-        carried += 0.5 * way / length / jump(own, steep, k // 3)
-    return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried, share
+    return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried(own, seen, change, (kind, share)), share
+
+
+@kernel
+def carried(own, seen, change, gone):
+    """How much less likely a hand is that comes to carry a share of the payload, in nats.
+
+    Its wrench has to get there within a tick, and to follow the payload's from then on. It does so at any even rate, within
+    what a hand is off it. A swing that is no swing, of the accelerometer's noise or of a turn that comes late, it need not
+    follow. Along the line from the flange to the payload's centre no turn makes a force, so there swings are what they are.
+    """
+    length, before, steep = change
+    kind, share = gone
+    unlikely = 0.0
+    for axis in range(2):
+        sudden, off = jump(own, steep, axis), (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2
+        swings = 0.0
+        for k in range(3 * axis, 3 * axis + 3):
+            way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)
+            unlikely += way * way / sudden
+            swings += uneven(seen, k, length)
+        line = uneven(seen, LINE, length) if axis == 0 else 0.0
+        for swing, late in ((swings - line, LATE), (line, 0.0)):
+            unlikely += share * share * swing / (2.0 * (off + noise(own, own.whole, axis, late)))
+    return 0.5 * unlikely
+
+
+@kernel
+def uneven(seen, k, length):
+    """Square of what a component of p changes by from tick to tick, beyond an even rate."""
+    return seen.swing[k] - (seen.newest[k] - seen.oldest[k]) ** 2 / (length - 1.0)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from app.files.library import load_arm
 from pendant.guided.endings import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
+from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
 from sim.estimation import wrench_hypotheses as bank
 from sim.estimation.external_wrench import KEPT, LONGEST, ExternalWrench
@@ -38,6 +39,7 @@ class Arm:
         self.wrench = ExternalWrench(UR5E, self.forces)
         self.wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
         self.rng = np.random.default_rng(seed)
+        self.gyro = np.zeros(3)
         self.odds: list[float] = []
         self.stepped: list[float] = []
 
@@ -56,7 +58,9 @@ class Arm:
         noise = self.rng.normal(size=6) * [0.15, 0.15, 0.15, 0.006, 0.006, 0.006]
         shaking = 0.1 * load.mass * self.rng.normal(size=3)  # of the accelerometer that weighs the load
         noise += np.concatenate([shaking, np.cross(load.com, shaking)])
-        own["missing"], own["specific"], own["gyro"], own["turn"] = x + noise, specific + shaking / load.mass, 0.0, turn
+        self.gyro = self.gyro + turn * TICK
+        own["missing"], own["specific"] = x + noise, specific + shaking / load.mass
+        own["gyro"], own["turn"] = self.gyro, turn
         own["a_felt"] = felt + 0.1 * self.rng.normal(size=3)
         self.wrench.update(bias, accelerations=accelerometer)
         self.odds.append(self.wrench.lost)
@@ -261,7 +265,7 @@ def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float,
     own = arm.wrench.record[0]
     here = (int(own["next"]) - 1) % KEPT
     x, p, felt = (np.stack([own[name][(here - k) % KEPT] for k in reversed(range(KEPT))]) for name in ("x", "p", "felt"))
-    lost, stepped = of_window(x - bias, p, felt)
+    lost, stepped = of_window(x - bias, p[:, :6], felt)
     assert arm.wrench.lost == pytest.approx(max(lost, 0.0), rel=1e-9)
     assert arm.wrench.stepped == pytest.approx(max(stepped, 0.0), rel=1e-9)
 
@@ -307,7 +311,11 @@ def of_window(x: Array, p: Array, felt: Array) -> tuple[float, float]:
     """Log odds that the payload changed within the last ticks, and that the sensor stepped."""
     ahead = {tick: goes_on(x, tick) for tick in range(BEFORE, KEPT)}
     quiet = -3.0 - 1.5 * sum(math.log(of_noise(axis, 0, 0.0)) for axis in range(2))
-    other, lost, stepped = [sum(ahead.values()) + math.log(LONGEST - SHORTEST + 1.0)], [-math.inf], [-math.inf]
+    # No change, one in the newest tick, and one in the tick before it, which may be anything.
+    early = [sum(ahead[tick] for tick in range(BEFORE, KEPT - n)) + quiet for n in (1, 2)]
+    wide = np.repeat([(0.5 * bank.HAND) ** 2, (0.5 * bank.HAND * LEVER) ** 2], 3)
+    early[1] += dense(x[-1], 0.0, np.diag(wide))
+    other, lost, stepped = [sum(ahead.values()) + math.log(LONGEST + 1.0), *early], [-math.inf], [-math.inf]
     for length in range(SHORTEST, LONGEST + 1):
         start = KEPT - length
         known = sum(ahead[tick] for tick in range(BEFORE, start - 1)) + quiet
@@ -375,9 +383,17 @@ def of_change(x: Array, p: Array, felt: Array, length: int) -> tuple[list[float]
         off = data - mean * basis
         square = max(float(off @ np.linalg.solve(whole, off)), 6.0 * (length - 1.0))  # better than noise says nothing
         likelihood = -0.5 * square - 0.5 * float(np.linalg.slogdet(whole)[1]) - credit[kind]
-        way = ((share * needs - (x0 if kind == FREED else 0.0)) ** 2).mean(axis=0)
+        way = (share * needs.mean(axis=0) - (x0 if kind == FREED else 0.0)) ** 2
+        swings = share * (np.diff(needs, axis=0) - (needs[-1] - needs[0]) / (length - 1.0))
+        line = swings[:, :3] @ PAYLOAD.com / np.linalg.norm(PAYLOAD.com)  # a turn makes no force along it
+        off = [
+            2.0 * ((bank.TOUCH * (1.0, LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
+            for axis, late in ((0, LATE), (1, LATE), (0, 0.0))
+        ]
+        unlikely = np.sum(way / np.array(jumps)) + np.sum(line**2) * (1.0 / off[2] - 1.0 / off[0])
+        unlikely += np.sum(swings[:, :3] ** 2) / off[0] + np.sum(swings[:, 3:] ** 2) / off[1]
         if (share > 0.0) != (kind == MORE):
-            payloads.append((likelihood - LN_RARE * (kind == MORE), 0.5 * float(np.sum(way / np.array(jumps)))))
+            payloads.append((likelihood - LN_RARE * (kind == MORE), 0.5 * float(unlikely)))
     size = float(np.linalg.norm((after.mean(axis=0) - x0)[:3]))
     return [*hands.values(), anything], payloads, (step, of_accelerations(felt, start - 1, size))
 
