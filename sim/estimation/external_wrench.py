@@ -33,8 +33,9 @@ from sim.estimation.wrench_hypotheses import (
     nobody,
     noise,
     payload,
+    spread,
 )
-from sim.estimation.wrench_steps import ahead, quiet, recent, sudden, unanswered
+from sim.estimation.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
 
 LONGEST = 10
 """Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
@@ -81,6 +82,7 @@ class ExternalWrench:
             gyro=(3,),  # its last value [rad/s]
             turn=(KEPT,),  # size of the angular acceleration before its filter [rad/s²]
             fastest=(),  # of these the largest
+            spread=(2,),  # log of the variances of x, with nothing that comes late and with it
             sums=(10, 7),
             next="i8",
             count="i8",
@@ -159,6 +161,7 @@ def _update(wrenches, forces, bias, accelerations) -> None:
         own.gyro[k] = felt.gyro[k]
     own.turn[here] = np.sqrt(turned) if own.count else 0.0
     own.fastest = own.turn.max()
+    own.spread[0], own.spread[1] = spread(own, 0.0), spread(own, LATE)
     for axis in range(2):
         unsure = noise(own, own.whole, axis, 0.0)
         own.steep[here, axis] = recent(own.x, (here, 3 * axis), unsure, own.before[here])
@@ -193,13 +196,6 @@ def _jumped(own, here) -> bool:
 
 
 @kernel
-def _both(a, b):
-    """Log of the sum of what these are the logs of."""
-    most, least = max(a, b), min(a, b)
-    return most if least == -np.inf else most + np.log1p(np.exp(least - most))
-
-
-@kernel
 def _weigh(own, here, bias) -> None:
     """The odds, where all hypotheses explain the same ticks."""
     sums, before = own.sums, own.sums[9]
@@ -213,7 +209,7 @@ def _weigh(own, here, bias) -> None:
     other, lost, stepped = earlier + LN_ONSETS, -np.inf, -np.inf
     gone = -np.inf  # the likeliest of these
     earlier -= own.ahead[here]
-    other = _both(other, earlier + change)  # it came now: by what, no tick can tell yet
+    other = both(other, earlier + change)  # it came now: by what, no tick can tell yet
     for length in range(1, LONGEST + 1):
         first = (here - length) % KEPT  # the tick in which it came
         place = (first + 1) % KEPT
@@ -233,24 +229,24 @@ def _weigh(own, here, bias) -> None:
             seen.oldest[k] = p
         earlier -= own.ahead[first]
         if length < SHORTEST:
-            other = _both(other, earlier + change + anything(seen, length))
+            other = both(other, earlier + change + anything(seen, length))
             continue
         known, steep = earlier + change, own.steep[first]
         total = anything(seen, length)
         for late in (0.0, LATE):
             rising, steady = hand(own, seen, (length, before, steep), late)
-            total = _both(_both(total, nobody(own, seen, length, late)), _both(rising, steady))
+            total = both(both(total, nobody(own, seen, length, late)), both(rising, steady))
         any_step, size = sudden(own, seen, (length, before))
-        other = _both(_both(other, known + total), known + any_step - LN_RARE)
-        stepped = _both(stepped, known + any_step + unanswered(own, first, size))
+        other = both(both(other, known + total), known + any_step - LN_RARE)
+        stepped = both(stepped, known + any_step + unanswered(own, first, size))
         if own.mass > 0.0:
             for kind in (LOST, FREED, MORE):
                 likelihood, carried, share = payload(own, seen, (length, before, steep), kind)
                 if (share > 0.0) == (kind == MORE):
                     continue
                 likelihood += known - LN_RARE if kind == MORE else known
-                lost, other = _both(lost, likelihood), _both(other, likelihood - carried)
+                lost, other = both(lost, likelihood), both(other, likelihood - carried)
                 if likelihood > gone:
                     gone, own.share = likelihood, share
-    own.lost = max(lost - _both(other, stepped), 0.0)
-    own.stepped = max(stepped - _both(other, lost), 0.0)
+    own.lost = max(lost - both(other, stepped), 0.0)
+    own.stepped = max(stepped - both(other, lost), 0.0)

@@ -110,6 +110,12 @@ def noise(own, load, axis, late):
 
 
 @kernel
+def spread(own, late):
+    """Log of the variances of a force and of a torque in a tick."""
+    return np.log(noise(own, own.whole, 0, late) * noise(own, own.whole, 1, late))
+
+
+@kernel
 def jump(own, steep, axis):
     """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
     return (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
@@ -123,14 +129,15 @@ def hand(own, seen, change, late):
     once = 0.5 * count * (count + 2.0)  # the sum of i + 1/2
     square = count * (count + 1.0) * (2.0 * count + 1.0) / 6.0 + 0.5 * count * (count + 1.0) + 0.25 * count
     rising = steady = 0.0
+    of_rising = of_steady = 1.0  # determinants
     for axis in range(2):
         R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else LEVER
         sudden = jump(own, steep, axis)
         rise = (0.5 * HAND / RISE * lever) ** 2
         a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
         determinant = a * c - b * b
-        rising -= 1.5 * (count * np.log(R) + np.log(determinant * sudden * rise))
-        steady -= 1.5 * (count * np.log(R) + np.log(a * sudden))
+        of_rising *= determinant * sudden * rise
+        of_steady *= a * sudden
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - count * before[k]
             later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
@@ -138,7 +145,8 @@ def hand(own, seen, change, late):
             g, h = first / R, ((count + 0.5) * first - later) / R
             rising -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / determinant)
             steady -= 0.5 * (whole / R - g * g / a)
-    return rising, steady
+    spread = count * own.spread[0 if late == 0.0 else 1]
+    return rising - 1.5 * (spread + np.log(of_rising)), steady - 1.5 * (spread + np.log(of_steady))
 
 
 @kernel
@@ -150,13 +158,13 @@ def least(length):
 @kernel
 def nobody(own, seen, length, late):
     """Log likelihood of an arm that nobody touches."""
-    likelihood = 0.0
+    likelihood, determinant = 0.0, 1.0
     for axis in range(2):
         R, offset = noise(own, own.whole, axis, late), (OFFSET * (1.0 if axis == 0 else LEVER)) ** 2
-        likelihood -= 1.5 * (length * np.log(R) + np.log(1.0 + length * offset / R))
+        determinant *= 1.0 + length * offset / R
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * (seen.xx[k] - offset / (R + length * offset) * seen.x[k] ** 2) / R
-    return likelihood
+    return likelihood - 1.5 * (length * own.spread[0 if late == 0.0 else 1] + np.log(determinant))
 
 
 @kernel
@@ -183,7 +191,7 @@ def payload(own, seen, change, kind):
     length, before, steep = change
     weight = own.mass * GRAVITY
     mean, variance = (-0.5, 0.25) if kind == MORE else (1.0, (SURE / own.mass) ** 2)
-    xx, px, pp, determinants = 0.0, 0.0, 0.0, 0.0
+    xx, px, pp, determinant = 0.0, 0.0, 0.0, 1.0
     for axis in range(2):
         # What the accelerometer adds to x and to p cancels where the payload is gone, with a hand as well. So a payload has to
         # fit within the noise of what is left at the flange, and that this noise is small says nothing. One that stays swings on.
@@ -196,7 +204,7 @@ def payload(own, seen, change, kind):
             offset += (OFFSET * lever) ** 2
         else:
             offset += 4.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
-        determinants += 3.0 * (length * np.log(loaded) + np.log(1.0 + length * offset / R))
+        determinant *= 1.0 + length * offset / R
         known = offset / (R * (R + length * offset))
         for k in range(3 * axis, 3 * axis + 3):
             start = 0.0 if kind == FREED else before[k]
@@ -207,7 +215,9 @@ def payload(own, seen, change, kind):
     off = px - mean * pp
     step = off / (1.0 / variance + pp)
     square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, least(length)), mean + step
-    return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried(own, seen, change, (kind, share)), share
+    spread = length * own.spread[1 if kind == MORE else 0]
+    likelihood = -0.5 * (square + np.log((1.0 + variance * pp) * determinant**3) + 3.0 * spread)
+    return likelihood, carried(own, seen, change, (kind, share)), share
 
 
 @kernel

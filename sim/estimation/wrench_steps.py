@@ -21,6 +21,8 @@ from sim.estimation.wrench_hypotheses import (
     noise,
 )
 
+NOTHING = 37.0  # a double does not know 1 + exp(-37) from 1
+
 
 @kernel
 def recent(values, place, variance, mean):
@@ -42,9 +44,16 @@ def recent(values, place, variance, mean):
 
 
 @kernel
+def both(a, b):
+    """Log of the sum of what these are the logs of."""
+    most, less = max(a, b), min(a, b)
+    return most + np.log1p(np.exp(less - most)) if less > most - NOTHING else most
+
+
+@kernel
 def quiet(own):
     """Log likelihood of a tick in which there is noise alone, in the mean."""
-    return -3.0 - 1.5 * (np.log(noise(own, own.whole, 0, 0.0)) + np.log(noise(own, own.whole, 1, 0.0)))
+    return -3.0 - 1.5 * own.spread[0]
 
 
 @kernel
@@ -53,9 +62,9 @@ def ahead(own, x, before, steep):
 
     It stays, goes on rising, or changes by a touch, each with what comes late and without; and rarely it does anything.
     """
-    best, total = -np.inf, 0.0
+    total = -np.inf
     for way in range(7):
-        likelihood = -LN_OFTEN if way < 6 else -LN_RARE
+        likelihood, determinant = -LN_OFTEN if way < 6 else -LN_RARE, 1.0
         for axis in range(2):
             lever = 1.0 if axis == 0 else LEVER
             V = noise(own, own.whole, axis, LATE if way % 2 else 0.0) * (1.0 + 1.0 / BEFORE)
@@ -68,12 +77,10 @@ def ahead(own, x, before, steep):
             square = 0.0
             for k in range(3 * axis, 3 * axis + 3):
                 square += (x[k] - before[k]) ** 2
-            likelihood -= 0.5 * square / V + 1.5 * np.log(V)
-        if likelihood > best:
-            total, best = total * np.exp(best - likelihood) + 1.0, likelihood
-        else:
-            total += np.exp(likelihood - best)
-    return best + np.log(total)
+            likelihood -= 0.5 * square / V
+            determinant *= V
+        total = both(total, likelihood - 1.5 * np.log(determinant))
+    return total
 
 
 @kernel
@@ -83,16 +90,17 @@ def sudden(own, seen, change):
     What comes late of a turn counts always: where it is much, a swinging load looks like a step.
     """
     length, before = change
-    square = size = determinants = 0.0
+    square, size, determinant = 0.0, 0.0, 1.0
     for axis in range(2):
         R, V = noise(own, own.whole, axis, LATE), (0.5 * HAND * (1.0 if axis == 0 else LEVER)) ** 2
-        determinants += 3.0 * (length * np.log(R) + np.log(1.0 + length * V / R))
+        determinant *= 1.0 + length * V / R
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - length * before[k]
             whole = seen.xx[k] - 2.0 * before[k] * seen.x[k] + length * before[k] ** 2
             square += (whole - V / (R + length * V) * first * first) / R
             if axis == 0:
                 size += (first / length) ** 2
+    determinants = 3.0 * (length * own.spread[1] + np.log(determinant))
     return -0.5 * (max(square, least(length)) + determinants), np.sqrt(size)
 
 
