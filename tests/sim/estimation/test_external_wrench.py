@@ -111,15 +111,15 @@ def test_it_is_known_when_the_hand_goes_with_it(seed: int) -> None:
     assert Arm(seed).course([np.array([12.0, 0.0, 0.0, 0.0, 0.5, 0.0]), *steady(NEEDS)], moves=True) > KNOWN
 
 
-@pytest.mark.parametrize("shakes", [0.0, 4.0])
+@pytest.mark.parametrize("shakes", [0.0, 2.0])
 @pytest.mark.parametrize("seed", range(5))
 def test_a_payload_that_falls_out_of_a_hand_that_goes_with_it_is_known_by_how_it_swings(seed: int, shakes: float) -> None:
     """The hand carried the whole weight: at rest nothing changes. A hand that carried it on would have to swing as it does."""
-    arm, rng = Arm(seed), np.random.default_rng(seed)
+    arm = Arm(seed)
     for _ in range(30):
         arm.tick(NEEDS)
-    for _ in range(12):
-        specific = UP + shakes * rng.normal(size=3)
+    for swing in (1.0, -1.0) * 6:
+        specific = UP + shakes * swing * np.array([0.0, 0.0, 1.0])
         gone = PAYLOAD.mass * np.concatenate([specific, np.cross(PAYLOAD.com, specific)])
         arm.tick(gone, specific, felt=specific - UP)
     assert (max(arm.odds) > KNOWN) == (shakes > 0.0)
