@@ -24,6 +24,7 @@ MODULES = (
     "pendant/signals/joint_push.py",
     "sim/estimation/external_wrench.py",
     "sim/estimation/wrench_hypotheses.py",
+    "sim/estimation/wrench_steps.py",
 )
 """Where the rules live; one that is no more counts nothing."""
 

@@ -1,7 +1,7 @@
 """What ends free-drive while it lasts: limits (FD-18), motion that nobody causes, a payload that drops (FD-19).
 
-How likely it is that a payload has dropped, or another has come, is estimated from the wrench at the flange, with a hand as the
-other explanation (`sim.estimation.external_wrench`). Here it is decided how likely is enough.
+How likely it is that a payload has dropped, or another has come, is estimated from the wrench at the flange, with a hand and a
+step of the sensor as the other explanations (`sim.estimation.external_wrench`). Here it is decided how likely is enough.
 """
 
 import math
@@ -25,14 +25,12 @@ TOUCHES = 2000.0
 TOUCH = ticks(0.5)
 """Ticks that one lasts."""
 
-ONSETS = 9
-"""In each of them so many onsets are compared (`sim.estimation.external_wrench`)."""
-
-KNOWN = math.log(TOUCHES * TOUCH * ONSETS)
+KNOWN = math.log(TOUCHES * TOUCH)
 """Log of the odds from which on the payload has changed [nats]: else odds of K come up in one of K trials at most (Ville)."""
 
 SUSPECTED = math.log(20.0)
-"""And from which on nothing helps a hand, for a payload that falls seems to be one: the help may be gone in one tick of 20."""
+"""And from which on nothing helps a hand, for a payload that falls and a sensor that steps seem to be one: the help may be gone
+in one tick of 20."""
 
 
 class Ending(NamedTuple):
@@ -46,7 +44,7 @@ class EndingWatch:
     """Watches one free-drive, from entry to leaving.
 
     Attributes:
-        suspect: a payload may have dropped: the additional torque goes (FD-19).
+        suspect: a payload may have dropped, or the sensor stepped: the additional torque goes (FD-19).
         damping: where motion is resisted, None while nothing is (FD-12b).
     """
 
@@ -113,7 +111,8 @@ class EndingWatch:
             slack: what may be the sensor's drift.
         """
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
-        self.suspect = odds >= SUSPECTED
+        stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
+        self.suspect = max(odds, stepped) >= SUSPECTED
         if odds >= KNOWN:
             mass = estimate.lost_share * self._held
             return Ending(Kind.STOPPED_PAYLOAD, {"mass": -mass, "force": abs(mass) * GRAVITY})

@@ -25,7 +25,7 @@ class FreeArm:
         user: the user's force, axes of B [N].
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
-        suspect: a payload may have dropped (FD-19).
+        suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
 

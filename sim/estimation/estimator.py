@@ -136,7 +136,7 @@ class Estimator:
         moving = self._estimate_torques(sample, use, learn)
         self._observe(sample, learn and moving)
         self.forces.update(sample, self.q, q, self.transmission.external)
-        self.wrench.update(bias if sample.wrench_valid else None)
+        self.wrench.update(bias if sample.wrench_valid else None, accelerations=sample.acceleration_valid)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -151,6 +151,7 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         known.energy = self._energy(rigid.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
+        known.step_odds = self.wrench.stepped
         return known
 
     def _energy(self, links: Array) -> float:

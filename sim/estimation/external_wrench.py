@@ -1,8 +1,8 @@
-"""Whose force it is: the odds that the payload is gone, or another, against a hand that changed (FD-19).
+"""Whose force it is: the odds that the payload changed, or that the sensor stepped, against a hand that changed (FD-19).
 
-The hypotheses are those of `sim.estimation.wrench_hypotheses`. They are compared for every number of ticks, from `SHORTEST` to
-`LONGEST`, that may have passed since the change. The odds are those of the best onset (generalised likelihood ratio: Willsky and
-Jones, IEEE Trans. Autom. Control 21, 108, 1976).
+The hypotheses are those of `wrench_hypotheses` and `wrench_steps`. Each explains one and the same window: the last `LONGEST`
+ticks and the one before them; what was earlier is given. When in it the change came is not known: the likelihoods of all onsets
+are summed, each as likely as another. So what is compared are probabilities of the same data, and the odds are honest.
 """
 
 import math
@@ -10,16 +10,37 @@ import math
 import numpy as np
 
 from pendant.sensor.sensor_spec import SensorSpec
+from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.flange_forces import FlangeForces, needed
-from sim.estimation.wrench_hypotheses import BEFORE, FREED, LATE, LOST, MORE, Seen, anything, hand, jump, nobody, payload
+from sim.estimation.wrench_hypotheses import (
+    BEFORE,
+    FREED,
+    LATE,
+    LINE,
+    LN_RARE,
+    LOST,
+    MORE,
+    SHORTEST,
+    Seen,
+    anything,
+    hand,
+    jump,
+    nobody,
+    noise,
+    payload,
+    spread,
+)
+from sim.estimation.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
 
-SHORTEST, LONGEST = 2, 10
-"""Ticks since the change that are looked at: 20 ms at most, in which a dropped payload has to be known (bench `drop`)."""
+LONGEST = 10
+"""Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
+
+LN_ONSETS = math.log(LONGEST + 1.0)
 
 KEPT = LONGEST + BEFORE + 1
 """Ticks: the longest change, the one in which it came, and those before."""
@@ -29,9 +50,10 @@ class ExternalWrench:
     """The bank of hypotheses, one tick at a time, in free-drive alone.
 
     Attributes:
-        lost: log of the odds that the payload changed, against that a hand did [nats]: 0 at least; minus infinity without a
-            payload, and before there is enough to compare.
+        lost: log of the odds that the payload changed, against all else [nats]: 0 at least; minus infinity before there is enough
+            to compare.
         share: of the payload that is gone then.
+        stepped: log of the odds that the sensor stepped, against all else: the same.
     """
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
@@ -49,23 +71,33 @@ class ExternalWrench:
             inertia=(3, 3),  # about the flange
             whole=(3,),  # moments of the load about the flange [kg, kg·m, kg·m²]
             rest=(3,),  # the same of what stays when the payload is gone
-            x=(KEPT, 6),
-            p=(KEPT, 6),
-            turn=(KEPT,),  # size of the angular acceleration [rad/s²]
+            moves=(),  # what a force at the flange moves at once [kg]
+            x=(KEPT, 6),  # with the sensor's bias
+            p=(KEPT, 7),  # and its force along the line to its centre
+            line=(3,),  # that line's direction, in F
+            before=(KEPT, 6),  # mean of x ahead of each tick
+            steep=(KEPT, 2),  # square of its rise there, a tick
+            ahead=(KEPT,),  # log likelihood of each tick if a hand goes on
+            felt=(KEPT, 3),  # acceleration of the flange beyond gravity [m/s²], not a number where that is not valid
+            gyro=(3,),  # its last value [rad/s]
+            turn=(KEPT,),  # size of the angular acceleration before its filter [rad/s²]
             fastest=(),  # of these the largest
+            spread=(2,),  # log of the variances of x, with nothing that comes late and with it
+            sums=(10, 7),
             next="i8",
             count="i8",
             lost=(),
             share=(),
+            stepped=(),
         )
         own = self._own = self.record[0]
         force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
         self._sensed = force_torque is not None
-        self._watches = False  # there is a sensor, and a payload to lose
+        self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
         if force_torque is not None:
             own["noise"] = force_torque.force.noise, force_torque.torque.noise
         own["shaking"] = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
-        own["lost"] = -math.inf
+        own["lost"] = own["stepped"] = -math.inf
 
     @property
     def lost(self) -> float:
@@ -77,106 +109,144 @@ class ExternalWrench:
         """As the class says."""
         return float(self._own["share"])
 
+    @property
+    def stepped(self) -> float:
+        """As the class says."""
+        return float(self._own["stepped"])
+
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         own, rest = self._own, load - payload
-        turned = skew(payload.com)
+        turned, lever = skew(payload.com), float(np.linalg.norm(payload.com))
+        own["line"] = payload.com / lever if lever > 0.0 else 0.0
         own["mass"], own["com"], own["inertia"] = payload.mass, payload.com, payload.inertia - payload.mass * turned @ turned
         for moments, body in (("whole", load), ("rest", rest)):
             own[moments] = max(body.mass, 0.0) * np.linalg.norm(body.com) ** np.arange(3.0)
-        self._watches = self._sensed and payload.mass > 0.0
+        own["moves"] = load.mass + self._beyond
         self.forget()
 
     def forget(self) -> None:
         """Nothing is compared with what was before: free-drive is off, or the sensor was out."""
-        if self._own["count"]:
-            self._own["count"], self._own["lost"], self._own["share"] = 0, -math.inf, 0.0
+        own = self._own
+        if own["count"]:
+            own["count"], own["lost"], own["stepped"], own["share"] = 0, -math.inf, -math.inf, 0.0
 
-    def update(self, bias: tuple[float, ...] | None) -> None:
+    def update(self, bias: tuple[float, ...] | None, *, accelerations: bool) -> None:
         """One tick.
 
         Args:
             bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used.
+            accelerations: the flange's accelerometer is valid.
         """
-        if bias is None or not self._watches:
+        if bias is None or not self._sensed:
             self.forget()
         else:
-            _update(self.record, self._forces.record, bias)
+            _update(self.record, self._forces.record, bias, accelerations)
 
 
 @kernel
-def _update(wrenches, forces, bias) -> None:
+def _update(wrenches, forces, bias, accelerations) -> None:
     own, felt = wrenches[0], forces[0]
     here = own.next
-    needed((own.mass, own.com, own.inertia), (felt.specific, felt.gyro, felt.turn), own.p[here])
+    p = own.p[here]
+    needed((own.mass, own.com, own.inertia), (felt.specific, felt.gyro, felt.turn), p)
+    p[LINE] = own.line[0] * p[0] + own.line[1] * p[1] + own.line[2] * p[2]
     for k in range(6):
         own.x[here, k] = felt.missing[k]
-    a, b, c = felt.turn[0], felt.turn[1], felt.turn[2]
-    own.turn[here] = np.sqrt(a * a + b * b + c * c)
+    for k in range(3):
+        own.felt[here, k] = felt.a_felt[k] if accelerations else np.nan
+    turned = 0.0
+    for k in range(3):
+        turned += ((felt.gyro[k] - own.gyro[k]) / TICK) ** 2
+        own.gyro[k] = felt.gyro[k]
+    own.turn[here] = np.sqrt(turned) if own.count else 0.0
     own.fastest = own.turn.max()
+    own.spread[0], own.spread[1] = spread(own, 0.0), spread(own, LATE)
+    for axis in range(2):
+        unsure = noise(own, own.whole, axis, 0.0)
+        own.steep[here, axis] = recent(own.x, (here, 3 * axis), unsure, own.before[here])
+    own.ahead[here] = ahead(own, own.x[here], own.before[here], own.steep[here])
     own.next = (here + 1) % KEPT
     own.count = min(own.count + 1, KEPT)
-    own.lost, own.share = -np.inf, 0.0
+    own.lost = own.stepped = -np.inf
+    own.share = 0.0
     if own.count == KEPT:
-        _weigh(own, here, bias)
+        own.lost = own.stepped = 0.0
+        if _jumped(own, here):
+            _weigh(own, here, bias)
+
+
+@kernel
+def _jumped(own, here) -> bool:
+    """The wrench may have changed by more than a hand's does within a tick: else no odds are more than about even."""
+    mean = own.sums[0]
+    mean[:] = 0.0
+    for length in range(1, LONGEST + 1):
+        first = (here - length) % KEPT
+        moved = 0.0
+        for axis in range(2):
+            square = 0.0
+            for k in range(3 * axis, 3 * axis + 3):
+                mean[k] += own.x[(first + 1) % KEPT, k]
+                square += (mean[k] / length - own.before[first, k]) ** 2
+            moved += 0.5 * square / jump(own, own.steep[first], axis)
+        if length >= SHORTEST and moved >= 0.5:
+            return True
+    return False
 
 
 @kernel
 def _weigh(own, here, bias) -> None:
-    """The odds of the best onset; what is less likely than not counts as even."""
-    own.lost = 0.0
-    seen = Seen(np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6))
+    """The odds, where all hypotheses explain the same ticks."""
+    sums, before = own.sums, own.sums[9]
+    sums[:] = 0.0
+    seen = Seen(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8])
+    seen.newest[:] = own.p[here]
+    earlier, change = 0.0, quiet(own)  # what is between two wrenches is explained as well as noise
+    for age in range(LONGEST + 1):
+        earlier += own.ahead[(here - age) % KEPT]
+    # A hand changed as likely as not.
+    other, lost, stepped = earlier + LN_ONSETS, -np.inf, -np.inf
+    gone = -np.inf  # the likeliest of these
+    earlier -= own.ahead[here]
+    other = both(other, earlier + change)  # it came now: by what, no tick can tell yet
     for length in range(1, LONGEST + 1):
-        place = (here - length + 1) % KEPT
+        first = (here - length) % KEPT  # the tick in which it came
+        place = (first + 1) % KEPT
         for k in range(6):
             x, p = own.x[place, k] - bias[k], own.p[place, k]
+            before[k] = own.before[first, k] - bias[k]
             seen.x[k] += x
             seen.xx[k] += x * x
             seen.later[k] += (length - 1) * x
             seen.p[k] += p
             seen.pp[k] += p * p
             seen.px[k] += p * x
-        if length >= SHORTEST:
-            _compare(own, seen, (length, (here - length - 1) % KEPT), bias)
-
-
-@kernel
-def _compare(own, seen, change, bias) -> None:
-    """The odds of a change so many ticks ago, if they are better than those so far; `change` has the place of the tick before."""
-    length, last = change
-    before, steep = np.zeros(6), np.zeros(2)
-    for k in range(6):
-        for earlier in range(BEFORE):
-            before[k] += own.x[(last - earlier) % KEPT, k] / BEFORE
-        before[k] -= bias[k]
-        half = own.x[last, k] + own.x[(last - 1) % KEPT, k] - own.x[(last - 2) % KEPT, k] - own.x[(last - 3) % KEPT, k]
-        steep[k // 3] += (half / BEFORE) ** 2
-    moved = 0.0
-    for k in range(6):
-        moved += 0.5 * (seen.x[k] / length - before[k]) ** 2 / jump(own, steep, k // 3)
-    if moved < 0.5:  # a hand changes by as much within a tick: no odds can be more than about even
-        return
-    rest, other = anything(seen, length), np.nan
-    for kind in (LOST, FREED, MORE):
-        likelihood, carried, share = payload(own, seen, (length, before, steep), kind)
-        # Odds are fewer than both of these; mostly that is enough to know.
-        if likelihood - rest <= own.lost or carried <= own.lost or (share > 0.0) == (kind == MORE):
+        for k in range(LINE + 1):
+            p = own.p[place, k]
+            if length > 1:
+                seen.swing[k] += (p - seen.oldest[k]) ** 2
+            seen.oldest[k] = p
+        earlier -= own.ahead[first]
+        if length < SHORTEST:
+            other = both(other, earlier + change + anything(seen, length))
             continue
-        if np.isnan(other):
-            other = _other(own, seen, (length, before, steep), rest)
-        first = likelihood - other
-        odds = min(first, carried) - np.log1p(np.exp(-abs(first - carried)))
-        if odds > own.lost:
-            own.lost, own.share = odds, share
-
-
-@kernel
-def _other(own, seen, change, rest):
-    """Log likelihood of all that is no payload, with `rest` that of what nothing explains."""
-    total = rest
-    for late in (0.0, LATE):
-        rising, steady = hand(own, seen, change, late)
-        free = nobody(own, seen, change[0], late)
-        best = max(rising, steady, free, total)
-        total = best + np.log(np.exp(rising - best) + np.exp(steady - best) + np.exp(free - best) + np.exp(total - best))
-    return total
+        known, steep = earlier + change, own.steep[first]
+        total = anything(seen, length)
+        for late in (0.0, LATE):
+            rising, steady = hand(own, seen, (length, before, steep), late)
+            total = both(both(total, nobody(own, seen, length, late)), both(rising, steady))
+        any_step, size = sudden(own, seen, (length, before))
+        other = both(both(other, known + total), known + any_step - LN_RARE)
+        stepped = both(stepped, known + any_step + unanswered(own, first, size))
+        if own.mass > 0.0:
+            for kind in (LOST, FREED, MORE):
+                likelihood, carried, share = payload(own, seen, (length, before, steep), kind)
+                if (share > 0.0) == (kind == MORE):
+                    continue
+                likelihood += known - LN_RARE if kind == MORE else known
+                lost, other = both(lost, likelihood), both(other, likelihood - carried)
+                if likelihood > gone:
+                    gone, own.share = likelihood, share
+    own.lost = max(lost - both(other, stepped), 0.0)
+    own.stepped = max(stepped - both(other, lost), 0.0)

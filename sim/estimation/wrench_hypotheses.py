@@ -5,8 +5,8 @@ The flange sensor measures what the flange exerts on its load. What the configur
     x = w_needed - w_sensor - bias = h + share p,
 
 with a hand's wrench h, the wrench p that the payload alone needs in the motion that is felt behind the sensor (by accelerometer
-and gyro), and the share of the payload that is gone. Looked at is what followed a change that took a tick at most; x0 is the mean
-of the `BEFORE` ticks ahead of it, i the age of a tick:
+and gyro), and the share of the payload that is gone. A change takes a tick at most; x0 is the mean of the `BEFORE` ticks ahead of
+it, i the age of a tick after it:
 
     nobody          x(i) = c + e,                    a hand that was there let go
     steady          x(i) = x0 + J + e,               a hand's force stays, within what it may change by in a tick
@@ -14,8 +14,12 @@ of the `BEFORE` ticks ahead of it, i the age of a tick:
     anything        x(i) = e',                       e' as large as a hand's force: what none of the others explains
     payload lost    x(i) = x0 + s p(i) + c + e,      what touches the arm stays; s is 1 within what is known of the payload
     lost and freed  x(i) = s p(i) + c + e,           and a hand lets go in the same moment
-    more payload    x(i) = x0 + s p(i) + c + e,      s is negative: as much may have come again
-    carried         as any of these three,           but it is a hand that takes the weight on: not at once
+    more payload    x(i) = x0 + s p(i) + c + e,      s is negative: as much may have come again; rare at once
+    carried         as any of these three,           but it is a hand that takes the weight on: not at once, and p may not swing
+    sensor stepped  x(i) = x0 + d + e,               d as large as a hand's force; nothing moves the flange in the first two ticks
+    knock           x(i) = x0 + d + e,               the same, but a force: it moves the flange; rare
+
+The last two, and a hand that goes on before the change, are in `sim.estimation.wrench_steps`.
 
 Each is linear in what is not known of it (J, r, s, an offset c), which has a Gaussian prior. So its likelihood is a closed form.
 With noise of variance R in L ticks, a basis a(i), a prior (m, V), and sums over the ticks S of (x - a m)² / R, A of a a' / R and
@@ -33,6 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.guided.endings import TOUCH as A_TOUCH
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
 from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN
@@ -67,7 +72,21 @@ GAIN = WRENCH_GAIN + 2.0 * WRENCH_CROSS_TALK / 5.0
 LATE = math.sqrt(0.5)
 """Share of an angular acceleration at the bandwidth of its filter that is missed."""
 
+RARE = 1.0 / A_TOUCH
+"""Share of the ticks in which a hand does what none of its hypotheses says, or changes at once: once in a touch."""
+
+LN_OFTEN, LN_RARE = -math.log((1.0 - RARE) / 6.0), -math.log(RARE)
+
+STRAY = 11.34
+"""Square of three Gaussian numbers that 99 of 100 are below (chi-square): what is less in a rise is noise."""
+
+SHORTEST = 2
+"""Ticks since a change that are needed; as long nothing moves the flange in a step of the sensor. Then the help does that it
+calls for (sim/control/)."""
+
 LOST, FREED, MORE = range(3)  # what became of the payload
+
+LINE = 6  # place of what is along the line from the flange to the payload's centre, behind three forces and three torques
 
 
 class Seen(NamedTuple):
@@ -79,12 +98,21 @@ class Seen(NamedTuple):
     p: Array
     pp: Array
     px: Array
+    swing: Array  # of what p, and its force along the `LINE`, changes by from a tick to the next, squared (7,)
+    newest: Array  # they in the newest tick
+    oldest: Array  # and in the first
 
 
 @kernel
 def noise(own, load, axis, late):
     """Variance of x in a tick, beside a `load`: of sensor, accelerometer, and the share of a turn that comes `late`."""
     return own.noise[axis] ** 2 + (own.shaking * load[axis]) ** 2 + (late * own.fastest * load[axis + 1]) ** 2
+
+
+@kernel
+def spread(own, late):
+    """Log of the variances of a force and of a torque in a tick."""
+    return np.log(noise(own, own.whole, 0, late) * noise(own, own.whole, 1, late))
 
 
 @kernel
@@ -101,14 +129,15 @@ def hand(own, seen, change, late):
     once = 0.5 * count * (count + 2.0)  # the sum of i + 1/2
     square = count * (count + 1.0) * (2.0 * count + 1.0) / 6.0 + 0.5 * count * (count + 1.0) + 0.25 * count
     rising = steady = 0.0
+    of_rising = of_steady = 1.0  # determinants
     for axis in range(2):
         R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else LEVER
         sudden = jump(own, steep, axis)
         rise = (0.5 * HAND / RISE * lever) ** 2
         a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
         determinant = a * c - b * b
-        rising -= 1.5 * (count * np.log(R) + np.log(determinant * sudden * rise))
-        steady -= 1.5 * (count * np.log(R) + np.log(a * sudden))
+        of_rising *= determinant * sudden * rise
+        of_steady *= a * sudden
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - count * before[k]
             later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
@@ -116,19 +145,26 @@ def hand(own, seen, change, late):
             g, h = first / R, ((count + 0.5) * first - later) / R
             rising -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / determinant)
             steady -= 0.5 * (whole / R - g * g / a)
-    return rising, steady
+    spread = count * own.spread[0 if late == 0.0 else 1]
+    return rising - 1.5 * (spread + np.log(of_rising)), steady - 1.5 * (spread + np.log(of_steady))
+
+
+@kernel
+def least(length):
+    """What noise leaves of the square of six numbers in so many ticks, where their means are fitted; better is no evidence."""
+    return 6.0 * (length - 1.0)
 
 
 @kernel
 def nobody(own, seen, length, late):
     """Log likelihood of an arm that nobody touches."""
-    likelihood = 0.0
+    likelihood, determinant = 0.0, 1.0
     for axis in range(2):
         R, offset = noise(own, own.whole, axis, late), (OFFSET * (1.0 if axis == 0 else LEVER)) ** 2
-        likelihood -= 1.5 * (length * np.log(R) + np.log(1.0 + length * offset / R))
+        determinant *= 1.0 + length * offset / R
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * (seen.xx[k] - offset / (R + length * offset) * seen.x[k] ** 2) / R
-    return likelihood
+    return likelihood - 1.5 * (length * own.spread[0 if late == 0.0 else 1] + np.log(determinant))
 
 
 @kernel
@@ -155,9 +191,12 @@ def payload(own, seen, change, kind):
     length, before, steep = change
     weight = own.mass * GRAVITY
     mean, variance = (-0.5, 0.25) if kind == MORE else (1.0, (SURE / own.mass) ** 2)
-    xx, px, pp, determinants = 0.0, 0.0, 0.0, 0.0
+    xx, px, pp, determinant = 0.0, 0.0, 0.0, 1.0
     for axis in range(2):
-        R, lever = noise(own, own.rest, axis, 0.0), 1.0 if axis == 0 else LEVER
+        # What the accelerometer adds to x and to p cancels where the payload is gone, with a hand as well. So a payload has to
+        # fit within the noise of what is left at the flange, and that this noise is small says nothing. One that stays swings on.
+        loaded = noise(own, own.whole, axis, LATE if kind == MORE else 0.0)
+        R, lever = loaded if kind == MORE else noise(own, own.rest, axis, 0.0), 1.0 if axis == 0 else LEVER
         offset = (GAIN * weight * lever) ** 2
         if axis == 1:
             offset += (CENTRE * weight) ** 2
@@ -165,7 +204,7 @@ def payload(own, seen, change, kind):
             offset += (OFFSET * lever) ** 2
         else:
             offset += 4.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
-        determinants += 3.0 * (length * np.log(noise(own, own.whole, axis, 0.0)) + np.log(1.0 + length * offset / R))
+        determinant *= 1.0 + length * offset / R
         known = offset / (R * (R + length * offset))
         for k in range(3 * axis, 3 * axis + 3):
             start = 0.0 if kind == FREED else before[k]
@@ -175,11 +214,37 @@ def payload(own, seen, change, kind):
             pp += seen.pp[k] / R - known * seen.p[k] ** 2
     off = px - mean * pp
     step = off / (1.0 / variance + pp)
-    # What the accelerometer adds to x and to p cancels, with a hand as well. So a payload has to fit within the noise of what is
-    # left at the flange, and that this noise is small says nothing.
-    square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, 6.0 * length), mean + step
-    carried = 0.0
-    for k in range(6):
-        way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)
-        carried += 0.5 * way * way / jump(own, steep, k // 3)
-    return -0.5 * (square + np.log(1.0 + variance * pp) + determinants), carried, share
+    square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, least(length)), mean + step
+    spread = length * own.spread[1 if kind == MORE else 0]
+    likelihood = -0.5 * (square + np.log((1.0 + variance * pp) * determinant**3) + 3.0 * spread)
+    return likelihood, carried(own, seen, change, (kind, share)), share
+
+
+@kernel
+def carried(own, seen, change, gone):
+    """How much less likely a hand is that comes to carry a share of the payload, in nats.
+
+    Its wrench has to get there within a tick, and to follow the payload's from then on. It does so at any even rate, within
+    what a hand is off it. A swing that is no swing, of the accelerometer's noise or of a turn that comes late, it need not
+    follow. Along the line from the flange to the payload's centre no turn makes a force, so there swings are what they are.
+    """
+    length, before, steep = change
+    kind, share = gone
+    unlikely = 0.0
+    for axis in range(2):
+        sudden, off = jump(own, steep, axis), (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2
+        swings = 0.0
+        for k in range(3 * axis, 3 * axis + 3):
+            way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)
+            unlikely += way * way / sudden
+            swings += uneven(seen, k, length)
+        line = uneven(seen, LINE, length) if axis == 0 else 0.0
+        for swing, late in ((swings - line, LATE), (line, 0.0)):
+            unlikely += share * share * swing / (2.0 * (off + noise(own, own.whole, axis, late)))
+    return 0.5 * unlikely
+
+
+@kernel
+def uneven(seen, k, length):
+    """Square of what a component of p changes by from tick to tick, beyond an even rate."""
+    return seen.swing[k] - (seen.newest[k] - seen.oldest[k]) ** 2 / (length - 1.0)

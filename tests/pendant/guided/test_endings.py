@@ -8,7 +8,7 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
-from pendant.guided.endings import KNOWN, ONSETS, SUSPECTED, TOUCH, TOUCHES, Ending, EndingWatch, _torque, way_back
+from pendant.guided.endings import KNOWN, SUSPECTED, TOUCH, TOUCHES, Ending, EndingWatch, _torque, way_back
 from pendant.guided.sensor_bias import SURE
 from pendant.guided.user_force import CARRIED, SWING, UserForce
 from pendant.guided.work import ASKED, LEFT
@@ -72,6 +72,20 @@ def test_an_operation_limit_leaves_or_stops_as_its_row_says(
     assert ending is not None
     assert ending.kind is (Kind.STOPPED_LIMIT if stop else Kind.LEFT_LIMIT)
     assert (ending.values["parameter"], ending.values["limit"]) == (parameter, pytest.approx(limit))
+
+
+@pytest.mark.parametrize("pushed", [False, True])
+def test_a_hands_force_lowers_limits_where_it_is_asked_for(pushed: bool) -> None:
+    """FD-12b: motion is resisted from a lower speed on."""
+    free = Free(soft__on=True, soft__pushed=pushed)
+    before = estimate()
+    assert free.see(before) is None
+    resisted = free.operation.damping
+    for _ in range(50):
+        free.see(estimate(force=[60.0, 0.0, 0.0]))
+    assert resisted is not None
+    assert free.operation.damping is not None
+    assert (free.operation.damping[0] < resisted[0]) is pushed
 
 
 def test_a_joints_external_torque_has_its_time_and_stops() -> None:
@@ -229,6 +243,20 @@ def test_while_a_payload_may_be_gone_nothing_helps() -> None:
     assert free.operation.suspect is False, "nobody knows without the sensor"
 
 
+@pytest.mark.parametrize(("payload", "sensor"), [(True, True), (False, True), (True, False)])
+def test_each_switch_stands_for_its_own_odds(payload: bool, sensor: bool) -> None:
+    """FD-19."""
+    free = Free(held=2.0, unexplained__payload=payload, unexplained__sensor=sensor)
+    assert free.see(lost(SUSPECTED)) is None
+    assert free.operation.suspect is payload
+    stepped = loaded()
+    stepped.step_odds = SUSPECTED
+    assert free.see(stepped) is None
+    assert free.operation.suspect is sensor
+    free.see(stepped, use_wrench=False)
+    assert free.operation.suspect is False
+
+
 def test_without_sensor_or_switch_no_drop_is_looked_for() -> None:
     assert Free(held=2.0).until([lost(2.0 * KNOWN)] * 50, use_wrench=False) is None
     free = Free(held=2.0, unexplained__payload=False)
@@ -237,8 +265,7 @@ def test_without_sensor_or_switch_no_drop_is_looked_for() -> None:
 
 
 def test_one_touch_of_2000_may_be_taken_for_a_drop() -> None:
-    assert math.exp(-KNOWN) * TOUCH * ONSETS == pytest.approx(1.0 / TOUCHES)
-
+    assert math.exp(-KNOWN) * TOUCH == pytest.approx(1.0 / TOUCHES)
     assert TOUCH * TICK == 0.5
 
 

@@ -215,6 +215,16 @@ def test_the_tether_follows_who_pays_for_the_motion(on: bool) -> None:
     assert [event.kind for event in told] == ([] if on else [Kind.WALL_REACHED])
 
 
+@pytest.mark.parametrize(("watched", "sensor"), [(True, True), (False, True), (True, False)])
+def test_while_the_sensor_may_have_stepped_nothing_helps(watched: bool, sensor: bool) -> None:
+    """FD-19: and once it may not, the help is back."""
+    free, value = Free(sensor=sensor, unexplained__sensor=watched), estimate()
+    for odds, suspected in ((SUSPECTED - 1e-9, False), (SUSPECTED, True), (0.0, False)):
+        value.step_odds = odds
+        free.see(value)
+        assert free.arm.suspect is (suspected and watched and sensor)
+
+
 @pytest.mark.parametrize("sensor", [True, False])
 def test_a_payload_that_drops_is_told_by_its_odds(sensor: bool) -> None:
     """FD-19: of a sensor that is used."""
