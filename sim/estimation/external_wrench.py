@@ -153,10 +153,9 @@ def _update(wrenches, forces, bias, accelerations) -> None:
     p[LINE] = own.line[0] * p[0] + own.line[1] * p[1] + own.line[2] * p[2]
     for k in range(6):
         own.x[here, k] = felt.missing[k]
-    for k in range(3):
-        own.felt[here, k] = felt.a_felt[k] if accelerations else np.nan
     turned = 0.0
     for k in range(3):
+        own.felt[here, k] = felt.a_felt[k] if accelerations else np.nan
         turned += ((felt.gyro[k] - own.gyro[k]) / TICK) ** 2
         own.gyro[k] = felt.gyro[k]
     own.turn[here] = np.sqrt(turned) if own.count else 0.0
@@ -201,7 +200,7 @@ def _weigh(own, here, bias) -> None:
     sums, before = own.sums, own.sums[9]
     sums[:] = 0.0
     seen = Seen(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8])
-    seen.newest[:] = own.p[here]
+    seen.newest[:] = seen.oldest[:] = own.p[here]
     earlier, change = 0.0, quiet(own)  # what is between two wrenches is explained as well as noise
     for age in range(LONGEST + 1):
         earlier += own.ahead[(here - age) % KEPT]
@@ -224,8 +223,7 @@ def _weigh(own, here, bias) -> None:
             seen.px[k] += p * x
         for k in range(LINE + 1):
             p = own.p[place, k]
-            if length > 1:
-                seen.swing[k] += (p - seen.oldest[k]) ** 2
+            seen.swing[k] += (p - seen.oldest[k]) ** 2
             seen.oldest[k] = p
         earlier -= own.ahead[first]
         if length < SHORTEST:

@@ -86,7 +86,7 @@ calls for (sim/control/)."""
 
 LOST, FREED, MORE = range(3)  # what became of the payload
 
-LINE = 6  # place of what is along the line from the flange to the payload's centre, behind three forces and three torques
+_, _, LINE = range(0, 9, 3)  # behind forces and torques is the force along the line from the flange to the payload's centre
 
 
 class Seen(NamedTuple):

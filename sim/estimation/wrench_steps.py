@@ -4,6 +4,9 @@ The ticks ahead of a change are explained by a hand that goes on, for each hypot
 more hypothesis. A step is the sensor's if nothing moves the flange in its first ticks, or else a knock's.
 """
 
+import math
+import sys
+
 import numpy as np
 
 from sim.compiled.kernel import kernel
@@ -21,7 +24,8 @@ from sim.estimation.wrench_hypotheses import (
     noise,
 )
 
-NOTHING = 37.0  # a double does not know 1 + exp(-37) from 1
+NOTHING = -math.log(sys.float_info.epsilon)
+"""Of two logs of likelihoods that are so far apart the smaller one adds nothing [nats]."""
 
 
 @kernel
