@@ -11,7 +11,7 @@ from app.log.layout import PULL, WORDS
 from app.log.reader import Log
 from pendant.decision import Decision
 from pendant.freedrive.periods import Remaining
-from pendant.guided.pull import NOT_TOLD, Felt, Pull
+from pendant.guided.pull import NOT_TOLD, HandFelt, PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
 from sim.exchange.snapshot import Snapshot
@@ -62,13 +62,13 @@ class Player:
         return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each.tick) - 1, 0)
 
 
-def pull_at(log: Log, row: int) -> Pull | None:
+def pull_at(log: Log, row: int) -> PullCauses | None:
     """What pulled at the free arm; None where it was not free, and of recordings that were made before this was recorded."""
     felt, lost, share, stepped = (float(log.state[name][row]) for name in PULL)
     if math.isnan(felt):
         return None
     told = [NOT_TOLD if math.isnan(odds) else odds for odds in (lost, stepped)]
-    return Pull(Felt(int(felt)), told[0], 0.0 if math.isnan(share) else share, told[1])
+    return PullCauses(HandFelt(int(felt)), told[0], 0.0 if math.isnan(share) else share, told[1])
 
 
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:

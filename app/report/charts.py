@@ -13,7 +13,7 @@ from app.log.reader import Log
 from app.pull_colours import PULL_COLOURS
 from app.report.drawing import INK, empty_axes, svg_of
 from app.report.summary import SLOW, Span, Summary
-from pendant.guided.pull import SHARE_WORDS, Pull
+from pendant.guided.pull import SHARE_WORDS, PullCauses
 from pendant.limits.parameters import PARAMETERS
 from pendant.tick.modes import TICK
 
@@ -97,7 +97,7 @@ class Column(NamedTuple):
 
     begin: float  # [s]
     end: float
-    pull: Pull
+    pull: PullCauses
 
 
 def pulls(log: Log) -> list[Column]:

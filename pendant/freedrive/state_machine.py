@@ -12,7 +12,7 @@ from pendant.freedrive.periods import Periods, Remaining
 from pendant.freedrive.sequence import SequenceVerdict
 from pendant.guided.endings import way_back
 from pendant.guided.free_arm import FreeArm
-from pendant.guided.pull import Pull
+from pendant.guided.pull import PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.joint_zones import JointZones
 from pendant.settings.schema import ticks
@@ -73,7 +73,7 @@ class FreeDrive:
         self._activation = Activation(joints, rated, containment, self._bias)
         self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None
-        self.pull: Pull | None = None
+        self.pull: PullCauses | None = None
         self._periods: Periods | None = None  # from entry to leaving
 
     @property

@@ -5,7 +5,7 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.endings import EndingWatch
-from pendant.guided.pull import Felt, Pull, felt
+from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
@@ -77,7 +77,7 @@ class FreeArm:
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
         self.damping: Damping | None = None
-        self.pull = Pull(Felt.NOBODY)
+        self.pull = PullCauses(HandFelt.NOBODY)
         self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
         containment.enter(settings.walls)
@@ -122,14 +122,15 @@ class FreeArm:
         slack = bias.slack(estimate)
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
-        least = settings.unexplained.force + slack.force
-        self.pull = self._pull(estimate, least)
+        self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
 
-    def _pull(self, estimate: Estimate, least: float) -> Pull:
-        """What pulls at the arm in this tick; a hand's force is at least so large [N]."""
+    def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
+        """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""
         hand, used = self._hand, self._bias.used
-        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=self._operation.led, use_wrench=used)
-        return Pull(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds)
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        led = self._operation.led and norm((vx, vy, vz)) >= moves  # at rest the noise of the speed pays for itself
+        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=led, use_wrench=used)
+        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds) if used else PullCauses(who)

@@ -21,7 +21,7 @@ NOT_TOLD = -math.inf
 """Log of odds where nothing is compared [nats]."""
 
 
-class Felt(IntEnum):
+class HandFelt(IntEnum):
     """Where a hand is felt."""
 
     NOBODY = 0
@@ -29,7 +29,7 @@ class Felt(IntEnum):
     LINK = 2  # the joints feel it and the flange sensor does not; an object may make it, too
 
 
-class Shares(NamedTuple):
+class CauseShares(NamedTuple):
     """Probabilities of what pulls at the arm; their sum is 1."""
 
     nobody: float
@@ -39,10 +39,10 @@ class Shares(NamedTuple):
     sensor: float
 
 
-class Pull(NamedTuple):
+class PullCauses(NamedTuple):
     """What is known of one tick."""
 
-    felt: Felt
+    felt: HandFelt
     lost_odds: float = NOT_TOLD  # as in `Estimate`
     lost_share: float = 0.0
     step_odds: float = NOT_TOLD
@@ -53,15 +53,15 @@ class Pull(NamedTuple):
         return max(self.lost_odds, self.step_odds)
 
     @property
-    def shares(self) -> Shares:
+    def shares(self) -> CauseShares:
         """How likely each is."""
         payload, sensor = _probability(self.lost_odds), _probability(self.step_odds)
         both = payload + sensor
         if both > 1.0:  # by rounding
             payload, sensor, both = payload / both, sensor / both, 1.0
         felt, rest = self.felt, 1.0 - both
-        nobody, hand, link = (rest if felt is each else 0.0 for each in Felt)
-        return Shares(nobody, hand, link, payload, sensor)
+        nobody, hand, link = (rest if felt is each else 0.0 for each in HandFelt)
+        return CauseShares(nobody, hand, link, payload, sensor)
 
     @property
     def words(self) -> str:
@@ -77,13 +77,15 @@ class Pull(NamedTuple):
         return f"{what}: over {100.0 * CERTAIN:.1f} %" if likely > CERTAIN else f"{what}: {100.0 * likely:.0f} %"
 
 
-FELT_WORDS = {Felt.NOBODY: "Nobody", Felt.FLANGE: "A hand", Felt.LINK: "A hand on a link"}
+FELT_WORDS = {HandFelt.NOBODY: "Nobody", HandFelt.FLANGE: "A hand", HandFelt.LINK: "A hand on a link"}
 
 SHARE_WORDS = ("Nobody", "A hand", "A hand on a link", "Payload changed", "Sensor stepped")
-"""Of the fields of `Shares`, for legends."""
+"""Of the fields of `CauseShares`, for legends."""
 
 
-def felt(force: tuple[float, float, float], *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool) -> Felt:
+def felt(
+    force: tuple[float, float, float], *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool
+) -> HandFelt:
     """Where a hand is felt in a tick.
 
     Args:
@@ -95,8 +97,8 @@ def felt(force: tuple[float, float, float], *, sensed: float, usual: float, leas
         use_wrench: the flange sensor is used.
     """
     if not led and norm(force) < least:
-        return Felt.NOBODY
-    return Felt.LINK if use_wrench and sensed < least and usual < least else Felt.FLANGE
+        return HandFelt.NOBODY
+    return HandFelt.LINK if use_wrench and sensed < least and usual < least else HandFelt.FLANGE
 
 
 class PullWatch:
@@ -109,10 +111,10 @@ class PullWatch:
     __slots__ = ("_age", "shown")
 
     def __init__(self) -> None:
-        self.shown: Pull | None = None
+        self.shown: PullCauses | None = None
         self._age = 0
 
-    def step(self, pull: Pull | None) -> None:
+    def step(self, pull: PullCauses | None) -> None:
         """One tick; None: the arm is not free."""
         shown = self.shown
         self._age += 1

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.guided.pull import NOT_TOLD, Pull
+from pendant.guided.pull import NOT_TOLD, PullCauses
 from pendant.tick.estimate import Estimate
 from sim.compiled.kernel import kernel
 from sim.plant.joint_state import SIGN_SPEED
@@ -49,7 +49,7 @@ class RecordedPlace(NamedTuple):
 
 
 def fill_rows(
-    e: Estimate, plant: Plant, *, gain: float, configured: float, pull: Pull | None, known: Array, truth: Array, k: int
+    e: Estimate, plant: Plant, *, gain: float, configured: float, pull: PullCauses | None, known: Array, truth: Array, k: int
 ) -> None:
     """Write an estimate into row k of `known` (m, 9 n + 32 or more), the true state into row k of `truth` (m, 6 n + 12).
 
@@ -73,7 +73,7 @@ def fill_rows(
         row[-3] += z
 
 
-def _numbers(pull: Pull | None) -> tuple[float, float, float, float]:
+def _numbers(pull: PullCauses | None) -> tuple[float, float, float, float]:
     """Of a pull: who is felt, then what is compared. Infinite odds would spoil the axes of every plot."""
     if pull is None:
         return math.nan, math.nan, math.nan, math.nan

@@ -47,7 +47,7 @@ class PlotHistory:
         self.friction = np.full((3, n, KEPT), np.nan)  # true, estimated, its deviation [N·m]
         self.torque = np.full((4, n, KEPT), np.nan)  # true, three ways [N·m]
         self.tracking = np.full((n, KEPT), np.nan)  # [mrad]
-        self.told = NOT_FREE
+        self.told, self._last = NOT_FREE, ""  # what pulls, and what pulled last, in words
         self.tick = 0
 
     def add(self, snapshot: Snapshot, rate: float) -> None:
@@ -59,7 +59,10 @@ class PlotHistory:
         _push(self.acceleration, seen.a_F)
         pull = snapshot.pull
         _push(self.pull, np.full(len(self.pull), np.nan) if pull is None else np.array(pull.shares))
-        self.told = NOT_FREE if pull is None else pull.words
+        if pull is not None:
+            self.told = self._last = pull.words
+        else:
+            self.told = f"last: {self._last}" if self._last else NOT_FREE
         _push(self.share, 100.0 * max(shares) if shares else np.nan)
         _push(self.rate, rate)
         friction = (snapshot.truth_friction, seen.friction, seen.friction_deviation)
@@ -132,7 +135,7 @@ class Plots:
                 ]
                 told = history.told if self._moment is None else ""
                 force = chart("User force", "N", _xyz(history.force[:, window]), marks)
-                return stack("Who pulls at the free arm", told, layers, marks), force
+                return stack("Who pulls", told, layers, marks), force
             case View.LIMITS:
                 return chart(
                     "Nearest to its limit", "%", [Curve("share of the limit", history.share[window])], marks, limit=100.0

@@ -48,6 +48,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
     return read(out / "log.mcap")
 
 
+RAMP = {"shape": "ramp", "rise": 0.1, "fall": 0.1}
 DROP: dict[str, Any] = {
     "title": "A payload falls out of a hand",
     "duration": 2.4,
@@ -57,8 +58,16 @@ DROP: dict[str, Any] = {
     "settings": {"activation.period": 0.1, "sequence.period": 0.25},
     "timeline": [
         {"at": 0.5, "do": "press", "control": "free_drive"},
-        {"after": "mode FREE_DRIVE", "delay": 0.3, "do": "push", "for": 0.4, "force": [0.0, 12.0, 0.0]},
-        {"after": "mode FREE_DRIVE", "delay": 1.1, "do": "change", "change": {"kind": "drop_payload"}},
+        {
+            "after": "mode FREE_DRIVE",
+            "delay": 0.3,
+            "do": "push",
+            "for": 0.9,
+            "part": "flange",
+            "force": [0.0, 8.0, 0.0],
+            "profile": RAMP,
+        },
+        {"after": "mode FREE_DRIVE", "delay": 0.6, "do": "change", "change": {"kind": "drop_payload"}},
     ],
 }
 
@@ -87,7 +96,7 @@ def test_the_report_shows_what_pulls_and_when_the_payload_fell(dropped: Log) -> 
     assert free[0] - 0.002 <= columns[0].begin <= free[0]
     (stop,) = [event for event in dropped.events if event.kind == "stopped_payload"]
     assert columns[-1].end == pytest.approx(stop.t)
-    held = [column for column in columns if free[0] + 0.5 < column.begin < free[0] + 0.65]
+    held = [column for column in columns if free[0] + 0.4 < column.begin < free[0] + 0.59]
     assert held
     assert all(column.pull.words == "A hand" for column in held)
     fell = [column for column in columns if column.pull.shares.payload > 0.99]
@@ -264,7 +273,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
     assert parser.open == []
     assert parser.foreign == []
     assert "http" not in re.sub(r'xmlns(:xlink)?="[^"]*"|<!DOCTYPE[^>]*>|<rdf:RDF.*?</rdf:RDF>', "", text, flags=re.S)
-    assert text.count("<svg") == 5
+    assert text.count("<svg") == 6
     assert "at\u00a01\u00a0s" not in text
     assert "at 1\u00a0s" in text  # a number stays with its unit
     assert "A &lt;report&gt; &amp; more" in text

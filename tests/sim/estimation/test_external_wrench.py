@@ -155,7 +155,7 @@ def test_nothing_is_said_before_there_is_enough_to_compare() -> None:
 def test_without_a_payload_nothing_can_be_lost() -> None:
     arm = Arm()
     arm.wrench.set_load(TOOL, Body(0.0, np.zeros(3), np.zeros((3, 3))))
-    assert arm.course(falls(), moves=True) == 0.0
+    assert arm.course(falls(), moves=True) == -math.inf
 
 
 def test_an_arm_without_a_sensor_has_nothing_to_say() -> None:
@@ -235,7 +235,7 @@ def test_a_bias_that_is_followed_is_no_step() -> None:
         arm.tick(drifted)
     for _ in range(20):
         arm.tick(drifted, bias=(0.0, 6.0, 0.0, 0.0, 0.0, 0.0))
-    assert (max(arm.stepped), max(arm.odds)) == (-math.inf, -math.inf)
+    assert max(*arm.stepped, *arm.odds) < -3.0
 
 
 def dense(x: Array, mean: Array | float, covariance: Array) -> float:
