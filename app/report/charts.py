@@ -46,7 +46,7 @@ PARAMETERS_DRAWN = 6
 """Monitored parameters in their chart: those nearest to their limits."""
 
 
-COLUMNS = 400
+COLUMNS = 200
 """Stretches of the run in the chart of what pulls at the arm: each some pixels wide."""
 
 PULL_CAPTION = (
@@ -108,12 +108,12 @@ def pulls(log: Log) -> list[Column]:
     free = np.isfinite(log.state["felt"])
     doubt = np.fmax(np.nan_to_num(log.state["lost_odds"], nan=-np.inf), np.nan_to_num(log.state["step_odds"], nan=-np.inf))
     found: list[Column] = []
-    for rows in np.array_split(np.arange(len(free)), min(COLUMNS, len(free))):
-        rows = rows[free[rows]]
+    for stretch in np.array_split(np.arange(len(free)), min(COLUMNS, len(free))):
+        rows = stretch[free[stretch]]
         if len(rows):
             pull = pull_at(log, int(rows[doubt[rows].argmax()]))
             assert pull is not None
-            found.append(Column(float(log.t[rows[0]]) - TICK, float(log.t[rows[-1]]), pull))
+            found.append(Column(float(log.t[stretch[0]]) - TICK, float(log.t[stretch[-1]]), pull))
     return found
 
 
@@ -129,7 +129,7 @@ def _stacked(columns: Sequence[Column], duration: float) -> str:
             [(begin, 100.0 * below), (end, 100.0 * below), (end, 100.0 * above), (begin, 100.0 * above)]
             for (begin, end), below, above in zip(edges[there], low, tops[there, number], strict=True)
         ]
-        axes.add_collection(PolyCollection(bars, facecolors=colour, edgecolors="none", label=name))
+        axes.add_collection(PolyCollection(bars, facecolors=colour, edgecolors=colour, linewidths=0.3, label=name))
     axes.set_ylabel("share [%]", fontsize=7.5)
     axes.set_xlabel("time [s]", fontsize=7.5)
     axes.set_xlim(0.0, duration)

@@ -9,7 +9,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from pendant.settings.schema import ticks
-from pendant.tick.pose import norm
+from pendant.tick.pose import Vector, norm
 
 KEPT = ticks(0.1)
 """Ticks for which a doubt is shown: it lasts some ticks only, and a picture has to be seen."""
@@ -83,9 +83,7 @@ SHARE_WORDS = ("Nobody", "A hand", "A hand on a link", "Payload changed", "Senso
 """Of the fields of `CauseShares`, for legends."""
 
 
-def felt(
-    force: tuple[float, float, float], *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool
-) -> HandFelt:
+def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool) -> HandFelt:
     """Where a hand is felt in a tick.
 
     Args:
