@@ -6,6 +6,7 @@ from pendant.contact.contact_change import Contact
 from pendant.events.event import Event
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.periods import Remaining
+from pendant.guided.pull import PullCauses
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
@@ -62,6 +63,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     force: ForceMode | None = None  # with which the arm pushes while it moves, under Law.FOLLOW
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
+    pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off
 
     @property
     def amplified(self) -> bool:

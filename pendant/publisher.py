@@ -101,6 +101,7 @@ class Publisher:
             force=self._scripting.force,
             signs=self._signs,
             script_done=self._scripting.done,
+            pull=free.pull,
         )
 
     def _free_axes(self) -> AxisLocks | None:

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Equipment, Tool
+from pendant.guided.pull import PullWatch
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
@@ -97,6 +98,7 @@ class Simulation:
         self.sensors.read(self.plant, self.current)  # as it comes one tick late: what the first tick will know
         self._decision: Decision | None = None
         self._estimate: Estimate | None = None
+        self._pulls = PullWatch()
 
     @property
     def tick_count(self) -> int:
@@ -162,6 +164,7 @@ class Simulation:
         self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)
         plant.advance(self.current * self._motor, wishes.touches, decision.law is _OFF)
         self._estimate, self._decision = estimate, decision
+        self._pulls.step(decision.pull)
         return decision
 
     def rest(self, seconds: float) -> None:
@@ -262,6 +265,7 @@ class Simulation:
             self.scenario,
             self._reference(),
             self.supervisor.containment.every_place(self.settings.walls),
+            self._pulls.shown,
         )
 
     def _reference(self) -> Array | None:

@@ -43,6 +43,10 @@ STATE = (
     Field("v_elbow", 1, "speed of the elbow [m/s]"),
     Field("gain", 1, "factor on the user's force"),
     Field("configured_mass", 1, "payload that the controller believes in [kg]"),
+    Field("felt", 1, "a hand on the free arm: 0 none, 1 at the flange, 2 on a link; NaN while it is not free"),
+    Field("lost_odds", 1, "log of the odds that the payload changed, NaN while nothing is compared"),
+    Field("lost_share", 1, "of the payload that is gone then, below 0 what has come"),
+    Field("step_odds", 1, "log of the odds that the flange sensor stepped, NaN while nothing is compared"),
     *(Field(f"monitored_{name}", 1, f"{row.text} [{row.unit}], NaN while not checked") for name, row in PARAMETERS.items()),
     *(Field(f"limit_{name}", 1, f"limit of {row.text} [{row.unit}], NaN while not checked") for name, row in PARAMETERS.items()),
 )
@@ -62,7 +66,10 @@ TRUTH = (
 )
 """/truth: what the physics knows and the controller does not."""
 
-LATER = frozenset({"touched", "monitored_motor_current", "limit_motor_current"})
+PULL = ("felt", "lost_odds", "lost_share", "step_odds")
+"""What pulls at the free arm, in /state."""
+
+LATER = frozenset({"touched", "monitored_motor_current", "limit_motor_current", *PULL})
 """What recordings lack that were made before it came; it is not a number in each tick of them."""
 
 CODES = ("mode", "safety", "phase", "program", "step", "valid")

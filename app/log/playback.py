@@ -1,15 +1,17 @@
 """Moving through a recording: a place in time that can run, and the snapshot that belongs to it. No physics."""
 
 import bisect
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from app.files.checked import ABSENT, BadInput
-from app.log.layout import WORDS
+from app.log.layout import PULL, WORDS
 from app.log.reader import Log
 from pendant.decision import Decision
 from pendant.freedrive.periods import Remaining
+from pendant.guided.pull import NOT_TOLD, HandFelt, PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
 from sim.exchange.snapshot import Snapshot
@@ -60,6 +62,15 @@ class Player:
         return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each.tick) - 1, 0)
 
 
+def pull_at(log: Log, row: int) -> PullCauses | None:
+    """What pulled at the free arm; None where it was not free, and of recordings that were made before this was recorded."""
+    felt, lost, share, stepped = (float(log.state[name][row]) for name in PULL)
+    if math.isnan(felt):
+        return None
+    told = [NOT_TOLD if math.isnan(odds) else odds for odds in (lost, stepped)]
+    return PullCauses(HandFelt(int(felt)), told[0], 0.0 if math.isnan(share) else share, told[1])
+
+
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
     """What was recorded, as the simulation would show it: poses of a picture, numbers of a tick."""
     said, frames, state = log.pictures[picture], log.frames[picture], log.state
@@ -68,6 +79,7 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
     objects = [frames[f"object {thing.name}"] for thing in log.scenario.world]
     touches = tuple((t.part, tuple(t.point), tuple(t.force), tuple(t.torque)) for t in said.touches)
     valid = int(state["valid"][row])
+    pull = pull_at(log, row)
     decision = Decision(
         mode=Mode(WORDS["mode"][state["mode"][row]]),
         safety=Safety[WORDS["safety"][state["safety"][row]]],
@@ -80,6 +92,7 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         periods=tuple(Remaining(each.name, each.ticks, each.total) for each in said.periods),
         events=(),
         step=int(state["step"][row]),
+        pull=pull,
     )
     arrays = [state[name][row] for name in ("q", "qd", "qdd", "theta", "theta_d", "tau_m", "tau_J", "tau_ext")]
     wrenches = [state[name][row] for name in ("w_sensor", "F_user", "a_F", "p_BF")]
@@ -108,4 +121,5 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         float(state["configured_mass"][row]),
         touches,
         truth_touched=bool(log.truth["touched"][row] > 0.0),
+        pull=pull,
     )

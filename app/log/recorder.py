@@ -155,6 +155,7 @@ class Recorder:
             simulation.plant,
             gain=decision.gain,
             configured=simulation.fitting.mass,
+            pull=decision.pull,
             known=self._numbers,
             truth=self._truth,
             k=k,

@@ -1,15 +1,21 @@
 """The figures of a report, as SVG: drawn without a screen, with peaks that no thinning takes away."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from app.log.playback import pull_at
 from app.log.reader import Log
+from app.pull_colours import PULL_COLOURS
 from app.report.drawing import INK, empty_axes, svg_of
 from app.report.summary import SLOW, Span, Summary
+from pendant.guided.pull import SHARE_WORDS, PullCauses
 from pendant.limits.parameters import PARAMETERS
+from pendant.tick.modes import TICK
 
 Array = NDArray[np.float64]
 POINTS = 1500
@@ -40,6 +46,15 @@ PARAMETERS_DRAWN = 6
 """Monitored parameters in their chart: those nearest to their limits."""
 
 
+COLUMNS = 200
+"""Stretches of the run in the chart of what pulls at the arm: each some pixels wide."""
+
+PULL_CAPTION = (
+    "What pulls at the free arm, as the controller sees it: how likely each cause is. Each stretch shows the moment in which a "
+    "hand is least likely."
+)
+
+
 def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
     """Captions and SVG texts."""
     t = log.t
@@ -56,6 +71,9 @@ def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
         ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]", marks)),
         ("External torque of the joints, size", _lines(t, torques, "torque [N·m]", marks)),
     ]
+    columns = pulls(log)
+    if columns:
+        drawn.insert(3, (PULL_CAPTION, _stacked(columns, summary.duration)))
     shares = _shares(log)
     if shares:
         drawn.append(
@@ -72,6 +90,53 @@ def _shares(log: Log) -> list[tuple[str, Array]]:
         if np.isfinite(share).sum() > 1:
             found.append((float(np.nanmax(share)), row.text, share))
     return [(text, share) for _, text, share in sorted(found, key=lambda each: -each[0])[:PARAMETERS_DRAWN]]
+
+
+class Column(NamedTuple):
+    """A stretch of time in which the arm is free somewhere."""
+
+    begin: float  # [s]
+    end: float
+    pull: PullCauses
+
+
+def pulls(log: Log) -> list[Column]:
+    """The pull of the tick that is least a hand's, in `COLUMNS` stretches of the run; stretches without free-drive are left out.
+
+    A payload that falls ends free-drive within some ticks: in one of so many stretches they are wide enough to be seen.
+    """
+    free = np.isfinite(log.state["felt"])
+    doubt = np.fmax(np.nan_to_num(log.state["lost_odds"], nan=-np.inf), np.nan_to_num(log.state["step_odds"], nan=-np.inf))
+    found: list[Column] = []
+    for stretch in np.array_split(np.arange(len(free)), min(COLUMNS, len(free))):
+        rows = stretch[free[stretch]]
+        if len(rows):
+            pull = pull_at(log, int(rows[doubt[rows].argmax()]))
+            assert pull is not None
+            found.append(Column(float(log.t[stretch[0]]) - TICK, float(log.t[stretch[-1]]), pull))
+    return found
+
+
+def _stacked(columns: Sequence[Column], duration: float) -> str:
+    figure, axes = empty_axes(1.5, 0.27)
+    shares = np.array([column.pull.shares for column in columns])
+    tops = np.cumsum(shares, axis=1)
+    edges = np.array([(column.begin, column.end) for column in columns])
+    for number, (name, colour) in enumerate(zip(SHARE_WORDS, PULL_COLOURS, strict=True)):
+        there = shares[:, number] > 0.0
+        low = tops[there, number] - shares[there, number]
+        bars = [
+            [(begin, 100.0 * below), (end, 100.0 * below), (end, 100.0 * above), (begin, 100.0 * above)]
+            for (begin, end), below, above in zip(edges[there], low, tops[there, number], strict=True)
+        ]
+        axes.add_collection(PolyCollection(bars, facecolors=colour, edgecolors=colour, linewidths=0.3, label=name))
+    axes.set_ylabel("share [%]", fontsize=7.5)
+    axes.set_xlabel("time [s]", fontsize=7.5)
+    axes.set_xlim(0.0, duration)
+    axes.set_ylim(0.0, 100.0)
+    handles = [Patch(color=colour, label=name) for name, colour in zip(SHARE_WORDS, PULL_COLOURS, strict=True)]
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=NAMES_A_ROW, frameon=False, fontsize=6.5)
+    return svg_of(figure)
 
 
 def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], *, bar: float = 0.0) -> str:

@@ -174,6 +174,7 @@ def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
         ("Phase", snapshot.decision.phase.value),
         ("Tool speed", f"{1000 * seen.v_tcp:.0f} mm/s"),
         ("Force at the flange", f"{float(np.linalg.norm(seen.F_user[:3])):.1f} N"),
+        *([] if snapshot.pull is None else [("Pulls at the arm", snapshot.pull.words)]),
         ("Payload true, configured", f"{snapshot.truth_payload_mass:.2f}, {snapshot.configured_mass:.2f} kg"),
         *periods,
     ]

@@ -83,7 +83,7 @@ ENTRY: dict[Kind, EventRow] = {
     ),
     Kind.REFUSED_PAYLOAD: refused(
         "Free-drive refused: wrong payload or a push",
-        "Consistent with {mass:+.1f} kg at the flange, or with a steady {force:.0f} N push {way}; let go to decide.",
+        "Consistent with {mass:+.1f} kg, or a steady {force:.0f} N push {way}; let go, or turn the wrist, to decide.",
         ("mass", "force", "way", "zero", "parameter"),
     )._replace(
         variant=(

@@ -12,6 +12,7 @@ from pendant.freedrive.periods import Periods, Remaining
 from pendant.freedrive.sequence import SequenceVerdict
 from pendant.guided.endings import way_back
 from pendant.guided.free_arm import FreeArm
+from pendant.guided.pull import PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.joint_zones import JointZones
 from pendant.settings.schema import ticks
@@ -38,6 +39,7 @@ class FreeDrive:
     Attributes:
         phase: of now.
         arm: the free arm, from entry to leaving.
+        pull: what pulls at the free arm, to the tick in which it is left; None while free-drive is off.
     """
 
     __slots__ = (
@@ -52,6 +54,7 @@ class FreeDrive:
         "_zones",
         "arm",
         "phase",
+        "pull",
     )
 
     def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zones: JointZones) -> None:
@@ -70,6 +73,7 @@ class FreeDrive:
         self._activation = Activation(joints, rated, containment, self._bias)
         self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None
+        self.pull: PullCauses | None = None
         self._periods: Periods | None = None  # from entry to leaving
 
     @property
@@ -120,6 +124,7 @@ class FreeDrive:
     def sense(self, held: bool, signal: Presence) -> None:
         """Begin a tick: the button, and the signal of activation."""
         self._gate.sense(held, signal)
+        self.pull = None
 
     def ask_anew(self) -> bool:
         """The free-drive or restart period is to start again in this tick (FD-16). Returns whether one runs."""
@@ -182,6 +187,7 @@ class FreeDrive:
     def _stay(self, arm: FreeArm, periods: Periods, around: Surroundings, settings: Settings) -> Happened:
         """One tick of free-drive."""
         seen = arm.step(around, settings, periods.waits)
+        self.pull = arm.pull
         if seen.transition is Transition.LEFT:
             return seen
         wrench = self._bias.felt(around.estimate)

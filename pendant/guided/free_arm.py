@@ -5,6 +5,7 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.endings import EndingWatch
+from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
@@ -12,7 +13,8 @@ from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
 from pendant.limits.soft_limits import Damping
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
-from pendant.tick.pose import ORIGIN, Vector
+from pendant.tick.estimate import Estimate
+from pendant.tick.pose import ORIGIN, Vector, norm
 from pendant.walls.barrier import Consequence
 from pendant.walls.containment import NOBODY, Containment, caught, facts
 
@@ -25,6 +27,7 @@ class FreeArm:
         user: the user's force, axes of B [N].
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
+        pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
         suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
@@ -39,6 +42,7 @@ class FreeArm:
         "caught",
         "damping",
         "doubtful",
+        "pull",
         "singularity",
         "suspect",
         "user",
@@ -73,6 +77,7 @@ class FreeArm:
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
         self.damping: Damping | None = None
+        self.pull = PullCauses(HandFelt.NOBODY)
         self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
         containment.enter(settings.walls)
@@ -114,8 +119,18 @@ class FreeArm:
         self.singularity = self._singularity.status
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=bias.slack(estimate))
+        slack = bias.slack(estimate)
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
+        self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
+
+    def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
+        """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""
+        hand, used = self._hand, self._bias.used
+        vx, vy, vz = estimate.v_F.tolist()[:3]
+        led = self._operation.led and norm((vx, vy, vz)) >= moves  # at rest the noise of the speed pays for itself
+        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=led, use_wrench=used)
+        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds) if used else PullCauses(who)

@@ -9,7 +9,7 @@ import math
 from pendant.limits.residual import upward
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.pose import ORIGIN, Vector, dot, flat, turned_back
+from pendant.tick.pose import ORIGIN, Vector, dot, flat, norm, turned_back
 
 SETTLING = 1.5
 """Time constant with which a change along gravity becomes payload-like [s]: a sensor that drifts by 2 N/s stays below 3 N."""
@@ -92,6 +92,11 @@ class UserForce:
         self.change: Vector = ORIGIN  # of what the sensor feels, as measured, axes of B [N]
         self.usual: Vector = ORIGIN  # of that the mean lately [N]
         self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
+
+    @property
+    def sensed(self) -> float:
+        """Size of the user's force as the flange sensor alone tells it [N]; 0 where it has not been used."""
+        return norm(self._by_sensor)
 
     def shift(self, force: Vector) -> None:
         """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""

@@ -50,8 +50,8 @@ class ExternalWrench:
     """The bank of hypotheses, one tick at a time, in free-drive alone.
 
     Attributes:
-        lost: log of the odds that the payload changed, against all else [nats]: 0 at least; minus infinity before there is enough
-            to compare.
+        lost: log of the odds that the payload changed, against all else [nats]; minus infinity where nothing is compared: there
+            is not enough, or nothing that a hand does not do as well.
         share: of the payload that is gone then.
         stepped: log of the odds that the sensor stepped, against all else: the same.
     """
@@ -169,10 +169,8 @@ def _update(wrenches, forces, bias, accelerations) -> None:
     own.count = min(own.count + 1, KEPT)
     own.lost = own.stepped = -np.inf
     own.share = 0.0
-    if own.count == KEPT:
-        own.lost = own.stepped = 0.0
-        if _jumped(own, here):
-            _weigh(own, here, bias)
+    if own.count == KEPT and _jumped(own, here):
+        _weigh(own, here, bias)
 
 
 @kernel
@@ -246,5 +244,5 @@ def _weigh(own, here, bias) -> None:
                 lost, other = both(lost, likelihood), both(other, likelihood - carried)
                 if likelihood > gone:
                     gone, own.share = likelihood, share
-    own.lost = max(lost - both(other, stepped), 0.0)
-    own.stepped = max(stepped - both(other, lost), 0.0)
+    own.lost = lost - both(other, stepped)
+    own.stepped = stepped - both(other, lost)

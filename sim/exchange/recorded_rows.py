@@ -1,10 +1,12 @@
 """A tick as two rows of numbers, for recordings: what the controller knew, and the truth; written in place, without garbage."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.guided.pull import NOT_TOLD, PullCauses
 from pendant.tick.estimate import Estimate
 from sim.compiled.kernel import kernel
 from sim.plant.joint_state import SIGN_SPEED
@@ -46,18 +48,21 @@ class RecordedPlace(NamedTuple):
     mass: float  # [kg]
 
 
-def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, known: Array, truth: Array, k: int) -> None:
-    """Write an estimate into row k of `known` (m, 9 n + 28 or more), the true state into row k of `truth` (m, 6 n + 12).
+def fill_rows(
+    e: Estimate, plant: Plant, *, gain: float, configured: float, pull: PullCauses | None, known: Array, truth: Array, k: int
+) -> None:
+    """Write an estimate into row k of `known` (m, 9 n + 32 or more), the true state into row k of `truth` (m, 6 n + 12).
 
     Known, in this order: q, qd, qdd, theta, theta_d, tau_m, tau_J, tau_ext, friction (n each); w_sensor, F_user (6 each); a_F,
-    p_BF (3 each); v_F (6); speeds of tcp and elbow, `gain` on the user's force, mass `configured`.
+    p_BF (3 each); v_F (6); speeds of tcp and elbow, `gain` on the user's force, mass `configured`; of the `pull`
+    who is felt, odds and share of a lost payload, odds of a step of the sensor: not a number where they are not known.
 
     Truth: q, qd, theta, tau_J, friction of both sides, temperature (n each); pose of the flange in W (7); sum of the hands'
     forces in W (3); mass of what is attached; 1 while anything is touched.
     """
     joints = (e.q, e.qd, e.qdd, e.theta, e.theta_d, e.tau_m, e.tau_J, e.tau_ext, e.friction)
     flange = (e.w_sensor, e.F_user, e.v_F, e.a_F, e.p_BF)
-    _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured), known[k])
+    _known(joints, flange, (e.v_tcp, e.v_elbow, gain, configured, *_numbers(pull)), known[k])
     place = (*plant.frames, plant.flange_body, plant.payload.load.mass)
     _truth(plant.record, plant.friction.record, place, truth[k])
     row = truth[k]
@@ -66,6 +71,18 @@ def fill_rows(e: Estimate, plant: Plant, *, gain: float, configured: float, know
         row[-5] += x
         row[-4] += y
         row[-3] += z
+
+
+def _numbers(pull: PullCauses | None) -> tuple[float, float, float, float]:
+    """Of a pull: who is felt, then what is compared. Infinite odds would spoil the axes of every plot."""
+    if pull is None:
+        return math.nan, math.nan, math.nan, math.nan
+    share = math.nan if pull.doubt == NOT_TOLD else pull.lost_share
+    return float(pull.felt), _or_nan(pull.lost_odds), share, _or_nan(pull.step_odds)
+
+
+def _or_nan(odds: float) -> float:
+    return math.nan if odds == NOT_TOLD else odds
 
 
 @kernel
@@ -83,7 +100,7 @@ def _known(joints, flange, numbers, out) -> None:
         out[at + i], out[at + 6 + i], out[at + 18 + i] = flange.w_sensor[i], flange.F_user[i], flange.v_F[i]
     for i in range(3):
         out[at + 12 + i], out[at + 15 + i] = flange.a_F[i], flange.p_BF[i]
-    for i in range(4):
+    for i in range(8):
         out[at + 24 + i] = numbers[i]
 
 

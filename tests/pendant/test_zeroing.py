@@ -332,7 +332,7 @@ def test_a_refused_payload_names_the_zero_where_it_explains_the_force_as_well(fo
     assert render(event)[1] == (
         f"5 N: {mass}, the sensor's zero, or a push down. Let go; zero it with nothing touching."
         if zero
-        else f"Consistent with {mass} at the flange, or with a steady 5 N push down; let go to decide."
+        else f"Consistent with {mass}, or a steady 5 N push down; let go, or turn the wrist, to decide."
     )
     robot.run(1200)
     (event,) = [event for event in robot.events if event.kind is Kind.RESIDUAL_STAYED]

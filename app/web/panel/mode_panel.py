@@ -155,6 +155,7 @@ class Panel:
         return [
             ("Speed of the tool", _speed(seen.v_tcp)),
             ("Speed of the elbow", _speed(seen.v_elbow)),
+            *([] if snapshot.pull is None else [("Pulls at the arm", snapshot.pull.words)]),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),

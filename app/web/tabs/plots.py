@@ -6,10 +6,12 @@ from enum import StrEnum
 import numpy as np
 import viser
 
+from app.pull_colours import PULL_COLOURS
 from app.web.running import Running
-from app.web.widgets.chart import Array, Curve, chart
+from app.web.widgets.chart import Array, Curve, Layer, chart, stack
 from app.web.widgets.html import Html
 from pendant.events.event import Event
+from pendant.guided.pull import SHARE_WORDS
 from pendant.tick.modes import TICK_RATE
 from sim.arm.arm_file import Arm
 from sim.exchange.snapshot import Snapshot
@@ -18,6 +20,7 @@ RATE = 20  # samples a second of simulated time
 SAMPLES = 200  # drawn: ten seconds
 KEPT = 1200  # kept, to go back to a moment: one minute
 AFTER = 3 * TICK_RATE  # ticks drawn after the moment that is looked at
+NOT_FREE = "not in free-drive"
 MARKED = "contact_"  # events whose kind begins like this are marked
 
 
@@ -25,6 +28,7 @@ class View(StrEnum):
     """What can be plotted."""
 
     FORCE = "Force, acceleration"
+    PULL = "Who pulls, force"
     LIMITS = "Against limits"
     FRICTION = "Friction"
     TORQUE = "Transmission torque"
@@ -38,10 +42,12 @@ class PlotHistory:
     def __init__(self, n: int) -> None:
         blank = np.full(KEPT, np.nan)
         self.force, self.acceleration = np.full((3, KEPT), np.nan), np.full((3, KEPT), np.nan)
+        self.pull = np.full((len(SHARE_WORDS), KEPT), np.nan)  # probabilities, gaps while the arm is not free
         self.share, self.rate = blank.copy(), blank.copy()
         self.friction = np.full((3, n, KEPT), np.nan)  # true, estimated, its deviation [N·m]
         self.torque = np.full((4, n, KEPT), np.nan)  # true, three ways [N·m]
         self.tracking = np.full((n, KEPT), np.nan)  # [mrad]
+        self.told, self._last = NOT_FREE, ""  # what pulls, and what pulled last, in words
         self.tick = 0
 
     def add(self, snapshot: Snapshot, rate: float) -> None:
@@ -51,6 +57,12 @@ class PlotHistory:
         n = len(self.tracking)
         _push(self.force, seen.F_user[:3])
         _push(self.acceleration, seen.a_F)
+        pull = snapshot.pull
+        _push(self.pull, np.full(len(self.pull), np.nan) if pull is None else np.array(pull.shares))
+        if pull is not None:
+            self.told = self._last = pull.words
+        else:
+            self.told = f"last: {self._last}" if self._last else NOT_FREE
         _push(self.share, 100.0 * max(shares) if shares else np.nan)
         _push(self.rate, rate)
         friction = (snapshot.truth_friction, seen.friction, seen.friction_deviation)
@@ -116,6 +128,14 @@ class Plots:
             case View.FORCE:
                 force = chart("User force", "N", _xyz(history.force[:, window]), marks)
                 return force, chart("Acceleration", "m/s²", _xyz(history.acceleration[:, window]), marks)
+            case View.PULL:
+                layers = [
+                    Layer(name, colour, row)
+                    for name, colour, row in zip(SHARE_WORDS, PULL_COLOURS, history.pull[:, window], strict=True)
+                ]
+                told = history.told if self._moment is None else ""
+                force = chart("User force", "N", _xyz(history.force[:, window]), marks)
+                return stack("Who pulls", told, layers, marks), force
             case View.LIMITS:
                 return chart(
                     "Nearest to its limit", "%", [Curve("share of the limit", history.share[window])], marks, limit=100.0

@@ -24,6 +24,14 @@ class Curve(NamedTuple):
     dashed: bool = False  # what is told apart by more than colour
 
 
+class Layer(NamedTuple):
+    """One of the shares of a stack."""
+
+    name: str
+    colour: str
+    values: Array  # (N,) oldest first
+
+
 def chart(title: str, unit: str, lines: Sequence[Curve], marks: Sequence[int] = (), *, limit: float | None = None) -> str:
     """The picture.
 
@@ -55,6 +63,39 @@ def chart(title: str, unit: str, lines: Sequence[Curve], marks: Sequence[int] = 
         f'<svg viewBox="0 0 {width} {HEIGHT}" preserveAspectRatio="none" fill="none" stroke-width="2">{"".join(shapes)}</svg>'
         f"<div>{names}</div></figure>"
     )
+
+
+def stack(title: str, told: str, layers: Sequence[Layer], marks: Sequence[int] = ()) -> str:
+    """A picture of shares that add up to 1, each on top of the one before; samples that are not numbers are gaps.
+
+    Args:
+        title: above it.
+        told: what holds now, in words.
+        layers: from below, of equal length.
+        marks: samples at which something happened.
+    """
+    width = STEP * len(layers[0].values)
+    tops = np.cumsum([layer.values for layer in layers], axis=0)
+    # The topmost first: each layer reaches to the ground, and the next covers it up to its own top.
+    seen = [(layer, top) for layer, top in zip(layers, tops, strict=True) if np.nanmax(layer.values, initial=0.0) > 0.0]
+    shapes = [f'<path d="{_steps(top)}" fill="{layer.colour}"/>' for layer, top in reversed(seen)]
+    shapes += [f'<path d="M{STEP * mark} 0v{HEIGHT}" stroke="currentColor" stroke-dasharray="3 3"/>' for mark in marks]
+    names = "".join(f'<span style="--c:{layer.colour}"><i></i>{escape(layer.name)}</span>' for layer in layers)
+    label = f"{title}: {told}" if told else title
+    return (
+        f'<figure class="pd-chart pd-stack"><figcaption><b>{escape(title)}</b><em>{escape(told)}</em></figcaption>'
+        f'<svg viewBox="0 0 {width} {HEIGHT}" preserveAspectRatio="none" stroke-width="2" role="img" '
+        f'aria-label="{escape(label)}">{"".join(shapes)}</svg><div>{names}</div></figure>'
+    )
+
+
+def _steps(tops: Array) -> str:
+    """The area below these shares, in whole units; a step at each change, so that what stays costs nothing."""
+    heights = np.rint(HEIGHT * np.nan_to_num(tops)).astype(int)
+    edges = np.flatnonzero(np.diff(heights, prepend=0))
+    rises = np.diff(np.concatenate(([0], heights[edges])))
+    path = "".join(f"H{STEP * at}v{-rise}" for at, rise in zip(edges.tolist(), rises.tolist(), strict=True))
+    return f"M0 {HEIGHT}{path}H{STEP * len(heights)}V{HEIGHT}z"
 
 
 def _range(lines: Sequence[Curve], limit: float | None) -> tuple[float, float]:

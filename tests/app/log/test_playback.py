@@ -92,6 +92,7 @@ def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]
             assert getattr(found.decision, name) == getattr(was.decision, name)
         assert (found.tick, found.truth_payload_mass, found.configured_mass) == (tick, 1.0, 1.0)
         assert found.touches == was.touches
+        assert found.decision.pull == found.pull == was.decision.pull
     assert any(each.touches for each in log.pictures)
 
 

@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,10 @@ import pytest
 
 from app.files.checked import BadInput, convert
 from app.log.events_file import EventLine
+from app.log.layout import PULL, WORDS
 from app.log.reader import Log, read
-from app.report.charts import POINTS, charts, thinned
+from app.pull_colours import PULL_COLOURS
+from app.report.charts import COLUMNS, POINTS, PULL_CAPTION, charts, pulls, thinned
 from app.report.files import write_report
 from app.report.page import page
 from app.report.regions import regions
@@ -22,6 +25,7 @@ from app.runs.runner import record
 from app.session.expectation_watch import Verdict
 from app.session.prepare import prepare
 from app.session.session_file import Session
+from pendant.guided.pull import SHARE_WORDS
 
 SESSION: dict[str, Any] = {
     "title": "A <report> & more",
@@ -42,6 +46,76 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
     session = convert(SESSION, Session, "s.yaml")
     record(session, prepare(session, "s.yaml"), out)
     return read(out / "log.mcap")
+
+
+RAMP = {"shape": "ramp", "rise": 0.1, "fall": 0.1}
+DROP: dict[str, Any] = {
+    "title": "A payload falls out of a hand",
+    "duration": 2.4,
+    "seed": 3,
+    "payload_true": {"mass": 2.0},
+    "payload_configured": {"mass": 2.0},
+    "settings": {"activation.period": 0.1, "sequence.period": 0.25},
+    "timeline": [
+        {"at": 0.5, "do": "press", "control": "free_drive"},
+        {
+            "after": "mode FREE_DRIVE",
+            "delay": 0.3,
+            "do": "push",
+            "for": 0.9,
+            "part": "flange",
+            "force": [0.0, 8.0, 0.0],
+            "profile": RAMP,
+        },
+        {"after": "mode FREE_DRIVE", "delay": 0.6, "do": "change", "change": {"kind": "drop_payload"}},
+    ],
+}
+
+
+@pytest.fixture(scope="module")
+def dropped(tmp_path_factory: pytest.TempPathFactory) -> Log:
+    out = tmp_path_factory.mktemp("drop")
+    session = convert(DROP, Session, "d.yaml")
+    record(session, prepare(session, "d.yaml"), out)
+    return read(out / "log.mcap")
+
+
+def painted(svg: str, colour: str) -> list[tuple[float, float]]:
+    """Begin and end of the areas of that colour, each, in units of the picture; the legend's are left out."""
+    found: list[tuple[float, float]] = []
+    for path in re.findall(rf'<path d="([^"]*)" clip-path="[^"]*" style="fill: {colour}', svg):
+        x = [float(each) for each in re.findall(r"[ML] ([\d.]+)", path)]
+        found.append((min(x), max(x)))
+    return sorted(found)
+
+
+def test_the_report_shows_what_pulls_and_when_the_payload_fell(dropped: Log) -> None:
+    """FD-19: a bar while the arm is free, with the payload in it at the time of the drop alone."""
+    free = dropped.t[dropped.state["mode"] == WORDS["mode"].index("FREE_DRIVE")]
+    columns = pulls(dropped)
+    width = 2.4 / COLUMNS + 0.002
+    assert free[0] - width <= columns[0].begin <= free[0]
+    (stop,) = [event for event in dropped.events if event.kind == "stopped_payload"]
+    assert stop.t <= columns[-1].end + 1e-9 < stop.t + width
+    held = [column for column in columns if free[0] + 0.4 < column.begin < free[0] + 0.59]
+    assert held
+    assert all(column.pull.words == "A hand" for column in held)
+    fell = [column for column in columns if column.pull.shares.payload > 0.99]
+    assert columns[-1] in fell
+    assert all(stop.t - 0.02 < column.end for column in fell)
+    assert fell[-1].pull.words == "The payload fell: over 99.9 %"
+    (picture,) = [svg for caption, svg in charts(dropped, summarise(dropped)) if caption == PULL_CAPTION]
+    areas = {name: painted(picture, colour) for name, colour in zip(SHARE_WORDS, PULL_COLOURS, strict=True)}
+    assert areas["A hand"]
+    assert areas["Payload changed"][-1][1] == max(end for each in areas.values() for _, end in each)
+    assert all(end - begin > 0.5 for begin, end in areas["Payload changed"][-1:])
+    assert set(re.findall(r">([A-Z][a-z ]+)</text>", picture)) >= set(SHARE_WORDS)
+
+
+def test_without_free_drive_or_in_an_older_recording_there_is_no_bar(dropped: Log) -> None:
+    older = replace(dropped, state={**dropped.state, **{name: np.full(len(dropped.t), np.nan) for name in PULL}})
+    assert pulls(older) == []
+    assert PULL_CAPTION not in dict(charts(older, summarise(older)))
 
 
 @pytest.fixture(scope="module")
@@ -201,7 +275,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
     assert parser.open == []
     assert parser.foreign == []
     assert "http" not in re.sub(r'xmlns(:xlink)?="[^"]*"|<!DOCTYPE[^>]*>|<rdf:RDF.*?</rdf:RDF>', "", text, flags=re.S)
-    assert text.count("<svg") == 5
+    assert text.count("<svg") == 6
     assert "at\u00a01\u00a0s" not in text
     assert "at 1\u00a0s" in text  # a number stays with its unit
     assert "A &lt;report&gt; &amp; more" in text

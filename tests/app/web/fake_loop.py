@@ -11,6 +11,7 @@ from pendant.decision import Decision
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind
 from pendant.freedrive.periods import Remaining
+from pendant.guided.pull import PullCauses
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
 from pendant.program.steps import ProgramState
@@ -105,6 +106,7 @@ class FakeLoop:
         self.borders: tuple[AnyBorder, ...] | None = None
         self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
+        self.pull: PullCauses | None = None
         self.log: list[Event] = []
         self.wishes: list[Any] = []
         self.resets = 0
@@ -177,6 +179,7 @@ class FakeLoop:
             self.touches,
             scenario=self.scenario,
             places=self.places,
+            pull=self.pull,
         )
 
     def events(self, since: int) -> list[Event]:

@@ -314,8 +314,12 @@ def test_a_drop_in_the_robot_removes_the_gain_in_its_tick_and_stops() -> None:
     assert robot.step(loaded()).gain == 1.0
     assert robot.step(lost(SUSPECTED)).gain == 0.0
     assert robot.step(loaded()).gain == 1.0
-    assert robot.step(lost(KNOWN)).mode is Mode.STOP
+    decision = robot.step(lost(KNOWN))
+    assert decision.mode is Mode.STOP
     assert robot.events[-1].kind is Kind.STOPPED_PAYLOAD
+    assert decision.pull is not None
+    assert decision.pull.lost_odds == KNOWN, "what ended it is told with its end"
+    assert robot.step(loaded()).pull is None
 
 
 def test_an_involuntary_leaving_tells_the_way_back_and_one_that_was_asked_for_does_not() -> None:

@@ -9,6 +9,7 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
 from pendant.guided.endings import KNOWN, SUSPECTED
 from pendant.guided.free_arm import FreeArm
+from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.sensor_steps import LATER
 from pendant.guided.user_force import UserForce
@@ -235,3 +236,27 @@ def test_a_payload_that_drops_is_told_by_its_odds(sensor: bool) -> None:
     value.lost_odds = KNOWN
     mass, weight = pytest.approx(-1.8), pytest.approx(0.9 * TWO[2])
     assert free.see(value) == ([Event(Kind.STOPPED_PAYLOAD, 2, {"mass": mass, "force": weight})] if sensor else [])
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_what_pulls_is_told_with_the_odds_of_a_sensor_that_is_used(sensor: bool) -> None:
+    """FD-19."""
+    free, value = Free(sensor=sensor, payload=2.0), estimate(needed=TWO, load_mass=2.0)
+    free.see(value)
+    assert free.arm.pull == PullCauses(HandFelt.NOBODY)
+    value.lost_odds, value.lost_share, value.step_odds = KNOWN, 0.9, -3.0
+    free.see(value)
+    assert free.arm.pull == (PullCauses(HandFelt.NOBODY, KNOWN, 0.9, -3.0) if sensor else PullCauses(HandFelt.NOBODY))
+
+
+def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:
+    """FD-19: with less force than is felt; at rest nobody is told."""
+    free = Free()
+    free.see(estimate())
+    assert free.arm.pull.felt is HandFelt.NOBODY
+    for tick in range(1, 100):
+        place = [0.2 * TICK * tick, 0.0, 0.0]
+        free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_ext=[0.0, 0.0, 1.5, 0.0, 0.0, 0.0]))
+    assert free.arm.pull.felt is HandFelt.LINK
+    free.see(estimate(position=[0.04, 0.0, 0.0], speed=0.0))
+    assert free.arm.pull.felt is HandFelt.NOBODY

@@ -105,7 +105,7 @@ def test_a_refusal_names_every_parameter_that_prevented_entry(loop: FakeLoop, st
     loop.note(Kind.OVERRUN, late=80.0, lost=0.08, often="once")
     still.docks.show(loop.latest())
     shown = still.panel.note.shown
-    assert "Consistent with +1.9 kg at the flange, or with a steady 18 N push down" in shown
+    assert "Consistent with +1.9 kg, or a steady 18 N push down" in shown
     assert "<li>wrist_1 flange speed: 0.031 m/s, limit 0.02</li>" in shown
     assert "<li>wrist_1 joint torque: 7.2 N·m, limit 5</li>" in shown
     loop.note(Kind.ACTIVATION_STARTED, period=1.0)

@@ -7,10 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from app.pull_colours import PULL_COLOURS
 from app.web.server import Served
 from app.web.tabs.contact_log import FADE
 from app.web.tabs.plots import KEPT, View
 from pendant.events.event import Kind
+from pendant.guided.pull import HandFelt, PullCauses
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
@@ -126,3 +128,28 @@ def test_a_contact_is_listed_marked_and_exported(loop: FakeLoop, still: Served) 
         ("2.0", "contact_gained", "8"),
         ("2.2", "contact_lost", "8"),
     ]
+
+
+def test_what_pulls_is_drawn_as_shares_and_told_in_words(loop: FakeLoop, still: Served) -> None:
+    """FD-19: by the page's figures and the plot; a gap while the arm is not free."""
+    docks, plots = still.docks, still.docks.plots
+    plots.view.value = View.PULL.value
+    for pull, told in (
+        (None, "not in free-drive"),
+        (PullCauses(HandFelt.NOBODY), "Nobody"),
+        (PullCauses(HandFelt.FLANGE, -1.0, 1.0, -9.0), "A hand"),
+        (PullCauses(HandFelt.FLANGE, 3.5, 1.0, -9.0), "The payload fell: 97 %"),
+        (None, "last: The payload fell: 97 %"),
+    ):
+        loop.pull = pull
+        loop.advance(0.05)
+        docks.show(loop.latest())
+        plots.show(loop.latest())
+        assert f"<em>{told}</em>" in plots.upper.shown
+        assert ("Pulls at the arm" in docks.panel.numbers.shown) is (pull is not None)
+        assert pull is None or told in docks.panel.numbers.shown
+    assert [colour in plots.upper.shown.split("<div>")[0] for colour in PULL_COLOURS] == [True, True, False, True, True]
+    shares = plots.history.pull[:, -4:-1]
+    assert shares.sum(axis=0) == pytest.approx(1.0)
+    assert shares[3].tolist() == pytest.approx([0.0, 0.2689, 0.9707], abs=1e-4)
+    assert np.isnan(plots.history.pull[:, -1]).all()

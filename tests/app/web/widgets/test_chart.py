@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from app.web.widgets.chart import HEIGHT, MARGIN, STEP, Curve, chart
+from app.web.widgets.chart import HEIGHT, MARGIN, STEP, Curve, Layer, chart, stack
 
 
 def ys(html: str) -> list[int]:
@@ -46,3 +46,25 @@ def test_texts_are_escaped() -> None:
 def test_six_noisy_lines_of_ten_seconds_stay_below_ten_kilobytes() -> None:
     noise = np.random.default_rng(1).standard_normal((6, 200))
     assert len(chart("t", "N", [Curve(f"{i}", row) for i, row in enumerate(noise)])) < 10_000
+
+
+def test_a_stack_reaches_as_high_as_its_shares_and_has_gaps() -> None:
+    rows = np.array([[1.0, 0.25, np.nan, 0.0], [0.0, 0.75, np.nan, 0.5], [0.0, 0.0, np.nan, 0.5]])
+    layers = [Layer(name, colour, row) for name, colour, row in zip("<bc", ("red", "green", "blue"), rows, strict=True)]
+    picture = stack("Who", "c & d", layers, [1])
+    paths = {colour: path for path, colour in re.findall(r'<path d="([^"]+)" fill="(\w+)"/>', picture)}
+    top = HEIGHT
+    assert list(paths) == ["blue", "green", "red"], "the lower cover the upper"
+    assert paths["red"] == f"M0 {top}H0v-{top}H2v{top - round(0.25 * top)}H4v{round(0.25 * top)}H8V{top}z"
+    assert paths["green"] == f"M0 {top}H0v-{top}H4v{top}H6v-{top // 2}H8V{top}z"
+    assert paths["blue"] == f"M0 {top}H0v-{top}H4v{top}H6v-{top}H8V{top}z"
+    assert '<path d="M2 0v150"' in picture
+    assert "&lt;" in picture
+    assert "c &amp; d" in picture
+
+
+def test_of_a_stack_nothing_is_drawn_of_what_never_was() -> None:
+    nothing = np.full(200, np.nan)
+    assert "<path" not in stack("Who", "", [Layer("a", "red", nothing), Layer("b", "blue", nothing)])
+    ones = np.ones(200)
+    assert len(stack("Who", "", [Layer("a", "red", ones), Layer("b", "blue", 0.0 * ones)])) < 600, "what stays costs nothing"
