@@ -123,7 +123,7 @@ def _stacked(columns: Sequence[Column], duration: float) -> str:
     tops = np.cumsum(shares, axis=1)
     edges = np.array([(column.begin, column.end) for column in columns])
     for number, (name, colour) in enumerate(zip(SHARE_WORDS, PULL_COLOURS, strict=True)):
-        there = shares[:, number] > 0.0
+        there = shares[:, number] >= 0.005  # less is no more than its outline
         low = tops[there, number] - shares[there, number]
         bars = [
             [(begin, 100.0 * below), (end, 100.0 * below), (end, 100.0 * above), (begin, 100.0 * above)]

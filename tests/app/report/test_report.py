@@ -83,7 +83,7 @@ def dropped(tmp_path_factory: pytest.TempPathFactory) -> Log:
 def painted(svg: str, colour: str) -> list[tuple[float, float]]:
     """Begin and end of the areas of that colour, each, in units of the picture; the legend's are left out."""
     found: list[tuple[float, float]] = []
-    for path in re.findall(rf'<path d="([^"]*)" clip-path="[^"]*" style="fill: {colour}', svg):
+    for path in re.findall(rf'<path (?:id="\w+" )?d="([^"]*)"[^>]*style="[^"]*stroke: {colour}; stroke-width: 0\.3"', svg):
         x = [float(each) for each in re.findall(r"[ML] ([\d.]+)", path)]
         found.append((min(x), max(x)))
     return sorted(found)
