@@ -40,7 +40,7 @@ class Parts:
 
     def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
-            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful"),
+            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful"), pull="pull",
             helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
@@ -88,7 +88,7 @@ class Parts:
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
-            "force": "force", "script_done": 7, "signs": 0,
+            "force": "force", "script_done": 7, "signs": 0, "pull": "pull",
         } | changes  # fmt: skip
 
 
@@ -151,7 +151,7 @@ LASTING = {
     "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
     "wizard": SimpleNamespace(progress="other"),
-    "zero": (0.2,) * 6, "due": True,
+    "zero": (0.2,) * 6, "due": True, "pull": "other",
 }  # fmt: skip
 
 
