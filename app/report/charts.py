@@ -65,15 +65,14 @@ def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
     speeds = [("tcp", 1000 * log.state["v_tcp"]), ("elbow", 1000 * log.state["v_elbow"])]
     torques = [(name, torque[:, i]) for i, name in enumerate(log.arm.chain.joints)]
     marks = [event.t for event in (*summary.messages, *summary.contacts)]
+    columns = pulls(log)
     drawn = [
         ("Modes, and phases of free-drive", _bars(summary.modes, summary.phases, summary)),
         ("Speed of tool centre point and elbow, against 250 mm/s", _lines(t, speeds, "speed [mm/s]", marks, bar=1000 * SLOW)),
         ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]", marks)),
+        *([(PULL_CAPTION, _stacked(columns, summary.duration))] if columns else []),
         ("External torque of the joints, size", _lines(t, torques, "torque [N·m]", marks)),
     ]
-    columns = pulls(log)
-    if columns:
-        drawn.insert(3, (PULL_CAPTION, _stacked(columns, summary.duration)))
     shares = _shares(log)
     if shares:
         drawn.append(

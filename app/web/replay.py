@@ -12,7 +12,7 @@ from app.log.events_file import EventLine
 from app.log.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
-from app.web.panel.state_words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS
+from app.web.panel.state_words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row
 from app.web.scene.arm_picture import Scene
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html
@@ -174,7 +174,7 @@ def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
         ("Phase", snapshot.decision.phase.value),
         ("Tool speed", f"{1000 * seen.v_tcp:.0f} mm/s"),
         ("Force at the flange", f"{float(np.linalg.norm(seen.F_user[:3])):.1f} N"),
-        *([] if snapshot.pull is None else [("Pulls at the arm", snapshot.pull.words)]),
+        *pull_row(snapshot.pull),
         ("Payload true, configured", f"{snapshot.truth_payload_mass:.2f}, {snapshot.configured_mass:.2f} kg"),
         *periods,
     ]

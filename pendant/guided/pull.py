@@ -69,7 +69,7 @@ class PullCauses(NamedTuple):
         shares = self.shares
         likely = max(shares.payload, shares.sensor)
         if likely <= max(shares[:3]):
-            return FELT_WORDS[self.felt]
+            return SHARE_WORDS[self.felt]
         if shares.sensor > shares.payload:
             what = "The sensor stepped"
         else:
@@ -77,10 +77,8 @@ class PullCauses(NamedTuple):
         return f"{what}: over {100.0 * CERTAIN:.1f} %" if likely > CERTAIN else f"{what}: {100.0 * likely:.0f} %"
 
 
-FELT_WORDS = {HandFelt.NOBODY: "Nobody", HandFelt.FLANGE: "A hand", HandFelt.LINK: "A hand on a link"}
-
 SHARE_WORDS = ("Nobody", "A hand", "A hand on a link", "Payload changed", "Sensor stepped")
-"""Of the fields of `CauseShares`, for legends."""
+"""Of the fields of `CauseShares`; the first ones are those of `HandFelt`."""
 
 
 def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool) -> HandFelt:

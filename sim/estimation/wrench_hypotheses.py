@@ -145,8 +145,8 @@ def hand(own, seen, change, late):
             g, h = first / R, ((count + 0.5) * first - later) / R
             rising -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / determinant)
             steady -= 0.5 * (whole / R - g * g / a)
-    spread = count * own.spread[0 if late == 0.0 else 1]
-    return rising - 1.5 * (spread + np.log(of_rising)), steady - 1.5 * (spread + np.log(of_steady))
+    by_noise = count * own.spread[0 if late == 0.0 else 1]
+    return rising - 1.5 * (by_noise + np.log(of_rising)), steady - 1.5 * (by_noise + np.log(of_steady))
 
 
 @kernel
@@ -215,8 +215,8 @@ def payload(own, seen, change, kind):
     off = px - mean * pp
     step = off / (1.0 / variance + pp)
     square, share = max(xx - 2.0 * mean * px + mean * mean * pp - off * step, least(length)), mean + step
-    spread = length * own.spread[1 if kind == MORE else 0]
-    likelihood = -0.5 * (square + np.log((1.0 + variance * pp) * determinant**3) + 3.0 * spread)
+    by_noise = length * own.spread[1 if kind == MORE else 0]
+    likelihood = -0.5 * (square + np.log((1.0 + variance * pp) * determinant**3) + 3.0 * by_noise)
     return likelihood, carried(own, seen, change, (kind, share)), share
 
 

@@ -8,7 +8,7 @@ from app.web.panel.button_holds import ButtonHolds
 from app.web.panel.clock_pace import pace
 from app.web.panel.panel_message import HINTS, Remembered, said
 from app.web.panel.reasons_at_the_arm import rgb, show_reasons
-from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS
+from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS, pull_row
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
@@ -155,7 +155,7 @@ class Panel:
         return [
             ("Speed of the tool", _speed(seen.v_tcp)),
             ("Speed of the elbow", _speed(seen.v_elbow)),
-            *([] if snapshot.pull is None else [("Pulls at the arm", snapshot.pull.words)]),
+            *pull_row(snapshot.pull),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),

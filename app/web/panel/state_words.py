@@ -2,6 +2,7 @@
 
 from app.web.widgets.svg import Colour
 from pendant.events.event_row import Severity
+from pendant.guided.pull import PullCauses
 from pendant.tick.modes import Mode, Phase, Safety
 
 WORDS = {
@@ -64,3 +65,8 @@ PERIOD_WORDS = {
 
 LEAVING_PERIODS = ("free-drive", "restart")
 """Periods whose end ends free-drive."""
+
+
+def pull_row(pull: PullCauses | None) -> list[tuple[str, str]]:
+    """What pulls at the free arm, as a row of figures; none while it is not free."""
+    return [] if pull is None else [("Pulls at the arm", pull.words)]

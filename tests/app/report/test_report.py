@@ -40,12 +40,15 @@ SESSION: dict[str, Any] = {
 }
 
 
-@pytest.fixture(scope="module")
-def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
-    out = tmp_path_factory.mktemp("run")
-    session = convert(SESSION, Session, "s.yaml")
+def recorded(text: dict[str, Any], out: Path) -> Log:
+    session = convert(text, Session, "s.yaml")
     record(session, prepare(session, "s.yaml"), out)
     return read(out / "log.mcap")
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
+    return recorded(SESSION, tmp_path_factory.mktemp("run"))
 
 
 RAMP = {"shape": "ramp", "rise": 0.1, "fall": 0.1}
@@ -74,10 +77,7 @@ DROP: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def dropped(tmp_path_factory: pytest.TempPathFactory) -> Log:
-    out = tmp_path_factory.mktemp("drop")
-    session = convert(DROP, Session, "d.yaml")
-    record(session, prepare(session, "d.yaml"), out)
-    return read(out / "log.mcap")
+    return recorded(DROP, tmp_path_factory.mktemp("drop"))
 
 
 def painted(svg: str, colour: str) -> list[tuple[float, float]]:
