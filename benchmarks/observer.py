@@ -2,9 +2,8 @@
 
 Payloads of 0.3 to 5 kg fall from an arm at rest; from a guided one whose hand lets go with it, or stays; and out of a hand that
 carries their weight. The sensor of an arm at rest steps by 5 to 20 N, or of a guided one. Hands grab, snatch and let go. Of what
-is told with 99 % or more, 98.5 % has to be true. Beside it, on the same ticks, the rule for payloads that it replaced
-(`benchmarks.wrenches.force_share`). Nothing ends free-drive here: a fall and a step are judged for 60 ms, the observer until it
-knows of a fall, for then STOP would follow. Truth is read for scoring alone.
+is told with 99 % or more, 98.5 % has to be true. Nothing ends free-drive here: a fall and a step are judged for 60 ms, or until
+a fall is known, for then STOP would follow. Truth is read for scoring alone.
 """
 
 import itertools
@@ -67,11 +66,9 @@ def score(report: Report, what: str, some: list[Seen]) -> None:
     """How many of these falls are known, and how soon."""
     n = len(some)
     report.share(f"{what}: known to the observer", sum(one.known < math.inf for one in some), n)
-    report.share(f"{what}: known to the rule", sum(one.rule < math.inf for one in some), n)
-    for name, delays in (("observer", [one.known for one in some]), ("rule", [one.rule for one in some])):
-        late = [2.0 * delay for delay in delays if delay < math.inf]
-        if late:
-            report.row(f"{what}: {name} knows after, longest", max(late), "ms", n=len(late))
+    late = [2.0 * one.known for one in some if one.known < math.inf]
+    if late:
+        report.row(f"{what}: observer knows after, longest", max(late), "ms", n=len(late))
 
 
 def away(report: Report, what: str, some: list[Seen]) -> None:
@@ -79,7 +76,6 @@ def away(report: Report, what: str, some: list[Seen]) -> None:
     n = len(some)
     report.share(f"{what}: taken for a fall by the observer", sum(one.known < math.inf for one in some), n)
     report.share(f"{what}: suspected to be a step by the observer", sum(one.told < math.inf for one in some), n)
-    report.share(f"{what}: taken for a fall by the rule", sum(one.rule < math.inf for one in some), n)
     if some:
         report.row(f"{what}: log of the odds of a fall, largest", max(one.odds for one in some), "nats", n=n)
         report.row(f"{what}: log of the odds of a step, largest", max(one.stepped for one in some), "nats", n=n)

@@ -14,8 +14,8 @@ ROOT = Path(__file__).parent.parent
 MODULES = (
     "pendant/freedrive/manipulation.py",
     "pendant/guided/endings.py",
+    "pendant/guided/odds.py",
     "pendant/guided/sensor_bias.py",
-    "pendant/guided/sensor_steps.py",
     "pendant/guided/unintended_motion.py",
     "pendant/guided/user_force.py",
     "pendant/guided/work.py",

@@ -1,4 +1,4 @@
-"""One arm in free-drive, watched by the observer and by the rule before it: a fall, a step of the sensor, hands."""
+"""One arm in free-drive, watched by the observer: a fall, a step of the sensor, hands."""
 
 import math
 from typing import NamedTuple
@@ -9,13 +9,9 @@ from benchmarks.drop import LONG, PACE, enter
 from benchmarks.hold import IDLE, flange
 from benchmarks.payload import Case, simulation
 from benchmarks.use import free_way
-from benchmarks.wrenches.force_share import ForceShare
 from pendant.all_settings import Settings, apply
-from pendant.decision import Decision
-from pendant.guided.endings import KNOWN, SUSPECTED
-from pendant.guided.user_force import UserForce
+from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.tick.modes import Mode
-from pendant.tick.pose import flat, turned
 from sim.exchange.desk import Wishes
 from sim.plant.changes import AnyChange, DropPayload, SensorFault
 from sim.plant.touch import Pull, Push, Touch
@@ -43,7 +39,7 @@ class Step(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What observer and rule make of one case."""
+    """What the observer makes of one case."""
 
     what: str
     mass: float  # [kg]
@@ -51,32 +47,25 @@ class Seen(NamedTuple):
     stepped: float  # that the sensor stepped
     known: float  # ticks until a fall is known, infinite without
     told: float  # ticks until a step is suspected and the help gone, infinite without
-    rule: float  # ticks until the rule is sure, infinite without
 
 
 class Watch:
-    """Both, on one arm in free-drive."""
+    """The observer, on one arm in free-drive."""
 
-    def __init__(self, device: Simulation, decision: Decision, mass: float) -> None:
+    def __init__(self, device: Simulation, mass: float) -> None:
         self._device, self.mass = device, mass
-        R_BF, bias = flat(device.estimate.R_BF), decision.baseline
-        wrench = (*turned(R_BF, (bias[0], bias[1], bias[2])), *turned(R_BF, (bias[3], bias[4], bias[5])))
-        self._hand, self._rule = UserForce(device.estimate, wrench), ForceShare(mass)
         self.begin()
 
     def begin(self) -> None:
         """A case begins."""
         self._ticks, self._odds, self._stepped = 0, -math.inf, -math.inf
-        self._known = self._told = self._ruled = math.inf
+        self._known = self._told = math.inf
 
     def tick(self, touches: tuple[Touch, ...] = (), changes: tuple[AnyChange, ...] = ()) -> bool:
         """One tick; whether the arm is still free."""
         decision = self._device.tick(Wishes(IDLE.inputs, touches, changes))
         estimate = self._device.estimate
-        self._hand.step(estimate, True)
         self._ticks += 1
-        if self._rule.step(estimate, self._hand, decision.baseline):
-            self._ruled = min(self._ruled, self._ticks)
         if self._known == math.inf:
             self._odds = max(self._odds, estimate.lost_odds)
             self._stepped = max(self._stepped, estimate.step_odds)
@@ -88,7 +77,7 @@ class Watch:
 
     def seen(self, what: str) -> Seen:
         """What came of the case."""
-        return Seen(what, self.mass, self._odds, self._stepped, self._known, self._told, self._ruled)
+        return Seen(what, self.mass, self._odds, self._stepped, self._known, self._told)
 
 
 def watch(case: Case, settings: Settings = WATCHED) -> tuple[Simulation, Watch | None]:
@@ -96,7 +85,7 @@ def watch(case: Case, settings: Settings = WATCHED) -> tuple[Simulation, Watch |
     device = simulation(case, settings)
     if not enter(device):
         return device, None
-    return device, Watch(device, device.tick(IDLE), case.true)
+    return device, Watch(device, case.true)
 
 
 def measure_fall(fall: Fall) -> list[Seen]:

@@ -9,29 +9,15 @@ from typing import NamedTuple
 
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
+from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
-from pendant.settings.schema import ticks
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
-
-TOUCHES = 2000.0
-"""Of so many grabs and let-goes at most one may be taken for a payload that falls (bench `observer`, `drop`)."""
-
-TOUCH = ticks(0.5)
-"""Ticks that one lasts."""
-
-KNOWN = math.log(TOUCHES * TOUCH)
-"""Log of the odds from which on the payload has changed [nats]: else odds of K come up in one of K trials at most (Ville)."""
-
-SUSPECTED = math.log(20.0)
-"""And from which on nothing helps a hand, for a payload that falls and a sensor that steps seem to be one: the help may be gone
-in one tick of 20."""
-
 
 class Ending(NamedTuple):
     """Why free-drive ends."""

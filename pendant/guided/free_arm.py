@@ -102,7 +102,8 @@ class FreeArm:
         hand.step(estimate, bias.used)
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
-            told = bias.step(estimate, hand, around.mean, waits)
+            least = settings.unexplained.force + bias.slack(estimate).force
+            told = bias.step(estimate, hand, around.mean, waits=waits, least=least)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)

@@ -3,7 +3,7 @@
 Drift is slower than a hand that wants something. While nobody moves the arm, changes up to the speed of drift are subtracted,
 unless the joints measure them, too: else a hand that rests on the arm would count as drift, and would seem to push the other
 way when it lets go. What was subtracted just before the arm moves is added again, because a hand pushes a little before the
-joints show it (rollback). A sensor that steps is not used any more (`pendant.guided.sensor_steps`).
+joints show it (rollback). A sensor that steps is not used any more: how likely that is, the estimator says.
 """
 
 import math
@@ -11,7 +11,7 @@ from collections import deque
 from typing import NamedTuple
 
 from pendant.events.event import Event, Kind
-from pendant.guided.sensor_steps import ANSWER, MOVED, Steps
+from pendant.guided.odds import KNOWN
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
@@ -40,6 +40,12 @@ QUIET = 0.7
 
 SLOWLY, SLOWLY_TURN = 0.0133, 0.001
 """And so much for each second since it was last followed [N/s, N·m/s]: so fast a sensor drifts by itself (assets/robots/)."""
+
+ANSWER = 0.3
+"""Share of a change from which on it is a hand's, for the joints feel it; of a sensor's only the help for it, the other way."""
+
+MOVED = 0.03
+"""A joint that is faster is moved by somebody [rad/s]."""
 
 SMOOTH = 1.0 / WINDOW
 """Weight of a tick in what the joints feel: their mean over a window."""
@@ -164,20 +170,20 @@ class SensorBias:
         drifted: what the sensor drifted by since, axes of F [N, N·m]; None: nothing was subtracted yet.
     """
 
-    __slots__ = ("_drift", "_felt", "_since", "_steps", "baseline", "drifted", "used")
+    __slots__ = ("_drift", "_felt", "_since", "baseline", "drifted", "used")
 
     def __init__(self) -> None:
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench | None = None
-        self._drift, self._steps = BiasFollower(), Steps()
+        self._drift = BiasFollower()
         self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), None
-        self._drift, self._steps, self._since = BiasFollower(estimate.tick), Steps(), estimate.tick
+        self._drift, self._since = BiasFollower(estimate.tick), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
@@ -201,7 +207,7 @@ class SensorBias:
         """Of what is told at the flange now."""
         return self._drift.slack(estimate.tick)
 
-    def step(self, estimate: Estimate, hand: UserForce, mean: WrenchMean, waits: bool) -> Event | None:
+    def step(self, estimate: Estimate, hand: UserForce, mean: WrenchMean, *, waits: bool, least: float) -> Event | None:
         """One tick of free-drive with a valid sensor: its drift is subtracted.
 
         One that steps, or has drifted far, is not used any more; that is returned.
@@ -211,14 +217,14 @@ class SensorBias:
             hand: after its step.
             mean: of F_user.
             waits: nobody is known to move the arm.
+            least: a hand's force is at least so large [N], so that a smaller step moves nothing.
         """
         x, y, z = estimate.F_joints.tolist()
         fx, fy, fz = self._felt
         self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
-        stepped = self._steps.step(estimate, hand)
-        if stepped is not None:
+        if estimate.step_odds >= KNOWN and estimate.step_force >= least:
             self.leave()
-            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": norm(stepped)})
+            return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.step_force})
         if not waits:
             self._drift.pause()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.

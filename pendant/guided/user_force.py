@@ -38,12 +38,8 @@ ON_A_LINK = 5.0
 CARRIED = 4.0
 """Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
 
-STANDS_OUT = 3.0
-"""A step of the force is at least so many times as large as its fluctuation lately, root mean square: a heavy load that swings on
-the arm's springs makes some newtons."""
-
 LATELY = 0.1
-"""Time constant of the force and its fluctuation lately [s]."""
+"""Time constant of the force lately [s]."""
 
 _LATELY = 1.0 - math.exp(-TICK / LATELY)
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
@@ -62,7 +58,6 @@ class UserForce:
         "_residual",
         "_slow",
         "_slow_joints",
-        "_spread",
         "_up",
         "change",
         "payload",
@@ -85,7 +80,6 @@ class UserForce:
         self._baseline = turned_back(flat(estimate.R_BF), offset)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
         self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
-        self._spread = 0.0  # mean square of what the change lately was off its mean [N²]
         self._by_sensor: Vector = ORIGIN
         self._by_joints: Vector = ORIGIN
         self.user: Vector = ORIGIN  # the user's force, axes of B [N]
@@ -103,10 +97,6 @@ class UserForce:
         x, y, z = force
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
-
-    def stands_out(self, step: Vector) -> bool:
-        """Whether a step of the force at the flange [N] is larger than it fluctuates."""
-        return dot(step, step) >= STANDS_OUT * STANDS_OUT * self._spread
 
     def step(self, estimate: Estimate, use_wrench: bool) -> None:
         """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
@@ -134,7 +124,6 @@ class UserForce:
             self.change = (x, y, z)
             bx, by, bz = self.usual
             bx, by, bz = x - bx, y - by, z - bz
-            self._spread += _LATELY * (bx * bx + by * by + bz * bz - self._spread)
             self.usual = (x - (1.0 - _LATELY) * bx, y - (1.0 - _LATELY) * by, z - (1.0 - _LATELY) * bz)
             self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow

@@ -151,7 +151,7 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         known.energy = self._energy(rigid.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
-        known.step_odds = self.wrench.stepped
+        known.step_odds, known.step_force = self.wrench.stepped, self.wrench.step
         return known
 
     def _energy(self, links: Array) -> float:

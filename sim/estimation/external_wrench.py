@@ -54,6 +54,7 @@ class ExternalWrench:
             is not enough, or nothing that a hand does not do as well.
         share: of the payload that is gone then.
         stepped: log of the odds that the sensor stepped, against all else: the same.
+        step: force of the likeliest step [N].
     """
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
@@ -89,6 +90,7 @@ class ExternalWrench:
             lost=(),
             share=(),
             stepped=(),
+            step=(),
         )
         own = self._own = self.record[0]
         force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
@@ -113,6 +115,11 @@ class ExternalWrench:
     def stepped(self) -> float:
         """As the class says."""
         return float(self._own["stepped"])
+
+    @property
+    def step(self) -> float:
+        """As the class says."""
+        return float(self._own["step"])
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
@@ -204,7 +211,7 @@ def _weigh(own, here, bias) -> None:
         earlier += own.ahead[(here - age) % KEPT]
     # A hand changed as likely as not.
     other, lost, stepped = earlier + LN_ONSETS, -np.inf, -np.inf
-    gone = -np.inf  # the likeliest of these
+    gone = jumped = -np.inf  # the likeliest of these
     earlier -= own.ahead[here]
     other = both(other, earlier + change)  # it came now: by what, no tick can tell yet
     for length in range(1, LONGEST + 1):
@@ -234,7 +241,10 @@ def _weigh(own, here, bias) -> None:
             total = both(both(total, nobody(own, seen, length, late)), both(rising, steady))
         any_step, size = sudden(own, seen, (length, before))
         other = both(both(other, known + total), known + any_step - LN_RARE)
-        stepped = both(stepped, known + any_step + unanswered(own, first, size))
+        likelihood = known + any_step + unanswered(own, first, size)
+        stepped = both(stepped, likelihood)
+        if likelihood > jumped:
+            jumped, own.step = likelihood, size
         if own.mass > 0.0:
             for kind in (LOST, FREED, MORE):
                 likelihood, carried, share = payload(own, seen, (length, before, steep), kind)

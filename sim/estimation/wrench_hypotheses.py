@@ -37,7 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.guided.endings import TOUCH as A_TOUCH
+from pendant.guided.odds import TOUCH as A_TOUCH
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
 from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN

@@ -8,7 +8,8 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
-from pendant.guided.endings import KNOWN, SUSPECTED, TOUCH, TOUCHES, Ending, EndingWatch, _torque, way_back
+from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
+from pendant.guided.odds import KNOWN, SUSPECTED, TOUCH, TOUCHES
 from pendant.guided.sensor_bias import SURE
 from pendant.guided.user_force import CARRIED, SWING, UserForce
 from pendant.guided.work import ASKED, LEFT

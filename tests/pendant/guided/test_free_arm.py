@@ -7,7 +7,7 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
-from pendant.guided.endings import KNOWN, SUSPECTED
+from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.guided.endings import KNOWN, SUSPECTED
+from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
