@@ -97,7 +97,8 @@ class Supervisor:
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
         self.containment = Containment(borders, frames or {})
-        self._free = FreeDrive(self._joints, rated, self.containment, JointZones(rated, ranges or (math.inf,) * n_joints))
+        sensor, zones = sensor or SensorSpec(), JointZones(rated, ranges or (math.inf,) * n_joints)
+        self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
         self._run = ProgramRun(self._robot, self._mean, n_joints)
@@ -106,7 +107,7 @@ class Supervisor:
             self._tooling, self._robot, self._mean, self._calls, containment=self.containment, shape=shape
         )
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
-        self._tare = TareRun(sensor or SensorSpec(), self._robot, run, tooling, haptics=self._haptics, readers=readers)
+        self._tare = TareRun(sensor, self._robot, run, tooling, haptics=self._haptics, readers=readers)
         self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting, settings=settings)
         self._refresh()
 

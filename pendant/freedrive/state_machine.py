@@ -15,6 +15,7 @@ from pendant.guided.free_arm import FreeArm
 from pendant.guided.pull import PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.limits.joint_zones import JointZones
+from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
 from pendant.signals.sources import Presence
 from pendant.tick.limit_engine import Monitored
@@ -57,19 +58,28 @@ class FreeDrive:
         "pull",
     )
 
-    def __init__(self, joints: tuple[str, ...], rated: tuple[float, ...], containment: Containment, zones: JointZones) -> None:
+    def __init__(
+        self,
+        joints: tuple[str, ...],
+        rated: tuple[float, ...],
+        containment: Containment,
+        zones: JointZones,
+        *,
+        sensor: SensorSpec,
+    ) -> None:
         """
         Args:
             joints: the names used in events, base to flange.
             rated: torque of each joint [N·m].
             containment: walls and areas.
             zones: before the joint limits.
+            sensor: what is known of the flange force/torque sensor.
         """
         self.phase = Phase.OFF
         self._joints, self._rated = joints, rated
         self._containment, self._zones = containment, zones
         self._gate = Gate()
-        self._bias = SensorBias()
+        self._bias = SensorBias(sensor)
         self._activation = Activation(joints, rated, containment, self._bias)
         self._verdict = SequenceVerdict()
         self.arm: FreeArm | None = None

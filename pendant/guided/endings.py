@@ -19,6 +19,7 @@ from pendant.limits.soft_limits import Damping, SoftLimits
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
 
+
 class Ending(NamedTuple):
     """Why free-drive ends."""
 

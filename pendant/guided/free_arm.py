@@ -71,7 +71,7 @@ class FreeArm:
         """
         estimate = around.estimate
         self._bias, self._containment, self._zones = bias, containment, zones
-        self._hand = UserForce(estimate, around.mean.mean())
+        self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
         self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
@@ -99,11 +99,11 @@ class FreeArm:
         if bias.used and not around.wrench_ok:
             bias.leave()
             events.append(Event(Kind.WRENCH_LOST, tick))
-        hand.step(estimate, bias.used)
+        hand.step(estimate, bias.used, settings.unexplained.speed)
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
             least = settings.unexplained.force + bias.slack(estimate).force
-            told = bias.step(estimate, hand, around.mean, waits=waits, least=least)
+            told = bias.step(estimate, hand, around.mean, waits=waits, still=around.still.count > 0, least=least)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)

@@ -15,37 +15,20 @@ from pendant.guided.odds import KNOWN
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.sensor.sensor_spec import SensorSpec
+from pendant.sensor.taring import LEVER
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned
 
 SLOW = 3.0
-"""So fast may a force drift [N/s]."""
+"""So fast may a force drift [N/s]; torques drift by `LEVER` times as much."""
 
-SLOW_TURN = 0.6
-"""And a torque [N·m/s]."""
-
-NOISY, NOISY_TURN = 0.5, 0.1
-"""What of a change was too fast waits for the next windows up to so much [N, N·m], for it may be noise; more is a hand's."""
-
-FAR, FAR_TURN = 4.0, 1.0
-"""A sensor that has drifted so far beyond what it does by itself [N, N·m] is not used any more: it is not so good as it should
-be, or a hand presses slowly on an arm that does not move, and would seem to push the other way when it lets go."""
-
-FELT = 1.0
-"""From so large a change on [N] the joints are asked: of less they cannot tell."""
-
-QUIET = 0.7
-"""No drift begins with more than this [N]: an arm that comes to rest with more of a force is held by a hand."""
-
-SLOWLY, SLOWLY_TURN = 0.0133, 0.001
-"""And so much for each second since it was last followed [N/s, N·m/s]: so fast a sensor drifts by itself (assets/robots/)."""
+NOISY = 0.5
+"""What of a change was too fast waits for the next windows up to so much [N], for it may be noise; more is a hand's."""
 
 ANSWER = 0.3
 """Share of a change from which on it is a hand's, for the joints feel it; of a sensor's only the help for it, the other way."""
-
-MOVED = 0.03
-"""A joint that is faster is moved by somebody [rad/s]."""
 
 SMOOTH = 1.0 / WINDOW
 """Weight of a tick in what the joints feel: their mean over a window."""
@@ -71,10 +54,15 @@ class BiasFollower:
         lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "lately")
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "lately")
 
-    def __init__(self, tick: int = 0) -> None:
-        """`tick` of now."""
+    def __init__(self, sensor: SensorSpec, tick: int = 0) -> None:
+        """
+        Args:
+            sensor: what is known of it.
+            tick: of now.
+        """
+        self._sensor = sensor
         self._quiet = tick  # when it was last followed
         self._count = 0
         self._followed: Wrench | None = None
@@ -99,16 +87,21 @@ class BiasFollower:
     def slack(self, tick: int) -> Slack:
         """At this tick."""
         seconds = TICK * (tick - self._quiet)
-        return Slack(SLOWLY * seconds, SLOWLY_TURN * seconds)
+        return Slack(self._sensor.drift_force * seconds, self._sensor.drift_torque * seconds)
 
-    def begin(self, apart: Wrench, tick: int) -> Wrench | None:
-        """The arm has come to rest, and feels so much beyond the baseline, axes of F [N, N·m].
+    def begin(self, apart: Wrench, tick: int, least: float) -> Wrench | None:
+        """The arm has come to rest.
+
+        Args:
+            apart: it feels so much beyond the baseline, axes of F [N, N·m].
+            tick: of now.
+            least: a hand's force is at least so large, with what the sensor may have drifted by [N].
 
         Returns:
             What of it the sensor drifted by while the arm was moved; None while a hand holds the arm.
         """
-        force, slack = norm((apart[0], apart[1], apart[2])), self.slack(tick)
-        if force > QUIET + slack.force:
+        slack = self.slack(tick)
+        if norm((apart[0], apart[1], apart[2])) >= least:
             return None
         self._quiet = tick
         return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
@@ -128,10 +121,13 @@ class BiasFollower:
         self._count = self._count % WINDOW + 1
         return self._count == 1
 
-    def step(self, mean: Wrench, felt: Vector) -> Wrench | None:
-        """The mean of the last window, and the force that the joints felt in it, axes of B [N, N·m]: what is to be subtracted.
+    def step(self, mean: Wrench, felt: Vector, least: float) -> Wrench | None:
+        """One window. Returns what is to be subtracted; None for the first one, and for what the joints feel as well.
 
-        None for the first one, and for what the joints feel as well.
+        Args:
+            mean: of it, axes of B [N, N·m].
+            felt: mean of the force that the joints felt in it, axes of B [N].
+            least: a hand's force is at least so large [N]: of less the joints cannot tell.
         """
         force: Vector = (mean[0], mean[1], mean[2])
         if self._followed is None:
@@ -139,13 +135,13 @@ class BiasFollower:
             return None
         since, answer = _less(force, self._began), _less(felt, self._felt)
         size = dot(since, since)
-        if size >= FELT * FELT and dot(since, answer) >= ANSWER * size:
+        if size >= least * least and dot(since, answer) >= ANSWER * size:
             return None
         change = [now - then for now, then in zip(mean, self._followed, strict=True)]
         time = WINDOW * TICK
-        gone = (*_within(change[:3], SLOW * time), *_within(change[3:], SLOW_TURN * time))
+        gone = (*_within(change[:3], SLOW * time), *_within(change[3:], LEVER * SLOW * time))
         rest = [whole - part for whole, part in zip(change, gone, strict=True)]
-        later = (*_within(rest[:3], NOISY), *_within(rest[3:], NOISY_TURN))
+        later = (*_within(rest[:3], NOISY), *_within(rest[3:], LEVER * NOISY))
         self._followed = tuple([now - part for now, part in zip(mean, later, strict=True)])
         return gone
 
@@ -168,22 +164,24 @@ class SensorBias:
         used: the flange sensor is; it was valid in every tick since.
         baseline: F_user in the beginning, and what the sensor drifted by, axes of F [N, N·m]; zeros without the sensor.
         drifted: what the sensor drifted by since, axes of F [N, N·m]; None: nothing was subtracted yet.
+        sensor: what is known of it.
     """
 
-    __slots__ = ("_drift", "_felt", "_since", "baseline", "drifted", "used")
+    __slots__ = ("_drift", "_felt", "_since", "baseline", "drifted", "sensor", "used")
 
-    def __init__(self) -> None:
+    def __init__(self, sensor: SensorSpec) -> None:
+        self.sensor = sensor
         self.used = False
         self.baseline: Wrench = ZEROS
         self.drifted: Wrench | None = None
-        self._drift = BiasFollower()
+        self._drift = BiasFollower(sensor)
         self._since = 0  # tick of the beginning
         self._felt: Vector = ORIGIN  # by the joints, mean over a window, axes of B [N]
 
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), None
-        self._drift, self._since = BiasFollower(estimate.tick), estimate.tick
+        self._drift, self._since = BiasFollower(self.sensor, estimate.tick), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
@@ -207,7 +205,9 @@ class SensorBias:
         """Of what is told at the flange now."""
         return self._drift.slack(estimate.tick)
 
-    def step(self, estimate: Estimate, hand: UserForce, mean: WrenchMean, *, waits: bool, least: float) -> Event | None:
+    def step(
+        self, estimate: Estimate, hand: UserForce, mean: WrenchMean, *, waits: bool, still: bool, least: float
+    ) -> Event | None:
         """One tick of free-drive with a valid sensor: its drift is subtracted.
 
         One that steps, or has drifted far, is not used any more; that is returned.
@@ -217,6 +217,7 @@ class SensorBias:
             hand: after its step.
             mean: of F_user.
             waits: nobody is known to move the arm.
+            still: no joint moves.
             least: a hand's force is at least so large [N], so that a smaller step moves nothing.
         """
         x, y, z = estimate.F_joints.tolist()
@@ -228,25 +229,28 @@ class SensorBias:
         if not waits:
             self._drift.pause()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.
-            if self._drift.lately and any(abs(speed) > MOVED for speed in estimate.qd.tolist()):
+            if self._drift.lately and not still:
                 for taken in self._drift.give_back():
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
             now = mean.mean()
             if not self._drift.begun:
                 apart = [value - part for value, part in zip(in_flange(estimate, now), self.baseline, strict=True)]
-                meanwhile = self._drift.begin(tuple(apart), estimate.tick)
+                meanwhile = self._drift.begin(tuple(apart), estimate.tick, least)
                 if meanwhile is None:
                     return None
                 self._take_off(meanwhile, hand)
-            gone = self._drift.step(now, self._felt)
+            gone = self._drift.step(now, self._felt, least)
             if gone is not None:
                 gone = in_flange(estimate, gone)
                 self._drift.keep(gone)
                 x, y, z, a, b, c = self._take_off(gone, hand)
                 far, turn = norm((x, y, z)), norm((a, b, c))
-                seconds = TICK * (estimate.tick - self._since)
-                if far >= FAR + SLOWLY * seconds or turn >= FAR_TURN + SLOWLY_TURN * seconds:
+                # So far a good one does not; or a hand presses slowly on an arm at rest, and would seem to push the other way
+                # when it lets go.
+                sensor, seconds = self.sensor, TICK * (estimate.tick - self._since)
+                most = sensor.offset_force + sensor.drift_force * seconds
+                if far >= most or turn >= LEVER * sensor.offset_force + sensor.drift_torque * seconds:
                     self.leave()
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None

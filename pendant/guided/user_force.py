@@ -14,20 +14,17 @@ from pendant.tick.pose import ORIGIN, Vector, dot, flat, norm, turned_back
 SETTLING = 1.5
 """Time constant with which a change along gravity becomes payload-like [s]: a sensor that drifts by 2 N/s stays below 3 N."""
 
-LED, LED_SETTLING = 0.02, 4.0
-"""While the flange is faster than this [m/s] that takes longer [s]: a hand may lead the arm gently up or down for seconds."""
+LED_SETTLING = 4.0
+"""While the flange moves that takes longer [s]: a hand may lead the arm gently up or down for seconds."""
 
 SWING = 0.05
 """Time constant that takes the arm's own swinging off what the flange sensor feels [s]: a hand's push lasts longer."""
-
-OFFSET = 4.0
-"""Largest offset of the flange sensor [N]; what is beyond along gravity is a payload's, which does not turn with the flange."""
 
 DOUBT = 0.5
 """Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia and is no user force."""
 
 JOINTS_SWING = 0.1
-"""Time constant that takes an arm's own swinging off what the joints feel [s]."""
+"""Time constant that takes an arm's own swinging off what the joints feel, and of the force lately [s]."""
 
 FELT_BY_JOINTS = 10.0
 """A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
@@ -38,10 +35,6 @@ ON_A_LINK = 5.0
 CARRIED = 4.0
 """Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
 
-LATELY = 0.1
-"""Time constant of the force lately [s]."""
-
-_LATELY = 1.0 - math.exp(-TICK / LATELY)
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
 
 
@@ -65,19 +58,20 @@ class UserForce:
         "usual",
     )
 
-    def __init__(self, estimate: Estimate, baseline: tuple[float, ...]) -> None:
+    def __init__(self, estimate: Estimate, baseline: tuple[float, ...], offset: float) -> None:
         """
         Args:
             estimate: of the tick of entry; its joint values are finite.
             baseline: mean of F_user before it, axes of B [N, N·m]; zeros without a sensor.
+            offset: of the flange sensor at most [N]; what is beyond along gravity is a payload's, which does not turn with it.
         """
         self._up = upward(estimate.g_B.tolist())
         force: Vector = (baseline[0], baseline[1], baseline[2])
         self._residual = dot(force, self._up)
-        self._payload = self._residual - min(max(self._residual, -OFFSET), OFFSET)
+        self._payload = self._residual - min(max(self._residual, -offset), offset)
         self._doubt = DOUBT * abs(self._payload)
-        offset = _less(force, self._payload, self._up)
-        self._baseline = turned_back(flat(estimate.R_BF), offset)  # an offset of the sensor turns with the flange
+        beside = _less(force, self._payload, self._up)
+        self._baseline = turned_back(flat(estimate.R_BF), beside)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
         self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
         self._by_sensor: Vector = ORIGIN
@@ -98,11 +92,14 @@ class UserForce:
         ox, oy, oz = self._baseline
         self._baseline = (ox + x, oy + y, oz + z)
 
-    def step(self, estimate: Estimate, use_wrench: bool) -> None:
-        """One tick; its joint values are finite. Without a valid sensor the joints alone tell."""
+    def step(self, estimate: Estimate, use_wrench: bool, moves: float) -> None:
+        """One tick; its joint values are finite. Without a valid sensor the joints alone tell.
+
+        The flange moves from this speed on [m/s].
+        """
         ux, uy, uz = self._up
         x, y, z, _, _, _ = estimate.v_F.tolist()
-        settle = _SLOWER if x * x + y * y + z * z > LED * LED else _SLOW
+        settle = _SLOWER if x * x + y * y + z * z > moves * moves else _SLOW
         x, y, z = estimate.F_joints.tolist()
         x0, y0, z0 = self._felt
         x, y, z = x - x0, y - y0, z - z0
@@ -124,7 +121,7 @@ class UserForce:
             self.change = (x, y, z)
             bx, by, bz = self.usual
             bx, by, bz = x - bx, y - by, z - bz
-            self.usual = (x - (1.0 - _LATELY) * bx, y - (1.0 - _LATELY) * by, z - (1.0 - _LATELY) * bz)
+            self.usual = (x - (1.0 - _JOINTS) * bx, y - (1.0 - _JOINTS) * by, z - (1.0 - _JOINTS) * bz)
             self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow
             sx, sy, sz = self._by_sensor

@@ -2,9 +2,14 @@
 
 import numpy as np
 
+from pendant.all_settings import Settings
+from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 
 N = 6
+SENSOR = SensorSpec()
+HAND, MOVES = Settings().unexplained.force, Settings().unexplained.speed
+"""From these on a force counts as a hand's [N], and the flange as moving [m/s]."""
 
 
 def estimate(

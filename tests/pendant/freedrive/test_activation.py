@@ -19,7 +19,7 @@ from pendant.tick.modes import Law, Mode, Phase
 from pendant.walls.containment import Containment
 from pendant.walls.definitions import Start
 from pendant.walls.settings import WallSettings
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import SENSOR, estimate
 from tests.pendant.freedrive.test_sequence import around
 from tests.pendant.freedrive.test_state_machine import HOLD, JOINTS, LET_GO, Bench, remaining
 from tests.pendant.telling import whole_transition
@@ -44,7 +44,7 @@ class Alone:
 
     def __init__(self, **changes: float | bool) -> None:
         self.settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
-        self.walls, self.zero = Begun(), SensorBias()
+        self.walls, self.zero = Begun(), SensorBias(SENSOR)
         self.activation = Activation(JOINTS, (100.0,) * 6, self.walls, self.zero)
         self.gate = Gate()
         self.tick = -1

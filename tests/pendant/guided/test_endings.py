@@ -19,7 +19,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import Vector, Wrench
 from pendant.tick.state import state_of
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import MOVES, SENSOR, estimate
 from tests.pendant.telling import whole
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
@@ -36,14 +36,14 @@ class Free:
 
     def __init__(self, baseline: tuple[float, ...] = ZEROS, held: float = 0.0, **changes: float | bool) -> None:
         settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
-        self.hand = UserForce(estimate(), baseline)
+        self.hand = UserForce(estimate(), baseline, SENSOR.offset_force)
         self.operation, self.baseline = EndingWatch(estimate(), settings, joints=JOINTS, rated=RATED, held=held), baseline
         self.ticks, self.slack = 0, SURE
 
     def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False, drifted: Wrench = ZEROS) -> Ending | None:
         """`slack` is set where a test wants some."""
         self.ticks += 1
-        self.hand.step(value, use_wrench)
+        self.hand.step(value, use_wrench, MOVES)
         baseline = tuple([a + b for a, b in zip(self.baseline, drifted, strict=True)]) if use_wrench else None
         return self.operation.step(value, self.hand, baseline=baseline, driven=driven, slack=self.slack)
 
@@ -203,7 +203,7 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
 def test_what_a_joint_felt_at_entry_is_no_hand() -> None:
     settings = Settings()
     operation = EndingWatch(elbow(5.0), settings, joints=JOINTS, rated=RATED, held=0.0)
-    hand = UserForce(elbow(5.0), ZEROS)
+    hand = UserForce(elbow(5.0), ZEROS, SENSOR.offset_force)
     assert any(operation.step(elbow(5.0), hand, baseline=ZEROS, driven=False) for _ in range(151))
 
 

@@ -11,7 +11,6 @@ from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias
-from pendant.guided.sensor_steps import LATER
 from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
@@ -23,7 +22,7 @@ from pendant.walls.containment import Containment
 from pendant.walls.definitions import AnyBorder, Area
 from pendant.walls.settings import Reaction
 from pendant.walls.shapes import HalfSpace
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import SENSOR, estimate
 from tests.pendant.telling import whole_transition
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
@@ -39,7 +38,7 @@ class Free:
     def __init__(self, *borders: AnyBorder, sensor: bool = True, payload: float = 0.0, **changes: float | bool) -> None:
         off = {"walls.tether": False, "unexplained.time": ALONE}
         self.settings = apply(Settings(), off | {name.replace("__", "."): value for name, value in changes.items()})
-        self.zero, self.mean, self.payload, self.tick = SensorBias(), WrenchMean(), payload, 0
+        self.zero, self.mean, self.payload, self.tick = SensorBias(SENSOR), WrenchMean(), payload, 0
         self.zero.begin(estimate(), sensor, self.mean)
         containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
         self.arm = FreeArm(
@@ -98,7 +97,7 @@ def test_without_joint_values_it_cannot_go_on() -> None:
 def test_the_flange_sensor_tells_the_users_force_while_it_is_used(sensor: bool) -> None:
     free, value = Free(sensor=sensor), estimate(force=[5.0, 20.0, -3.0])
     assert free.see(value) == []
-    expected = UserForce(estimate(), (0.0,) * 6)
+    expected = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
     expected.step(value, sensor)
     assert free.arm.user == expected.user
     assert (free.arm.user != ORIGIN) is sensor
@@ -115,9 +114,10 @@ def test_a_sensor_that_steps_is_told_while_it_is_used_and_watched(watched: bool,
     """FD-19."""
     free = Free(sensor=sensor, unexplained__sensor=watched)
     free.during(2, estimate())
-    step = [0.0, 0.0, 20.0]
-    events = free.see(estimate(force=step)) + free.during(LATER + 3, estimate(force=step, felt=[0.0, 0.0, -10.0]))
-    told = [Event(Kind.SENSOR_STEPPED, 3 + LATER, {"force": pytest.approx(20.0)})]
+    value = estimate(force=[0.0, 0.0, 20.0])
+    value.step_odds, value.step_force = KNOWN, 20.0
+    events = free.see(value) + free.see(value)
+    told = [Event(Kind.SENSOR_STEPPED, 3, {"force": 20.0})]
     assert events == (told if watched and sensor else [])
 
 

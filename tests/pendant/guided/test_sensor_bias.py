@@ -4,30 +4,19 @@ import numpy as np
 import pytest
 
 from pendant.events.event import Kind
-from pendant.guided.sensor_bias import (
-    BEGINS,
-    FAR,
-    FAR_TURN,
-    FELT,
-    QUIET,
-    SLOW,
-    SLOW_TURN,
-    SLOWLY,
-    SLOWLY_TURN,
-    BiasFollower,
-    SensorBias,
-)
-from pendant.guided.sensor_steps import ANSWER, LATER, MOVED
+from pendant.guided.odds import KNOWN
+from pendant.guided.sensor_bias import ANSWER, BEGINS, SLOW, BiasFollower, SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.validity import WrenchMean
+from pendant.sensor.taring import LEVER
+from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Phase
 from pendant.tick.pose import ORIGIN
 from pendant.tick.state import state_of
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import HAND, MOVES, SENSOR, estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
-PUSHED = (0.0, 0.0, -5.0)  # by the help, felt by the joints against the step
 WINDOW = 0.1  # [s]
 TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
 
@@ -36,24 +25,24 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF 
     ("change", "gone"),
     [
         ((0.1, -0.2, 0.05, 0.01, 0.0, -0.02), (0.1, -0.2, 0.05, 0.01, 0.0, -0.02)),
-        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, SLOW_TURN * WINDOW)),
+        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, LEVER * SLOW * WINDOW)),
         ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOW * WINDOW, 0.0, 0.8 * SLOW * WINDOW, 0.0, 0.0, 0.0)),
     ],
 )
 def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
-    drift = BiasFollower()
+    drift = BiasFollower(SENSOR)
     start = (5.0, 1.0, -2.0, 0.1, 0.2, 0.3)
-    assert drift.step(start, ORIGIN) is None
-    assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN) == pytest.approx(gone)
+    assert drift.step(start, ORIGIN, HAND) is None
+    assert drift.step(tuple(np.add(start, change).tolist()), ORIGIN, HAND) == pytest.approx(gone)
     drift.restart()
-    assert drift.step(start, ORIGIN) is None
+    assert drift.step(start, ORIGIN, HAND) is None
 
 
 def test_a_mean_is_wanted_once_a_window() -> None:
-    drift = BiasFollower()
+    drift = BiasFollower(SENSOR)
     wanted = [drift.due() for _ in range(151)]
     assert [k for k, due in enumerate(wanted) if due] == [0, 50, 100, 150]
-    assert state_of(drift) != state_of(BiasFollower())
+    assert state_of(drift) != state_of(BiasFollower(SENSOR))
 
 
 def drifting(seconds: float, rate: float = 2.0, start: float = 0.0, **changes: float | bool) -> Bench:
@@ -71,12 +60,12 @@ def test_a_drift_in_the_period_goes_into_the_baseline() -> None:
 
 
 def test_only_the_last_windows_are_given_back() -> None:
-    drift = BiasFollower()
+    drift = BiasFollower(SENSOR)
     assert drift.give_back() == []
     gone = [(0.1 * k, 0.0, 0.0, 0.0, 0.0, 0.01) for k in range(BEGINS + 3)]
     for each in gone:
         drift.keep(each)
-    assert state_of(drift) != state_of(BiasFollower())
+    assert state_of(drift) != state_of(BiasFollower(SENSOR))
     drift.restart()
     assert drift.give_back() == gone[-BEGINS:]
     assert drift.give_back() == []
@@ -94,20 +83,20 @@ def test_a_drift_never_counts_as_guiding_and_when_it_has_gone_far_the_sensor_is_
         assert not left or bench.last.baseline == (0.0,) * 6
     assert [event.kind for event in bench.events] == [Kind.SENSOR_DRIFTED, Kind.LEFT_PERIOD]
     told = bench.events[0].values
-    expected = {"force": 2.0, "torque": FAR_TURN} if torque else {"force": FAR, "torque": 0.0}
+    expected = {"force": 2.0, "torque": LEVER * SENSOR.offset_force} if torque else {"force": SENSOR.offset_force, "torque": 0.0}
     assert told == {name: pytest.approx(value, abs=0.21) for name, value in expected.items()}
-    assert told["torque" if torque else "force"] >= (FAR_TURN if torque else FAR)
+    assert told["torque" if torque else "force"] >= (LEVER * SENSOR.offset_force if torque else SENSOR.offset_force)
 
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_a_drift_turns_with_the_flange(turned: bool) -> None:
     R_BF = TURNED if turned else np.eye(3)
     before, after = estimate(), estimate(force=[0.1, -0.2, 0.05], torque=[0.01, -0.02, 0.03])
-    zero, mean, hand = SensorBias(), WrenchMean(), UserForce(before, (0.0,) * 6)
+    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(before, (0.0,) * 6, SENSOR.offset_force)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
-        zero.step(value, hand, mean, True)
+        zero.step(value, hand, mean, waits=True, still=True, least=HAND)
     assert zero.felt(after) == pytest.approx((0.0,) * 6)
     drifted = np.concatenate([R_BF @ zero.drifted[:3], R_BF @ zero.drifted[3:]])
     after.R_BF = R_BF
@@ -122,22 +111,22 @@ def test_a_drift_is_followed_through_the_sensors_noise() -> None:
     rng = np.random.default_rng(3)
     rate = np.array([0.0, 0.16, -0.12, 0.04, 0.0, 0.0])
     noise = np.array([0.15] * 3 + [0.015] * 3)
-    drift, gone = BiasFollower(), np.zeros(6)
+    drift, gone = BiasFollower(SENSOR), np.zeros(6)
     for window in range(300):
-        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN)
+        taken = drift.step(tuple((window * rate + noise * rng.normal(size=6)).tolist()), ORIGIN, HAND)
         gone += taken or (0.0,) * 6
     assert gone == pytest.approx(299 * rate, abs=1.0)
 
 
 @pytest.mark.parametrize(("size", "next_one"), [(0.3, 0.0), (0.5, 0.2), (0.8, 0.3), (1.1, 0.3), (20.0, 0.3)])
 def test_what_of_a_push_waits_for_the_next_windows_is_little(size: float, next_one: float) -> None:
-    """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque 0.06 and 0.1."""
-    drift = BiasFollower()
-    drift.step((0.0,) * 6, ORIGIN)
-    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -0.2 * size), ORIGIN) for _ in range(4)]
+    """Of a force that comes at once and stays, 0.3 N in its window, and 0.5 N in the two after it; of a torque a fifth."""
+    drift = BiasFollower(SENSOR)
+    drift.step((0.0,) * 6, ORIGIN, HAND)
+    taken = [drift.step((0.0, size, 0.0, 0.0, 0.0, -LEVER * size), ORIGIN, HAND) for _ in range(4)]
     force = [min(size, 0.3), next_one, min(max(size - 0.6, 0.0), 0.2), 0.0]
-    assert [step[1] for step in taken if step] == pytest.approx(force)
-    assert [-5.0 * step[5] for step in taken if step] == pytest.approx(force)
+    assert [step[1] for step in taken if step] == pytest.approx(force, abs=1e-12)
+    assert [-step[5] / LEVER for step in taken if step] == pytest.approx(force, abs=1e-12)
 
 
 @pytest.mark.parametrize("anew", [False, True], ids=["guided", "period anew"])
@@ -165,20 +154,41 @@ def test_where_the_arm_is_guided_nothing_is_taken_off() -> None:
     assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.5)
 
 
-def test_a_step_is_told_and_taken_off_in_the_robot() -> None:
+def stepped(odds: float, force: float) -> Estimate:
+    """The sensor feels so much more, and has stepped with these odds."""
+    value = estimate(force=[0.0, 0.0, force])
+    value.step_odds, value.step_force = odds, force
+    return value
+
+
+@pytest.mark.parametrize(
+    ("odds", "force", "told"), [(KNOWN, HAND, True), (KNOWN - 1e-9, 15.0, False), (KNOWN, HAND - 1e-9, False), (1e3, 15.0, True)]
+)
+def test_a_step_that_is_known_and_as_large_as_a_hands_force_ends_the_use_of_the_sensor(
+    odds: float, force: float, told: bool
+) -> None:
+    """FD-19."""
     bench = Bench().in_period()
     bench.run(50)
-    bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0]))
-    for _ in range(LATER):
-        bench.step(NOTHING, estimate(force=[0.0, 0.0, 15.0], felt=list(PUSHED)))
-    assert [event.kind for event in bench.events] == [Kind.MANIPULATION, Kind.SENSOR_STEPPED]
-    assert bench.events[-1].values == {"force": pytest.approx(15.0, abs=SLOW * WINDOW)}
-    assert (bench.last.baseline, bench.last.gain) == ((0.0,) * 6, 0.0)
+    bench.step(NOTHING, stepped(odds, force))
+    steps = [event for event in bench.events if event.kind is Kind.SENSOR_STEPPED]
+    assert [event.values for event in steps] == [{"force": force}] * told
+    assert (bench.last.gain == 0.0) is told
+    assert not told or bench.last.baseline == (0.0,) * 6
+
+
+def test_a_sensor_that_has_drifted_for_long_may_seem_to_step_by_more() -> None:
+    """What it may have drifted by while a hand moved the arm cannot be told from a hand's force either."""
+    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
+    zero.begin(estimate(), True, mean)
+    for force, told in ((2.0, False), (2.5, True)):
+        event = zero.step(stepped(KNOWN, force), hand, mean, waits=False, still=True, least=2.3)
+        assert (event is not None) is told
 
 
 def test_the_baseline_is_in_the_axes_of_the_flange() -> None:
     """As it was held in the beginning, and as it is turned when the sensor drifts."""
-    zero, mean, start = SensorBias(), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
+    zero, mean, start = SensorBias(SENSOR), WrenchMean(), estimate(force=[1.0, 2.0, 3.0], torque=[0.1, 0.2, 0.3])
     start.R_BF = TURNED
     mean.step(start)
     zero.begin(start, True, mean)
@@ -191,68 +201,71 @@ def test_the_baseline_is_in_the_axes_of_the_flange() -> None:
     assert bench.last.baseline[:3] == pytest.approx((0.0, -2.4, 0.0), abs=0.3)
 
 
-@pytest.mark.parametrize(("speed", "given_back"), [(MOVED, False), (1.001 * MOVED, True), (-1.001 * MOVED, True)])
-def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(speed: float, given_back: bool) -> None:
+@pytest.mark.parametrize("still", [True, False])
+def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(still: bool) -> None:
     force, torque = [0.1, -0.2, 0.05], [0.01, -0.02, 0.03]  # less than what may be drift in a window
-    before, after = estimate(), estimate(force=force, torque=torque, qd=speed)
+    before, after = estimate(), estimate(force=force, torque=torque)
     after.R_BF = TURNED  # since entry
-    zero, mean, hand = SensorBias(), WrenchMean(), UserForce(before, (0.0,) * 6)
+    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(before, (0.0,) * 6, SENSOR.offset_force)
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
-        assert zero.step(value, hand, mean, True) is None
+        assert zero.step(value, hand, mean, waits=True, still=True, least=HAND) is None
     gone = (-0.2, -0.1, 0.05, -0.02, -0.01, 0.03)  # axes of the flange, and of B at entry
     assert zero.baseline == pytest.approx(gone)
-    hand.step(after, True)
+    hand.step(after, True, MOVES)
     assert hand.change == pytest.approx((0.0,) * 3)
-    assert zero.step(after, hand, mean, False) is None
-    hand.step(after, True)
-    assert zero.baseline == pytest.approx((0.0,) * 6 if given_back else gone)
-    assert hand.change == pytest.approx(force if given_back else (0.0,) * 3)
+    assert zero.step(after, hand, mean, waits=False, still=still, least=HAND) is None
+    hand.step(after, True, MOVES)
+    assert zero.baseline == pytest.approx(gone if still else (0.0,) * 6)
+    assert hand.change == pytest.approx((0.0,) * 3 if still else force)
 
 
 def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
-    zero, mean = SensorBias(), WrenchMean()
+    zero, mean = SensorBias(SENSOR), WrenchMean()
     mean.step(estimate(force=3.0))
     zero.begin(estimate(), True, mean)
     assert (zero.used, zero.baseline) == (True, (3.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     zero.leave()
-    assert state_of(zero) == state_of(SensorBias())
+    assert state_of(zero) == state_of(SensorBias(SENSOR))
 
 
 @pytest.mark.parametrize("axis", range(3))
 @pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
-@pytest.mark.parametrize(("size", "asked"), [(0.99 * FELT, False), (1.01 * FELT, True), (3.0, True)])
+@pytest.mark.parametrize(("size", "asked"), [(0.99 * HAND, False), (1.01 * HAND, True), (3.0, True)])
 def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
-    drift = BiasFollower()
+    drift = BiasFollower(SENSOR)
     force, felt = [0.0] * 6, [2.0, 3.0, 4.0]
-    drift.step(tuple(force), (2.0, 3.0, 4.0))
+    drift.step(tuple(force), (2.0, 3.0, 4.0), HAND)
     force[axis] += size
     felt[axis] += answer * size
-    taken = drift.step(tuple(force), (felt[0], felt[1], felt[2]))
+    taken = drift.step(tuple(force), (felt[0], felt[1], felt[2]), HAND)
     assert (taken is not None) is (follows or not asked)
 
 
-@pytest.mark.parametrize(("force", "held"), [(0.99 * QUIET, False), (1.01 * QUIET, True), (3.0, True)])
+@pytest.mark.parametrize(("force", "held"), [(0.99 * HAND, False), (1.01 * HAND, True), (3.0, True)])
 def test_an_arm_that_comes_to_rest_with_a_force_is_held_by_a_hand(force: float, held: bool) -> None:
-    assert (BiasFollower().begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0) is None) is held
+    assert (BiasFollower(SENSOR).begin((0.0, force, 0.0, 0.0, 0.0, 0.0), 0, HAND) is None) is held
 
 
 @pytest.mark.parametrize(("seconds", "held"), [(99.0, True), (101.0, False)])
 def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(seconds: float, held: bool) -> None:
-    drift, tick = BiasFollower(1000), 1000 + round(500 * seconds)
-    assert drift.slack(tick) == pytest.approx((SLOWLY * seconds, SLOWLY_TURN * seconds))
-    assert (drift.begin((QUIET + SLOWLY * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick) is None) is held
+    drift, tick = BiasFollower(SENSOR, 1000), 1000 + round(500 * seconds)
+    assert drift.slack(tick) == pytest.approx((SENSOR.drift_force * seconds, SENSOR.drift_torque * seconds))
+    least = HAND + drift.slack(tick).force
+    assert (drift.begin((HAND + SENSOR.drift_force * 100.0, 0.0, 0.0, 0.0, 0.0, 0.0), tick, least) is None) is held
     left = seconds if held else 0.0
-    assert drift.slack(tick) == pytest.approx((SLOWLY * left, SLOWLY_TURN * left))
+    assert drift.slack(tick) == pytest.approx((SENSOR.drift_force * left, SENSOR.drift_torque * left))
 
 
 def test_what_the_sensor_drifted_by_while_the_arm_was_moved_goes_into_the_zero() -> None:
     """As much as it can have drifted by in that time: 100 s, 1.33 N and 0.1 N·m."""
-    assert BiasFollower().begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000) == pytest.approx((0.3, 0.0, -0.4, 0.0, 0.05, 0.0))
-    taken = BiasFollower().begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000)
-    assert taken == pytest.approx((0.0, 100 * SLOWLY, 0.0, 0.0, 0.0, -100 * SLOWLY_TURN))
-    assert BiasFollower().begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0) == pytest.approx((0.0,) * 6)
+    assert BiasFollower(SENSOR).begin((0.3, 0.0, -0.4, 0.0, 0.05, 0.0), 50000, HAND) == pytest.approx(
+        (0.3, 0.0, -0.4, 0.0, 0.05, 0.0)
+    )
+    taken = BiasFollower(SENSOR).begin((0.0, 2.0, 0.0, 0.0, 0.0, -0.3), 50000, 2.33)
+    assert taken == pytest.approx((0.0, 100 * SENSOR.drift_force, 0.0, 0.0, 0.0, -100 * SENSOR.drift_torque))
+    assert BiasFollower(SENSOR).begin((0.5, 0.0, 0.0, 0.0, 0.0, 0.0), 0, HAND) == pytest.approx((0.0,) * 6)
 
 
 def test_a_sensor_that_drifts_while_a_hand_leads_the_arm_is_followed_when_it_goes() -> None:

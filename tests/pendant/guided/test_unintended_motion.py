@@ -14,7 +14,7 @@ from pendant.limits.parameters import reference
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import MOVES, SENSOR, estimate
 
 ZEROS = (0.0,) * 6
 FRICTION = 8.0  # of the elbow while it turns [N·m]
@@ -38,12 +38,15 @@ class Bench:
 
     def __init__(self, sensor: bool = True) -> None:
         start = at(0.0, 0.0)
-        self.alone, self.hand = UnintendedMotion(Settings().unexplained, reference(start, None)), UserForce(start, ZEROS)
+        self.alone, self.hand = (
+            UnintendedMotion(Settings().unexplained, reference(start, None)),
+            UserForce(start, ZEROS, SENSOR.offset_force),
+        )
         self.sensor, self.ticks = sensor, 0
 
     def see(self, value: Estimate, driven: bool = False) -> Values | None:
         self.ticks += 1
-        self.hand.step(value, self.sensor)
+        self.hand.step(value, self.sensor, MOVES)
         return self.alone.step(value, self.hand, use_wrench=self.sensor, driven=driven)
 
     def until(self, values: Iterable[Estimate]) -> Values | None:

@@ -10,12 +10,9 @@ from pendant.guided.user_force import (
     DOUBT,
     FELT_BY_JOINTS,
     JOINTS_SWING,
-    LED,
     LED_SETTLING,
-    OFFSET,
     ON_A_LINK,
     SETTLING,
-    STANDS_OUT,
     SWING,
     UserForce,
 )
@@ -23,20 +20,20 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
 from pendant.tick.state import state_of
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import MOVES, SENSOR, estimate
 
 ZEROS = (0.0,) * 6
 
 
 def after(hand: UserForce, seconds: float, value: Estimate, use_wrench: bool = True) -> Vector:
     for _ in range(round(seconds / TICK)):
-        hand.step(value, use_wrench)
+        hand.step(value, use_wrench, MOVES)
     return hand.user
 
 
 def test_what_the_sensor_felt_before_is_nobody_and_turns_with_the_flange() -> None:
     baseline = (3.0, -1.0, 2.0, 0.0, 0.0, 0.0)
-    hand = UserForce(estimate(), baseline)
+    hand = UserForce(estimate(), baseline, SENSOR.offset_force)
     assert after(hand, 1.0, estimate(force=[3.0, -1.0, 2.0])) == pytest.approx((0.0, 0.0, 0.0))
     assert hand.payload == pytest.approx((0.0, 0.0, 2.0))
     turned = estimate(force=[1.0, 3.0, 2.0])  # a quarter about z
@@ -46,21 +43,21 @@ def test_what_the_sensor_felt_before_is_nobody_and_turns_with_the_flange() -> No
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_what_is_too_much_for_an_offset_is_a_payloads_and_does_not_turn(sign: float) -> None:
-    hand = UserForce(estimate(), (0.0, 0.0, sign * 30.0, 0.0, 0.0, 0.0))
-    tipped = estimate(force=[sign * OFFSET, 0.0, sign * (30.0 - OFFSET)])
+    hand = UserForce(estimate(), (0.0, 0.0, sign * 30.0, 0.0, 0.0, 0.0), SENSOR.offset_force)
+    tipped = estimate(force=[sign * SENSOR.offset_force, 0.0, sign * (30.0 - SENSOR.offset_force)])
     tipped.R_BF = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])  # z of F along x of B
     assert after(hand, 1.0, tipped) == pytest.approx((0.0, 0.0, 0.0))
 
 
 def test_a_push_across_gravity_stays_the_users() -> None:
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     assert after(hand, SWING, estimate(force=20.0))[0] == pytest.approx(20.0 * (1.0 - math.exp(-1.0)), rel=1e-6)
     assert hand.change == (20.0, 0.0, 0.0)
     assert after(hand, 10.0, estimate(force=20.0)) == pytest.approx((20.0, 0.0, 0.0))
 
 
 def test_a_change_along_gravity_becomes_payload_like() -> None:
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     down = estimate(force=[0.0, 0.0, -20.0])
     assert after(hand, 0.1, down)[2] < -15.0
     after(hand, SETTLING - 0.1, down)
@@ -70,23 +67,23 @@ def test_a_change_along_gravity_becomes_payload_like() -> None:
 
 def test_while_the_arm_is_led_that_takes_longer() -> None:
     down = {"force": [0.0, 0.0, -2.0]}
-    slow, led = UserForce(estimate(), ZEROS), UserForce(estimate(), ZEROS)
-    after(slow, 2.0, estimate(speed=LED, **down))  # type: ignore[arg-type]
-    after(led, 2.0, estimate(speed=1.01 * LED, **down))  # type: ignore[arg-type]
+    slow, led = UserForce(estimate(), ZEROS, SENSOR.offset_force), UserForce(estimate(), ZEROS, SENSOR.offset_force)
+    after(slow, 2.0, estimate(speed=MOVES, **down))  # type: ignore[arg-type]
+    after(led, 2.0, estimate(speed=1.01 * MOVES, **down))  # type: ignore[arg-type]
     assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
     assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / LED_SETTLING)), rel=1e-3)
 
 
 def test_without_a_sensor_the_joints_tell_from_a_size_on() -> None:
-    hand = UserForce(estimate(felt=[5.0, 0.0, 0.0]), ZEROS)
+    hand = UserForce(estimate(felt=[5.0, 0.0, 0.0]), ZEROS, SENSOR.offset_force)
     assert after(hand, 2.0, estimate(felt=[4.0 + FELT_BY_JOINTS, 0.0, 0.0], force=50.0), use_wrench=False) == (0.0, 0.0, 0.0)
     assert after(hand, 2.0, estimate(felt=[25.0, 0.0, 0.0]), use_wrench=False) == pytest.approx((20.0, 0.0, 0.0), abs=1e-3)
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     assert after(hand, JOINTS_SWING, estimate(felt=100.0), use_wrench=False)[0] == pytest.approx(100.0 * (1 - math.exp(-1)))
 
 
 def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=3.0)) == pytest.approx((0.0, 20.0, 0.0), abs=1e-3)
     assert after(hand, 2.0, estimate(felt=[0.0, 20.0, 0.0], force=16.0)) == pytest.approx((16.0, 0.0, 0.0), abs=1e-3)
 
@@ -103,18 +100,18 @@ def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
 )
 def test_a_gentle_push_on_a_link_counts_while_the_sensor_feels_nothing(felt: float, force: float, user: str) -> None:
     """VW-5: the tether follows who leads the arm by its elbow; what falls from the flange, the sensor would feel."""
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     found = after(hand, 2.0, estimate(felt=[0.0, felt, 0.0], force=force))
     assert found == pytest.approx((0.0, felt, 0.0) if user == "joints" else (force, 0.0, 0.0), abs=1e-3)
 
 
 def test_without_a_sensor_a_gentle_push_on_a_link_does_not_count() -> None:
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     assert after(hand, 2.0, estimate(felt=[0.0, 0.9 * FELT_BY_JOINTS, 0.0]), use_wrench=False) == (0.0, 0.0, 0.0)
 
 
 def test_a_payload_that_the_joints_feel_is_payload_like() -> None:
-    hand = UserForce(estimate(), ZEROS)
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     after(hand, 20.0, estimate(felt=[0.0, 0.0, -18.0]), use_wrench=False)
     assert hand.payload == pytest.approx((0.0, 0.0, -18.0), abs=1e-3)
     assert hand.user == (0.0, 0.0, 0.0)
@@ -133,7 +130,7 @@ def share(time: float) -> float:
 def test_it_is_told_alike_however_base_flange_and_forces_lie(
     felt: float, force: float, use_wrench: bool, beforehand: float
 ) -> None:
-    """Against numpy: the base is tilted, the flange turns, the speed is now below `LED` and now above; 0.15 s."""
+    """Against numpy: the base is tilted, the flange turns, the speed is now below `MOVES` and now above; 0.15 s."""
     rng = np.random.default_rng(round(felt + force))
 
     def unit() -> np.ndarray:
@@ -146,15 +143,15 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
     first = estimate(felt=(5.0 * unit()).tolist())
     first.g_B, first.R_BF = -9.81 * up, attitude()
     before = beforehand * up + 2.0 * unit()
-    hand = UserForce(first, (*before.tolist(), 0.0, 0.0, 0.0))
+    hand = UserForce(first, (*before.tolist(), 0.0, 0.0, 0.0), SENSOR.offset_force)
     assert (hand.user, hand.change, hand.payload) == (ORIGIN,) * 3
     residual = before @ up
-    payload = residual - np.clip(residual, -OFFSET, OFFSET)
+    payload = residual - np.clip(residual, -SENSOR.offset_force, SENSOR.offset_force)
     offset = first.R_BF.T @ (before - payload * up)
     joints_feel, sensor_feels = felt * unit(), force * unit()
     for tick in range(75):
         now = estimate()
-        now.R_BF, now.v_F[:3] = attitude(), (0.9 if tick % 3 else 1.1) * LED * unit()
+        now.R_BF, now.v_F[:3] = attitude(), (0.9 if tick % 3 else 1.1) * MOVES * unit()
         now.F_joints = first.F_joints + joints_feel
         change = sensor_feels + 0.2 * unit()
         now.F_user[:3] = change + payload * up + now.R_BF @ offset
@@ -174,7 +171,7 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
         else:
             change_seen = np.zeros(3)
         counts = counts and np.linalg.norm(user) >= DOUBT * abs(payload)
-        hand.step(now, use_wrench)
+        hand.step(now, use_wrench, MOVES)
         assert hand.user == pytest.approx(user if counts else np.zeros(3))
         assert hand.change == pytest.approx(change_seen)
         assert hand.payload == pytest.approx(gone * up)
@@ -186,39 +183,24 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
         (FELT_BY_JOINTS, CARRIED, 0.0, "joints"),
         (ON_A_LINK, 0.0, 0.0, "joints"),
         (2.0 * FELT_BY_JOINTS, FELT_BY_JOINTS / share(SWING), 0.0, "sensor"),
-        (0.0, DOUBT * 20.0 / share(SWING), OFFSET + 20.0, "sensor"),
+        (0.0, DOUBT * 20.0 / share(SWING), SENSOR.offset_force + 20.0, "sensor"),
     ],
 )
 def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: float, user: str) -> None:
     """In one tick, from rest, which lets the limits themselves be reached."""
-    hand = UserForce(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0))
-    hand.step(estimate(felt=[0.0, felt / share(JOINTS_SWING), 0.0], force=[force, 0.0, before]), True)
+    hand = UserForce(estimate(), (0.0, 0.0, before, 0.0, 0.0, 0.0), SENSOR.offset_force)
+    hand.step(estimate(felt=[0.0, felt / share(JOINTS_SWING), 0.0], force=[force, 0.0, before]), True, MOVES)
     assert hand.user == ((0.0, felt, 0.0) if user == "joints" else (share(SWING) * force, 0.0, 0.0))
 
 
 def test_equal_histories_are_equal() -> None:
-    one, two = UserForce(estimate(), ZEROS), UserForce(estimate(), ZEROS)
+    one, two = UserForce(estimate(), ZEROS, SENSOR.offset_force), UserForce(estimate(), ZEROS, SENSOR.offset_force)
     assert state_of(one) == state_of(two)
-    one.step(estimate(force=1.0), True)
+    one.step(estimate(force=1.0), True, MOVES)
     assert state_of(one) != state_of(two)
 
 
 def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
-    hand = UserForce(estimate(), (0.0, 0.0, -OFFSET - 20.0, 0.0, 0.0, 0.0))
-    assert after(hand, 1.0, estimate(force=[9.0, 0.0, -OFFSET - 20.0])) == (0.0, 0.0, 0.0)
-    assert after(hand, 1.0, estimate(force=[11.0, 0.0, -OFFSET - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
-
-
-@pytest.mark.parametrize("axis", range(3))
-def test_a_step_stands_out_when_it_is_larger_than_the_force_fluctuates(axis: int) -> None:
-    """A load that swings by 2 N, some ticks long; nothing is known of a sensor that was quiet."""
-    hand = UserForce(estimate(), ZEROS)
-    assert hand.stands_out((0.1, 0.0, 0.0))
-    swings = [0.0] * 3
-    for tick in range(2000):
-        swings[axis] = 5.0 + 2.0 * math.sin(0.3 * tick)
-        hand.step(estimate(force=list(swings)), True)
-    step = [0.0] * 3
-    for share, stands_out in ((0.9, False), (1.1, True), (-1.1, True)):
-        step[axis] = share * STANDS_OUT * 2.0 / math.sqrt(2.0)
-        assert hand.stands_out((step[0], step[1], step[2])) is stands_out
+    hand = UserForce(estimate(), (0.0, 0.0, -SENSOR.offset_force - 20.0, 0.0, 0.0, 0.0), SENSOR.offset_force)
+    assert after(hand, 1.0, estimate(force=[9.0, 0.0, -SENSOR.offset_force - 20.0])) == (0.0, 0.0, 0.0)
+    assert after(hand, 1.0, estimate(force=[11.0, 0.0, -SENSOR.offset_force - 20.0])) == pytest.approx((11.0, 0.0, 0.0))

@@ -15,7 +15,7 @@ from pendant.limits.dynamic_limits import WHOLE
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import SoftLimits, hard
 from pendant.tick.state import state_of
-from tests.pendant.estimates import estimate
+from tests.pendant.estimates import SENSOR, estimate
 
 STILL = estimate()
 
@@ -127,7 +127,7 @@ def ended(speed: float, **changes: float | bool) -> Ending | None:
     now = estimate(load_mass=4.0, v_tcp=speed)
     operation = EndingWatch(now, settings, joints=tuple("abcdef"), rated=(100.0,) * 6, held=0.0)
     assert operation.damping is None
-    found = operation.step(now, UserForce(now, ZEROS), baseline=ZEROS, driven=False)
+    found = operation.step(now, UserForce(now, ZEROS, SENSOR.offset_force), baseline=ZEROS, driven=False)
     assert operation.damping is not None
     return found
 

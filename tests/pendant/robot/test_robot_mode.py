@@ -11,6 +11,7 @@ from pendant.limits.joint_zones import JointZones
 from pendant.program.sequencer import Sequencer
 from pendant.program.steps import AnyStep, HandGuide, Program, ProgramState, Wait
 from pendant.robot.robot_mode import Robot
+from pendant.sensor.sensor_spec import SensorSpec
 from pendant.signals.enabling_device import Grip
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.walls.containment import Containment
@@ -24,7 +25,7 @@ PAUSED = Event(Kind.PROGRAM_PAUSED, 7, {"name": "one step", "step": 1})
 
 def robot(step: AnyStep | None = None) -> Robot:
     """One that runs a program of one step, or none."""
-    made = Robot(FreeDrive(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED)), Sequencer())
+    made = Robot(FreeDrive(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED), sensor=SensorSpec()), Sequencer())
     if step is not None:
         made.sequencer.load(Program(name="one step", steps=(step,)))
         made.sequencer.start()
@@ -134,7 +135,7 @@ def test_an_arm_that_a_wall_keeps_is_held_in_free_drive() -> None:
         caught = True  # type: ignore[assignment]
 
     arm = robot()
-    arm.free = Caught(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED))
+    arm.free = Caught(JOINTS, RATED, Containment((), {}), JointZones(RATED, RATED), sensor=SensorSpec())
     told(arm.follow, ENTERED)
     assert arm.law() is Law.HOLD
     told(arm.follow, LEFT)
