@@ -99,7 +99,7 @@ class EndingWatch:
         """
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
         stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
-        self.suspect = max(odds, stepped) >= SUSPECTED
+        self.suspect = odds >= SUSPECTED or stepped >= -SUSPECTED
         if odds >= KNOWN:
             mass = estimate.lost_share * self._held
             return Ending(Kind.STOPPED_PAYLOAD, {"mass": -mass, "force": abs(mass) * GRAVITY})

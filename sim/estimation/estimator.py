@@ -24,6 +24,7 @@ from sim.estimation.joint_tracking import (
     tracking_gains,
 )
 from sim.estimation.momentum_observer import MomentumObserver
+from sim.estimation.step_answer import StepAnswer
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
@@ -82,6 +83,7 @@ class Estimator:
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(arm, self.forces)
+        self.answer = StepAnswer(arm.n, self.forces, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
         self.tick = 0
@@ -136,7 +138,9 @@ class Estimator:
         moving = self._estimate_torques(sample, use, learn)
         self._observe(sample, learn and moving)
         self.forces.update(sample, self.q, q, self.transmission.external)
-        self.wrench.update(bias if sample.wrench_valid else None, accelerations=sample.acceleration_valid)
+        bias = bias if sample.wrench_valid else None
+        self.wrench.update(bias, accelerations=sample.acceleration_valid)
+        self.answer.update(bias is not None)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -151,7 +155,7 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         known.energy = self._energy(rigid.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
-        known.step_odds, known.step_force = self.wrench.stepped, self.wrench.step
+        known.step_odds, known.step_force = self.answer.odds, self.answer.size
         return known
 
     def _energy(self, links: Array) -> float:

@@ -26,6 +26,7 @@ from sim.estimation.wrench_hypotheses import (
     LOST,
     MORE,
     SHORTEST,
+    STRAY,
     Seen,
     anything,
     hand,
@@ -54,19 +55,20 @@ class ExternalWrench:
             is not enough, or nothing that a hand does not do as well.
         share: of the payload that is gone then.
         stepped: log of the odds that the sensor stepped, against all else: the same.
-        step: force of the likeliest step [N].
     """
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
         """
         Args:
-            arm: its flange sensor's and accelerometer's noise.
+            arm: the noise of its flange sensor, accelerometer and gyro.
             forces: run in the same tick before.
         """
         self._forces = forces
         self.record = record(
             noise=(2,),  # of the sensor in a tick [N, N·m]
             shaking=(),  # of the accelerometer [m/s²]
+            turning=(),  # of the angular acceleration that the load is taken to need [rad/s²]
+            jitter=(),  # variance of the gyro's difference, each axis [rad²/s⁴]
             mass=(),  # of the payload [kg]
             com=(3,),
             inertia=(3, 3),  # about the flange
@@ -81,7 +83,7 @@ class ExternalWrench:
             ahead=(KEPT,),  # log likelihood of each tick if a hand goes on
             felt=(KEPT, 3),  # acceleration of the flange beyond gravity [m/s²], not a number where that is not valid
             gyro=(3,),  # its last value [rad/s]
-            turn=(KEPT,),  # size of the angular acceleration before its filter [rad/s²]
+            turn=(KEPT,),  # size of the angular acceleration before its filter, as far as it is no noise [rad/s²]
             fastest=(),  # of these the largest
             spread=(2,),  # log of the variances of x, with nothing that comes late and with it
             sums=(10, 7),
@@ -91,14 +93,18 @@ class ExternalWrench:
             share=(),
             stepped=(),
             step=(),
+            jump=(6,),  # the same as a wrench
+            age="i8",  # ticks since it
         )
         own = self._own = self.record[0]
-        force_torque, accelerometer = arm.sensors.force_torque, arm.sensors.accelerometer
+        force_torque, accelerometer, gyro = arm.sensors.force_torque, arm.sensors.accelerometer, arm.sensors.gyro
         self._sensed = force_torque is not None
         self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
         if force_torque is not None:
             own["noise"] = force_torque.force.noise, force_torque.torque.noise
         own["shaking"] = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
+        own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
+        own["turning"] = math.sqrt(own["jitter"] * forces.passed)
         own["lost"] = own["stepped"] = -math.inf
 
     @property
@@ -115,11 +121,6 @@ class ExternalWrench:
     def stepped(self) -> float:
         """As the class says."""
         return float(self._own["stepped"])
-
-    @property
-    def step(self) -> float:
-        """As the class says."""
-        return float(self._own["step"])
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
@@ -165,7 +166,7 @@ def _update(wrenches, forces, bias, accelerations) -> None:
         own.felt[here, k] = felt.a_felt[k] if accelerations else np.nan
         turned += ((felt.gyro[k] - own.gyro[k]) / TICK) ** 2
         own.gyro[k] = felt.gyro[k]
-    own.turn[here] = np.sqrt(turned) if own.count else 0.0
+    own.turn[here] = np.sqrt(max(turned - STRAY * own.jitter, 0.0)) if own.count else 0.0
     own.fastest = own.turn.max()
     own.spread[0], own.spread[1] = spread(own, 0.0), spread(own, LATE)
     for axis in range(2):
@@ -244,7 +245,9 @@ def _weigh(own, here, bias) -> None:
         likelihood = known + any_step + unanswered(own, first, size)
         stepped = both(stepped, likelihood)
         if likelihood > jumped:
-            jumped, own.step = likelihood, size
+            jumped, own.step, own.age = likelihood, size, length
+            for k in range(6):
+                own.jump[k] = seen.x[k] / length - before[k]
         if own.mass > 0.0:
             for kind in (LOST, FREED, MORE):
                 likelihood, carried, share = payload(own, seen, (length, before, steep), kind)

@@ -40,6 +40,8 @@ class FlangeForces:
     Attributes:
         F_user: the user's wrench (6,) in axes of B at the flange origin: force [N], torque [N·m]; zeros while the sensor is out.
         F_joints: the force (3,) in B that explains the joints' external torques best [N].
+        model: record of the rigid model that both stand on.
+        passed: of the variance of the gyro's difference, if it is noise, so much is left in the angular acceleration.
         a_felt: what the accelerometer on the arm's side feels beyond gravity (3,), axes of B [m/s²].
         record: all of it, for other kernels.
 
@@ -48,8 +50,9 @@ class FlangeForces:
     """
 
     def __init__(self, dynamics: Dynamics) -> None:
-        self._dynamics = dynamics
+        self._dynamics, self.model = dynamics, dynamics.recursion.record
         self.record = record(
+            apart=(dynamics.recursion.jacobian.shape[1],),  # torques that F_user makes beyond what the joints feel [N·m]
             F_user=(6,),
             F_joints=(3,),
             a_felt=(3,),
@@ -65,7 +68,8 @@ class FlangeForces:
         )
         own = self._own = self.record[0]
         self.F_user, self.F_joints, self.a_felt = own["F_user"], own["F_joints"], own["a_felt"]
-        own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        own["smoothing"] = smoothing = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
+        self.passed = smoothing**2 / (2.0 - smoothing)
         own["gravity"] = dynamics.gravity_B
         self.set_load(dynamics.load)
 
@@ -91,7 +95,7 @@ class FlangeForces:
             force, own["turn"] = self._dynamics.specific_force(q, motion[1], motion[2])
             own["gyro"] = rigid.R.T @ rigid.v_F[3:]
         felt = (sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
-        _update(self.record, rigid.record, felt, (sample.wrench_valid, differentiated))
+        _update(self.record, self.model, felt, (sample.wrench_valid, differentiated))
 
 
 @kernel
@@ -110,6 +114,10 @@ def _update(forces, model, felt, valid) -> None:
         _user_wrench(own, felt.wrench, R)
     else:
         own.F_user[:] = 0.0
+    for i in range(own.apart.size):
+        own.apart[i] = -felt.tau_ext[i]
+        for k in range(6):
+            own.apart[i] += rigid.jacobian[k, i] * own.F_user[k]
 
 
 @kernel

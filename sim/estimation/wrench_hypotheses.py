@@ -105,8 +105,9 @@ class Seen(NamedTuple):
 
 @kernel
 def noise(own, load, axis, late):
-    """Variance of x in a tick, beside a `load`: of sensor, accelerometer, and the share of a turn that comes `late`."""
-    return own.noise[axis] ** 2 + (own.shaking * load[axis]) ** 2 + (late * own.fastest * load[axis + 1]) ** 2
+    """Variance of x in a tick, beside a `load`: of sensor, accelerometer and gyro, and the share of a turn that comes `late`."""
+    turns = own.turning**2 + (late * own.fastest) ** 2
+    return own.noise[axis] ** 2 + (own.shaking * load[axis]) ** 2 + turns * load[axis + 1] ** 2
 
 
 @kernel

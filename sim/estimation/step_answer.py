@@ -1,0 +1,145 @@
+"""Whether the joints feel what a suspected step of the flange sensor tells (FD-19).
+
+A step of the sensor is first known by its onset (`sim.estimation.wrench_steps`), from 20 ms that may not be enough. The joints
+answer later: the arm swings on its springs for some 60 ms. From then on they feel a force at the flange, and not a step of its
+sensor. With the sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
+
+    d = J' w - tau_ext
+
+are as they were before if a force came, and are off by t = J' s if the sensor stepped by s. Either way each joint's d is known
+as well as it was steady before, and the gears as well as their stiffness. The odds of the onset are multiplied by
+
+    exp(-|d - d0 - t|² / 2) / exp(-|d - d0|² / 2),    |x|² = sum of (x_i / sigma_i)²,
+
+but what neither explains is no evidence.
+"""
+
+import math
+
+import numpy as np
+
+from pendant.guided.odds import KNOWN, SUSPECTED
+from pendant.settings.schema import ticks
+from pendant.tick.modes import TICK
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.external_wrench import LONGEST, ExternalWrench
+from sim.estimation.flange_forces import FlangeForces
+from sim.sensing.calibration import STIFFNESS
+
+ANSWER = ticks(0.08)
+"""Ticks after which the joints have answered: the slowest springs of an arm are at rest again (bench `drift`)."""
+
+LATELY = TICK / 0.1
+"""Weight of a tick in what d was lately, and in how steady."""
+
+KEPT = LONGEST + 2
+"""Ticks for which it is known what was lately: the onset of a step is so old at most."""
+
+NEITHER = math.exp(-KNOWN)
+
+
+class StepAnswer:
+    """One tick at a time, in free-drive alone.
+
+    Attributes:
+        odds: log of the odds that the sensor stepped [nats]: those of the onset, and then what the joints say of it, until a
+            force is likelier by far.
+        size: of that step [N].
+    """
+
+    def __init__(self, n: int, forces: FlangeForces, wrench: ExternalWrench) -> None:
+        """
+        Args:
+            n: number of joints.
+            forces, wrench: run in the same tick before.
+        """
+        self._forces, self._wrench = forces, wrench
+        self._record = record(
+            lately=(n,),  # mean of d
+            unrest=(n,),  # and its variance
+            now=(n,),  # mean of d in the last ticks
+            means=(KEPT, n),  # what was lately, in the last ticks
+            variances=(KEPT, n),
+            before=(n,),  # ahead of the step
+            variance=(n,),
+            step=(n,),  # t
+            next="i8",
+            count="i8",
+            since="i8",  # ticks since the onset; 0: nothing is suspected
+            onset=(),  # odds by it
+            odds=(),
+            size=(),  # of the step [N]
+        )
+        self._own = self._record[0]
+        self._own["odds"] = -math.inf
+
+    @property
+    def odds(self) -> float:
+        """As the class says."""
+        return float(self._own["odds"])
+
+    @property
+    def size(self) -> float:
+        """As the class says."""
+        return float(self._own["size"])
+
+    def update(self, used: bool) -> None:
+        """One tick; whether the flange sensor is used in it."""
+        own = self._own
+        if used:
+            _update(self._record, self._forces.record, self._wrench.record, self._forces.model)
+        elif own["count"]:
+            own["count"], own["since"], own["odds"] = 0, 0, -math.inf
+
+
+@kernel
+def _update(answers, forces, wrenches, model) -> None:
+    own, felt, wrench = answers[0], forces[0], wrenches[0]
+    here, first = own.next, own.count == 0
+    for i in range(own.lately.size):
+        if first:
+            own.lately[i] = own.now[i] = felt.apart[i]
+            own.unrest[i] = 0.0
+        off = felt.apart[i] - own.lately[i]
+        own.lately[i] += LATELY * off
+        own.unrest[i] += LATELY * (off * off - own.unrest[i])
+        own.now[i] += 5.0 * LATELY * (felt.apart[i] - own.now[i])
+        own.means[here, i], own.variances[here, i] = own.lately[i], own.unrest[i]
+    own.next, own.count = (here + 1) % KEPT, min(own.count + 1, KEPT)
+    if own.since:
+        own.since += 1
+    if wrench.stepped >= -SUSPECTED and own.since <= LONGEST and (own.since == 0 or wrench.stepped > own.onset):
+        _begin(own, wrench, model[0], (here - wrench.age) % KEPT)
+    own.odds = wrench.stepped
+    if own.since:
+        own.odds = own.onset + (_answered(own) if own.since > ANSWER else 0.0)
+        if own.odds < -SUSPECTED:
+            own.since = 0
+
+
+@kernel
+def _begin(own, wrench, rigid, before) -> None:
+    """A step is suspected; `before` is the place of the tick before it."""
+    own.onset, own.since, own.size = wrench.stepped, wrench.age, wrench.step
+    R, J, jump, turned = rigid.R, rigid.jacobian, wrench.jump, np.empty(6)
+    for k in range(3):
+        turned[k] = R[k, 0] * jump[0] + R[k, 1] * jump[1] + R[k, 2] * jump[2]
+        turned[3 + k] = R[k, 0] * jump[3] + R[k, 1] * jump[4] + R[k, 2] * jump[5]
+    for i in range(own.step.size):
+        own.step[i] = 0.0
+        for k in range(6):
+            own.step[i] += J[k, i] * turned[k]
+        own.before[i], own.variance[i] = own.means[before, i], own.variances[before, i]
+
+
+@kernel
+def _answered(own):
+    """Log of how much likelier what the joints feel is if the sensor stepped, than if a force came."""
+    stepped = force = 0.0
+    for i in range(own.step.size):
+        off, step = own.now[i] - own.before[i], own.step[i]
+        variance = own.variance[i] + (STIFFNESS * step) ** 2
+        force += off * off / variance
+        stepped += (off - step) ** 2 / variance
+    return np.log((np.exp(-0.5 * stepped) + NEITHER) / (np.exp(-0.5 * force) + NEITHER))
