@@ -22,9 +22,10 @@ MODULES = (
     "pendant/limits/residual.py",
     "pendant/signals/contact_free_baseline.py",
     "pendant/signals/joint_push.py",
-    "sim/estimation/external_wrench.py",
-    "sim/estimation/wrench_hypotheses.py",
-    "sim/estimation/wrench_steps.py",
+    "sim/flange/external_wrench.py",
+    "sim/flange/step_answer.py",
+    "sim/flange/wrench_hypotheses.py",
+    "sim/flange/wrench_steps.py",
 )
 """Where the rules live; one that is no more counts nothing."""
 

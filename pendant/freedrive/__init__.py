@@ -1,1 +1,1 @@
-"""Free-drive as a state machine: activation, periods, leaving. Uses guided/, limits/, signals/, walls/."""
+"""Free-drive as a state machine: activation, periods, leaving. Uses guided/, limits/, sensor/, signals/, walls/."""

@@ -1,7 +1,7 @@
 """What ends free-drive while it lasts: limits (FD-18), motion that nobody causes, a payload that drops (FD-19).
 
 How likely it is that a payload has dropped, or another has come, is estimated from the wrench at the flange, with a hand and a
-step of the sensor as the other explanations (`sim.estimation.external_wrench`). Here it is decided how likely is enough.
+step of the sensor as the other explanations (`sim.flange.external_wrench`). Here it is decided how likely is enough.
 """
 
 import math

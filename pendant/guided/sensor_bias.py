@@ -15,8 +15,8 @@ from pendant.guided.odds import KNOWN
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.sensor.taring import LEVER
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned
@@ -54,16 +54,17 @@ class BiasFollower:
         lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "lately")
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "_weight", "lately")
 
-    def __init__(self, sensor: SensorSpec, tick: int = 0) -> None:
+    def __init__(self, sensor: SensorSpec, tick: int = 0, weight: Vector = ORIGIN) -> None:
         """
         Args:
             sensor: what is known of it.
             tick: of now.
+            weight: of the load, axes of F [N].
         """
         self._sensor = sensor
-        self._quiet = tick  # when it was last followed
+        self._quiet, self._weight = tick, weight  # when it was last followed
         self._count = 0
         self._followed: Wrench | None = None
         self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
@@ -89,21 +90,18 @@ class BiasFollower:
         seconds = TICK * (tick - self._quiet)
         return Slack(self._sensor.drift_force * seconds, self._sensor.drift_torque * seconds)
 
-    def begin(self, apart: Wrench, tick: int, least: float) -> Wrench | None:
-        """The arm has come to rest.
-
-        Args:
-            apart: it feels so much beyond the baseline, axes of F [N, N·m].
-            tick: of now.
-            least: a hand's force is at least so large, with what the sensor may have drifted by [N].
+    def begin(self, apart: Wrench, estimate: Estimate) -> Wrench | None:
+        """The arm has come to rest in the tick of the estimate, and feels so much beyond the baseline, axes of F [N, N·m].
 
         Returns:
-            What of it the sensor drifted by while the arm was moved; None while a hand holds the arm.
+            What of it the sensor drifted by while the arm was moved; None while a hand holds the arm, for it is more than drift,
+            noise and gain explain.
         """
-        slack = self.slack(tick)
-        if norm((apart[0], apart[1], apart[2])) >= least:
+        slack, sensor = self.slack(estimate.tick), self._sensor
+        wrong = gain_error(sensor, estimate, self._weight) + FALSE_ALARM * window_noise(sensor, estimate)
+        if norm((apart[0], apart[1], apart[2])) > slack.force + wrong:
             return None
-        self._quiet = tick
+        self._quiet, self._weight = estimate.tick, load_weight(estimate)
         return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
 
     def give_back(self) -> list[Wrench]:
@@ -181,7 +179,7 @@ class SensorBias:
     def begin(self, estimate: Estimate, wrench_ok: bool, mean: WrenchMean) -> None:
         """The sequence or free-drive begins; `mean` of F_user is what was felt before."""
         self.used, self.baseline, self.drifted = wrench_ok, in_flange(estimate, mean.mean()), None
-        self._drift, self._since = BiasFollower(self.sensor, estimate.tick), estimate.tick
+        self._drift, self._since = BiasFollower(self.sensor, estimate.tick, load_weight(estimate)), estimate.tick
         x, y, z = estimate.F_joints.tolist()
         self._felt = (x, y, z)
 
@@ -236,7 +234,7 @@ class SensorBias:
             now = mean.mean()
             if not self._drift.begun:
                 apart = [value - part for value, part in zip(in_flange(estimate, now), self.baseline, strict=True)]
-                meanwhile = self._drift.begin(tuple(apart), estimate.tick, least)
+                meanwhile = self._drift.begin(tuple(apart), estimate)
                 if meanwhile is None:
                     return None
                 self._take_off(meanwhile, hand)

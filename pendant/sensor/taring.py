@@ -12,10 +12,11 @@ from pendant.limits.parameters import ZEROS
 from pendant.limits.residual import mass_error, split, upward
 from pendant.limits.settings import ActivationLimits
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.pose import ORIGIN, Vector, Wrench, flat, norm, turned, turned_back
+from pendant.tick.pose import ORIGIN, Vector, Wrench, flat, norm, turned
 
 WINDOWS = 10
 """Windows that are kept: the second within which the force must not tremble."""
@@ -26,14 +27,8 @@ AVERAGED = 5
 LEAST_PULL, LEAST_TWIST = 1.5, 0.2
 """What differs less from the untouched arm is no hand's [N, N·m]: a third of the 5 N that are always to be noticed."""
 
-FALSE_ALARM = 5.0
-"""Standard deviations of a window's mean that noise may add: three axes together exceed it once in 65,000 windows."""
-
 TREMBLE = 2.0
 """The means of ten windows spread by so many times their noise in less than one of a million seconds: a chi-square of 27."""
-
-LEVER = 0.2
-"""A load's centre lies within so much of the flange: a gain error of its weight seems a torque of at most so much [m]."""
 
 DUE, OVER = 2.0 / 3.0, 0.5
 """Shares of a limit of the activation sequence: zeroing is due from the one on, and down to the other."""
@@ -94,7 +89,7 @@ class Taring:
         pulled = self._pulled(estimate, in_flange(estimate, mean.mean()), reference)
         if pulled:
             return f"{pulled} more than on the untouched arm: let go of it"
-        spread, noise = self._spread(), self._noise(estimate)
+        spread, noise = self._spread(), window_noise(self._sensor, estimate)
         if spread > TREMBLE * noise:
             return f"the force trembles by {spread:.2f} N, at rest by {noise:.2f} N: hands off the arm"
         return self._beyond(estimate, self._latest())
@@ -126,15 +121,13 @@ class Taring:
 
     def _follow(self, estimate: Estimate, present: Wrench) -> Wrench:
         """The reference after a window, in which the load may hang another way than when it was followed last."""
-        g, sensor, last = estimate.g_B.tolist(), self._sensor, self._reference
-        x, y, z = turned_back(flat(estimate.R_BF), (g[0], g[1], g[2]))
-        weight = (estimate.load_mass * x, estimate.load_mass * y, estimate.load_mass * z)
+        sensor, last = self._sensor, self._reference
         if last is None:
             last = present
         time = (estimate.tick - self._tick) * TICK
-        wrong = sensor.gain * math.dist(weight, self._weight)
+        wrong = gain_error(sensor, estimate, self._weight)
         force, torque = sensor.drift_force * time + wrong, sensor.drift_torque * time + LEVER * wrong
-        self._tick, self._weight = estimate.tick, weight
+        self._tick, self._weight = estimate.tick, load_weight(estimate)
         most = (force, force, force, torque, torque, torque)
         reference = tuple([a + min(max(b - a, -way), way) for a, b, way in zip(last, present, most, strict=True)])
         self._reference = reference
@@ -143,15 +136,10 @@ class Taring:
     def _pulled(self, estimate: Estimate, present: Wrench, reference: Wrench) -> str:
         """What pulls or twists at the arm beyond what noise explains, in words, or ""."""
         force, torque = math.dist(present[:3], reference[:3]), math.dist(present[3:], reference[3:])
-        if force > LEAST_PULL + FALSE_ALARM * self._noise(estimate):
+        if force > LEAST_PULL + FALSE_ALARM * window_noise(self._sensor, estimate):
             return f"{force:.1f} N"
         noise = math.hypot(self._sensor.noise_torque, LEVER * self._sensor.noise_acceleration * estimate.load_mass)
         return f"{torque:.2f} N·m" if torque > LEAST_TWIST + FALSE_ALARM * noise / math.sqrt(WINDOW) else ""
-
-    def _noise(self, estimate: Estimate) -> float:
-        """Standard deviation of a window's mean force, each axis [N]."""
-        sensor = self._sensor
-        return math.hypot(sensor.noise_force, sensor.noise_acceleration * estimate.load_mass) / math.sqrt(WINDOW)
 
     def _spread(self) -> float:
         """Standard deviation of the force from window to window, root of the mean square of the axes [N]."""

@@ -1,1 +1,1 @@
-"""From measurements to what the controller knows. Uses arm/, compiled/, motion/, rigid_body/, sensing/."""
+"""From measurements to what the controller knows. Uses arm/, compiled/, flange/, motion/, rigid_body/, sensing/."""

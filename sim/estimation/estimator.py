@@ -11,8 +11,6 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
 from sim.estimation.adaptive_friction import AdaptiveFriction
-from sim.estimation.external_wrench import ExternalWrench
-from sim.estimation.flange_forces import FlangeForces
 from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
     TORQUE_BANDWIDTH,
@@ -24,8 +22,10 @@ from sim.estimation.joint_tracking import (
     tracking_gains,
 )
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.step_answer import StepAnswer
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
+from sim.flange.external_wrench import ExternalWrench
+from sim.flange.flange_forces import FlangeForces
+from sim.flange.step_answer import StepAnswer
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration

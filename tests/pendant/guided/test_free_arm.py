@@ -1,5 +1,6 @@
 """The free arm: what each of its watches tells, in which order, and what it knows of the others (FD-4, FD-18, FD-19, VW-6)."""
 
+import math
 from typing import Any
 
 import pytest
@@ -7,8 +8,8 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
-from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.free_arm import FreeArm
+from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
@@ -98,7 +99,7 @@ def test_the_flange_sensor_tells_the_users_force_while_it_is_used(sensor: bool) 
     free, value = Free(sensor=sensor), estimate(force=[5.0, 20.0, -3.0])
     assert free.see(value) == []
     expected = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
-    expected.step(value, sensor)
+    expected.step(value, sensor, Settings().unexplained.speed)
     assert free.arm.user == expected.user
     assert (free.arm.user != ORIGIN) is sensor
 
@@ -220,7 +221,7 @@ def test_the_tether_follows_who_pays_for_the_motion(on: bool) -> None:
 def test_while_the_sensor_may_have_stepped_nothing_helps(watched: bool, sensor: bool) -> None:
     """FD-19: and once it may not, the help is back."""
     free, value = Free(sensor=sensor, unexplained__sensor=watched), estimate()
-    for odds, suspected in ((SUSPECTED - 1e-9, False), (SUSPECTED, True), (0.0, False)):
+    for odds, suspected in ((-SUSPECTED - 1e-9, False), (-SUSPECTED, True), (-math.inf, False)):
         value.step_odds = odds
         free.see(value)
         assert free.arm.suspect is (suspected and watched and sensor)

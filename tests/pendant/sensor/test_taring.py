@@ -13,8 +13,9 @@ from pendant.events.event import Event, Kind
 from pendant.limits.parameters import ZEROS
 from pendant.limits.settings import ActivationLimits
 from pendant.limits.validity import WINDOW, WrenchMean
+from pendant.sensor.sensor_errors import FALSE_ALARM
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.sensor.taring import AVERAGED, FALSE_ALARM, LEAST_PULL, LEAST_TWIST, TREMBLE, WINDOWS, Taring
+from pendant.sensor.taring import AVERAGED, LEAST_PULL, LEAST_TWIST, TREMBLE, WINDOWS, Taring
 from pendant.settings.schema import Limit
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK

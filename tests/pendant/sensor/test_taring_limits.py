@@ -8,8 +8,9 @@ from msgspec.structs import replace
 
 from pendant.events.event import Event
 from pendant.limits.validity import WINDOW, WrenchMean
+from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.sensor.taring import DUE, FALSE_ALARM, LEAST_PULL, LEAST_TWIST, LEVER, OVER, TREMBLE, WINDOWS, Taring
+from pendant.sensor.taring import DUE, LEAST_PULL, LEAST_TWIST, OVER, TREMBLE, WINDOWS, Taring
 from pendant.settings.schema import Limit
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK

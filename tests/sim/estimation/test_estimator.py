@@ -11,10 +11,10 @@ from sim.arm.chain import Body, chain
 from sim.arm.frames import joint_frames, rotation_from_rpy
 from sim.arm.scenario import Load, Scenario
 from sim.estimation.estimator import Estimator
-from sim.estimation.flange_forces import FlangeForces
 from sim.estimation.joint_tracking import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, tracking_gains
 from sim.estimation.transmission_torque import DEFLECTION
 from sim.exchange.desk import Wishes
+from sim.flange.flange_forces import FlangeForces
 from sim.plant.changes import AttachPayload, SensorFault
 from sim.plant.touch import Pull
 from sim.rigid_body.dynamics import Dynamics
@@ -325,6 +325,21 @@ def test_a_load_that_swings_with_the_wrists_is_mostly_no_user_force(frequency: f
         forces.update(seen, np.array(BENT), np.zeros((3, 6)), np.zeros(6))
         off = max(off, float(np.linalg.norm(forces.F_user[:3]))) if k > 100 else 0.0
     assert off < most * mass * lever * 0.1 * turning
+
+
+def test_what_the_joints_do_not_feel_of_the_sensors_wrench_is_known_in_their_torques() -> None:
+    """FD-19: J' F_user - tau_ext; of a wrench that they feel as well nothing is left."""
+    rigid, rng = chain(UR5E), np.random.default_rng(1)
+    dynamics = Dynamics(rigid, rigid.links, Body(2.0, np.array([0.0, 0.0, 0.1]), np.zeros((3, 3))), mounting=FLOOR, elbow=2)
+    still, felt = np.zeros((3, 6)), rng.normal(size=6)
+    dynamics.recursion.run(np.array(BENT), still, np.zeros(3))
+    forces = FlangeForces(dynamics)
+    seen = replace(sample(np.zeros(6), np.zeros(6)), wrench=rng.normal(size=6), wrench_valid=True, acceleration_valid=True)
+    forces.update(seen, np.array(BENT), still, felt)
+    torques = dynamics.recursion.jacobian.T @ forces.F_user
+    assert forces.record[0]["apart"] == pytest.approx(torques - felt)
+    forces.update(seen, np.array(BENT), still, torques)
+    assert forces.record[0]["apart"] == pytest.approx(np.zeros(6), abs=1e-9)
 
 
 def test_a_lost_flange_sensor_means_no_user_force() -> None:

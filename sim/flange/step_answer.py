@@ -1,6 +1,6 @@
 """Whether the joints feel what a suspected step of the flange sensor tells (FD-19).
 
-A step of the sensor is first known by its onset (`sim.estimation.wrench_steps`), from 20 ms that may not be enough. The joints
+A step of the sensor is first known by its onset (`sim.flange.wrench_steps`), from 20 ms that may not be enough. The joints
 answer later: the arm swings on its springs for some 60 ms. From then on they feel a force at the flange, and not a step of its
 sensor. With the sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
 
@@ -23,8 +23,8 @@ from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.external_wrench import LONGEST, ExternalWrench
-from sim.estimation.flange_forces import FlangeForces
+from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.flange_forces import FlangeForces
 from sim.sensing.calibration import STIFFNESS
 
 ANSWER = ticks(0.08)

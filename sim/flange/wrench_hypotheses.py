@@ -19,7 +19,7 @@ it, i the age of a tick after it:
     sensor stepped  x(i) = x0 + d + e,               d as large as a hand's force; nothing moves the flange in the first two ticks
     knock           x(i) = x0 + d + e,               the same, but a force: it moves the flange; rare
 
-The last two, and a hand that goes on before the change, are in `sim.estimation.wrench_steps`.
+The last two, and a hand that goes on before the change, are in `sim.flange.wrench_steps`.
 
 Each is linear in what is not known of it (J, r, s, an offset c), which has a Gaussian prior. So its likelihood is a closed form.
 With noise of variance R in L ticks, a basis a(i), a prior (m, V), and sums over the ticks S of (x - a m)² / R, A of a a' / R and
@@ -185,7 +185,7 @@ def payload(own, seen, change, kind):
     """Log likelihood of a payload that changed; how much less likely a hand is that comes to carry as much; the share gone.
 
     Args:
-        own, seen: of `sim.estimation.external_wrench`.
+        own, seen: of `sim.flange.external_wrench`.
         change: its ticks; the wrench before (6,), and the square of its rise (2,).
         kind: `LOST`, `FREED` or `MORE`.
     """

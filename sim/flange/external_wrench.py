@@ -16,8 +16,8 @@ from sim.arm.chain import Body
 from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.flange_forces import FlangeForces, needed
-from sim.estimation.wrench_hypotheses import (
+from sim.flange.flange_forces import FlangeForces, needed
+from sim.flange.wrench_hypotheses import (
     BEFORE,
     FREED,
     LATE,
@@ -36,7 +36,7 @@ from sim.estimation.wrench_hypotheses import (
     payload,
     spread,
 )
-from sim.estimation.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
+from sim.flange.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
 
 LONGEST = 10
 """Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
@@ -201,6 +201,24 @@ def _jumped(own, here) -> bool:
 
 
 @kernel
+def _add(own, seen, length, bias) -> None:
+    """One tick more has been seen since the change, the earliest of `length`."""
+    place = (own.next - length) % KEPT
+    for k in range(6):
+        x, p = own.x[place, k] - bias[k], own.p[place, k]
+        seen.x[k] += x
+        seen.xx[k] += x * x
+        seen.later[k] += (length - 1) * x
+        seen.p[k] += p
+        seen.pp[k] += p * p
+        seen.px[k] += p * x
+    for k in range(LINE + 1):
+        p = own.p[place, k]
+        seen.swing[k] += (p - seen.oldest[k]) ** 2
+        seen.oldest[k] = p
+
+
+@kernel
 def _weigh(own, here, bias) -> None:
     """The odds, where all hypotheses explain the same ticks."""
     sums, before = own.sums, own.sums[9]
@@ -217,20 +235,9 @@ def _weigh(own, here, bias) -> None:
     other = both(other, earlier + change)  # it came now: by what, no tick can tell yet
     for length in range(1, LONGEST + 1):
         first = (here - length) % KEPT  # the tick in which it came
-        place = (first + 1) % KEPT
+        _add(own, seen, length, bias)
         for k in range(6):
-            x, p = own.x[place, k] - bias[k], own.p[place, k]
             before[k] = own.before[first, k] - bias[k]
-            seen.x[k] += x
-            seen.xx[k] += x * x
-            seen.later[k] += (length - 1) * x
-            seen.p[k] += p
-            seen.pp[k] += p * p
-            seen.px[k] += p * x
-        for k in range(LINE + 1):
-            p = own.p[place, k]
-            seen.swing[k] += (p - seen.oldest[k]) ** 2
-            seen.oldest[k] = p
         earlier -= own.ahead[first]
         if length < SHORTEST:
             other = both(other, earlier + change + anything(seen, length))

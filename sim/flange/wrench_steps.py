@@ -10,7 +10,7 @@ import sys
 import numpy as np
 
 from sim.compiled.kernel import kernel
-from sim.estimation.wrench_hypotheses import (
+from sim.flange.wrench_hypotheses import (
     BEFORE,
     HAND,
     LATE,
@@ -115,7 +115,7 @@ def unanswered(own, first, size):
     A force f moves the flange at once, by f / m or less. Without an accelerometer a step counts as a hand's.
 
     Args:
-        own: of `sim.estimation.external_wrench`.
+        own: of `sim.flange.external_wrench`.
         first: place of the first of these ticks.
         size: of the step [N].
     """

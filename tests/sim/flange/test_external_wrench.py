@@ -12,10 +12,10 @@ from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
-from sim.estimation import wrench_hypotheses as bank
-from sim.estimation.external_wrench import KEPT, LONGEST, ExternalWrench
-from sim.estimation.flange_forces import FlangeForces
-from sim.estimation.wrench_hypotheses import BEFORE, FREED, LATE, LEVER, LN_OFTEN, LN_RARE, LOST, MORE, SHORTEST, STRAY
+from sim.flange import wrench_hypotheses as bank
+from sim.flange.external_wrench import KEPT, LONGEST, ExternalWrench
+from sim.flange.flange_forces import FlangeForces
+from sim.flange.wrench_hypotheses import BEFORE, FREED, LATE, LEVER, LN_OFTEN, LN_RARE, LOST, MORE, SHORTEST, STRAY
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -268,7 +268,7 @@ def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float,
     """The closed forms against the covariance of all ticks; payloads come and go, and sensors step, as the arm shakes."""
     arm, rng = Arm(seed), np.random.default_rng(seed)
     share = (1.0, 0.9, -0.5)[seed % 3]
-    turn, step = np.array([1.0, 2.0, -1.0]), np.array([3.0, -9.0, 5.0, 0.0, 0.0, 0.0])
+    turn, step = np.array([4.0, 8.0, -4.0]), np.array([6.0, -18.0, 10.0, 0.0, 0.0, 0.0])
     for tick in range(KEPT + 5):
         lift = rng.normal(size=3)
         needs = PAYLOAD.mass * np.concatenate([UP + lift, np.cross(PAYLOAD.com, UP + lift)])
@@ -287,13 +287,18 @@ def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float,
 
 
 LOAD_MOMENTS = [[body.mass * float(np.linalg.norm(body.com)) ** axis for axis in range(3)] for body in (TOOL + PAYLOAD, TOOL)]
-TURN = math.sqrt(6.0)  # [rad/s²]
+TURN = math.sqrt(96.0 - STRAY * 2.0 * (0.003 / TICK) ** 2)
+"""What of the turn is no noise of the gyro [rad/s²]."""
+SMOOTH = 1.0 - math.exp(-2.0 * math.pi * 60.0 * TICK)
+TURNING = 0.003 / TICK * SMOOTH * math.sqrt(2.0 / (2.0 - SMOOTH))
+"""Deviation of what is left of that noise after its filter [rad/s²]."""
 
 
 def of_noise(axis: int, body: int, late: float) -> float:
     """Variance of x in a tick with the whole load (`body` 0), or the tool alone (1)."""
     moments = LOAD_MOMENTS[body]
-    return (0.15, 0.006)[axis] ** 2 + (0.1 * moments[axis]) ** 2 + (late * TURN * moments[axis + 1]) ** 2
+    turns = TURNING**2 + (late * TURN) ** 2
+    return (0.15, 0.006)[axis] ** 2 + (0.1 * moments[axis]) ** 2 + turns * moments[axis + 1] ** 2
 
 
 def rises(values: Array, variance: float) -> float:

@@ -1,0 +1,1 @@
+"""The wrench at the flange, and whose it is: hypotheses and their odds. Uses arm/, compiled/, rigid_body/, sensing/."""
