@@ -11,7 +11,7 @@ from collections import deque
 from typing import NamedTuple
 
 from pendant.events.event import Event, Kind
-from pendant.guided.odds import KNOWN
+from pendant.guided.odds import KNOWN, TOUCH
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
@@ -33,8 +33,8 @@ ANSWER = 0.3
 SMOOTH = 1.0 / WINDOW
 """Weight of a tick in what the joints feel: their mean over a window."""
 
-BEGINS = 5
-"""Windows of the mean for which a hand may push before the arm is seen to move: 0.5 s."""
+BEGINS = TOUCH // WINDOW
+"""Windows of the mean for which a hand may push before the arm is seen to move: as long as a touch."""
 
 
 class Slack(NamedTuple):

@@ -1,7 +1,7 @@
 """Whether the joints feel what a suspected step of the flange sensor tells (FD-19).
 
 A step of the sensor is first known by its onset (`sim.flange.wrench_steps`), from 20 ms that may not be enough. The joints
-answer later: the arm swings on its springs for some 60 ms. From then on they feel a force at the flange, and not a step of its
+answer later: first the arm swings on its springs. From then on they feel a force at the flange, and not a step of its
 sensor. With the sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
 
     d = J' w - tau_ext
@@ -19,6 +19,7 @@ import math
 import numpy as np
 
 from pendant.guided.odds import KNOWN, SUSPECTED
+from pendant.guided.user_force import JOINTS_SWING
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
@@ -27,11 +28,11 @@ from sim.flange.external_wrench import LONGEST, ExternalWrench
 from sim.flange.flange_forces import FlangeForces
 from sim.sensing.calibration import STIFFNESS
 
-ANSWER = ticks(0.08)
-"""Ticks after which the joints have answered: the slowest springs of an arm are at rest again (bench `drift`)."""
+ANSWER = ticks(JOINTS_SWING)
+"""Ticks after which the joints have answered: the arm has swung on its springs."""
 
-LATELY = TICK / 0.1
-"""Weight of a tick in what d was lately, and in how steady."""
+LATELY = TICK / JOINTS_SWING
+"""Weight of a tick in what d was lately, and in how steady; what it is now has five times as much."""
 
 KEPT = LONGEST + 2
 """Ticks for which it is known what was lately: the onset of a step is so old at most."""
