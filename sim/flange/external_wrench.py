@@ -13,10 +13,9 @@ from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
-from sim.arm.frames import skew
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.flange.flange_forces import FlangeForces, needed
+from sim.flange.flange_forces import FlangeForces, about_flange, needed, turn_both
 from sim.flange.wrench_hypotheses import (
     BEFORE,
     FREED,
@@ -72,11 +71,12 @@ class ExternalWrench:
             mass=(),  # of the payload [kg]
             com=(3,),
             inertia=(3, 3),  # about the flange
-            whole=(3,),  # moments of the load about the flange [kg, kg·m, kg·m²]
+            whole=(3,),  # moments of the load about the flange, largest axis [kg, kg·m, kg·m²]
             rest=(3,),  # the same of what stays when the payload is gone
             moves=(),  # what a force at the flange moves at once [kg]
             x=(KEPT, 6),  # with the sensor's bias
             p=(KEPT, 7),  # and its force along the line to its centre
+            R=(KEPT, 3, 3),  # attitude of the flange
             line=(3,),  # that line's direction, in F
             before=(KEPT, 6),  # mean of x ahead of each tick
             steep=(KEPT, 2),  # square of its rise there, a tick
@@ -86,14 +86,14 @@ class ExternalWrench:
             turn=(KEPT,),  # size of the angular acceleration before its filter, as far as it is no noise [rad/s²]
             fastest=(),  # of these the largest
             spread=(2,),  # log of the variances of x, with nothing that comes late and with it
-            sums=(10, 7),
+            sums=(12, 7),
             next="i8",
             count="i8",
             lost=(),
             share=(),
             stepped=(),
             step=(),
-            jump=(6,),  # the same as a wrench
+            jump=(6,),  # the same as a wrench, axes of B
             age="i8",  # ticks since it
         )
         own = self._own = self.record[0]
@@ -125,11 +125,12 @@ class ExternalWrench:
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         own, rest = self._own, load - payload
-        turned, lever = skew(payload.com), float(np.linalg.norm(payload.com))
+        lever = float(np.linalg.norm(payload.com))
         own["line"] = payload.com / lever if lever > 0.0 else 0.0
-        own["mass"], own["com"], own["inertia"] = payload.mass, payload.com, payload.inertia - payload.mass * turned @ turned
+        own["mass"], own["com"], own["inertia"] = payload.mass, payload.com, about_flange(payload)
         for moments, body in (("whole", load), ("rest", rest)):
-            own[moments] = max(body.mass, 0.0) * np.linalg.norm(body.com) ** np.arange(3.0)
+            mass = max(body.mass, 0.0)
+            own[moments] = mass, mass * np.linalg.norm(body.com), np.linalg.norm(about_flange(body), 2)
         own["moves"] = load.mass + self._beyond
         self.forget()
 
@@ -149,13 +150,15 @@ class ExternalWrench:
         if bias is None or not self._sensed:
             self.forget()
         else:
-            _update(self.record, self._forces.record, bias, accelerations)
+            _update(self.record, (self._forces.record, self._forces.model), bias, accelerations)
 
 
 @kernel
-def _update(wrenches, forces, bias, accelerations) -> None:
+def _update(wrenches, known, bias, accelerations) -> None:
+    forces, model = known
     own, felt = wrenches[0], forces[0]
     here = own.next
+    own.R[here] = model[0].R
     p = own.p[here]
     needed((own.mass, own.com, own.inertia), (felt.specific, felt.gyro, felt.turn), p)
     p[LINE] = own.line[0] * p[0] + own.line[1] * p[1] + own.line[2] * p[2]
@@ -204,16 +207,24 @@ def _jumped(own, here) -> bool:
 def _add(own, seen, length, bias) -> None:
     """One tick more has been seen since the change, the earliest of `length`."""
     place = (own.next - length) % KEPT
+    turned_x, turned_p = own.sums[10], own.sums[11]
     for k in range(6):
-        x, p = own.x[place, k] - bias[k], own.p[place, k]
+        turned_x[k] = own.x[place, k] - bias[k]
+    turn_both(own.R[place], turned_x, turned_x)
+    turn_both(own.R[place], own.p[place], turned_p)
+    for k in range(6):
+        x, p = turned_x[k], turned_p[k]
         seen.x[k] += x
         seen.xx[k] += x * x
         seen.later[k] += (length - 1) * x
         seen.p[k] += p
         seen.pp[k] += p * p
         seen.px[k] += p * x
+    turned_p[LINE] = own.p[place, LINE]
     for k in range(LINE + 1):
-        p = own.p[place, k]
+        p = turned_p[k]
+        if length == 1:
+            seen.newest[k] = seen.oldest[k] = p
         seen.swing[k] += (p - seen.oldest[k]) ** 2
         seen.oldest[k] = p
 
@@ -224,7 +235,6 @@ def _weigh(own, here, bias) -> None:
     sums, before = own.sums, own.sums[9]
     sums[:] = 0.0
     seen = Seen(sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8])
-    seen.newest[:] = seen.oldest[:] = own.p[here]
     earlier, change = 0.0, quiet(own)  # what is between two wrenches is explained as well as noise
     for age in range(LONGEST + 1):
         earlier += own.ahead[(here - age) % KEPT]
@@ -238,6 +248,7 @@ def _weigh(own, here, bias) -> None:
         _add(own, seen, length, bias)
         for k in range(6):
             before[k] = own.before[first, k] - bias[k]
+        turn_both(own.R[first], before, before)
         earlier -= own.ahead[first]
         if length < SHORTEST:
             other = both(other, earlier + change + anything(seen, length))

@@ -75,9 +75,8 @@ class FlangeForces:
 
     def set_load(self, load: Body) -> None:
         """Take `load` (in F) as everything beyond the flange."""
-        turned = skew(load.com)
         own = self._own
-        own["mass"], own["com"], own["inertia"] = load.mass, load.com, load.inertia - load.mass * turned @ turned
+        own["mass"], own["com"], own["inertia"] = load.mass, load.com, about_flange(load)
 
     def update(self, sample: Sample, q: Array, motion: Array, tau_ext: Array) -> None:
         """One tick.
@@ -96,6 +95,12 @@ class FlangeForces:
             own["gyro"] = rigid.R.T @ rigid.v_F[3:]
         felt = (sample.wrench, force, sample.gyro_tool, sample.acceleration_flange, tau_ext)
         _update(self.record, self.model, felt, (sample.wrench_valid, differentiated))
+
+
+def about_flange(body: Body) -> Array:
+    """Inertia (3, 3) of a body in F about the flange's origin [kg·m²]."""
+    turned = skew(body.com)
+    return body.inertia - body.mass * turned @ turned
 
 
 @kernel
@@ -160,9 +165,16 @@ def _user_wrench(own, measured, R) -> None:
     needed((own.mass, own.com, own.inertia), (own.specific, own.gyro, own.turn), rest)
     for k in range(6):
         rest[k] -= measured[k]
-    for k in range(3):
-        out[k] = R[k, 0] * rest[0] + R[k, 1] * rest[1] + R[k, 2] * rest[2]
-        out[3 + k] = R[k, 0] * rest[3] + R[k, 1] * rest[4] + R[k, 2] * rest[5]
+    turn_both(R, rest, out)
+
+
+@kernel
+def turn_both(R, wrench, out) -> None:
+    """Force and torque of a wrench in other axes; `out` may be the wrench."""
+    for k in range(0, 6, 3):
+        x, y, z = wrench[k], wrench[k + 1], wrench[k + 2]
+        for j in range(3):
+            out[k + j] = R[j, 0] * x + R[j, 1] * y + R[j, 2] * z
 
 
 @kernel

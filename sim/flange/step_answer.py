@@ -123,14 +123,10 @@ def _update(answers, forces, wrenches, model) -> None:
 def _begin(own, wrench, rigid, before) -> None:
     """A step is suspected; `before` is the place of the tick before it."""
     own.onset, own.since, own.size = wrench.stepped, wrench.age, wrench.step
-    R, J, jump, turned = rigid.R, rigid.jacobian, wrench.jump, np.empty(6)
-    for k in range(3):
-        turned[k] = R[k, 0] * jump[0] + R[k, 1] * jump[1] + R[k, 2] * jump[2]
-        turned[3 + k] = R[k, 0] * jump[3] + R[k, 1] * jump[4] + R[k, 2] * jump[5]
     for i in range(own.step.size):
         own.step[i] = 0.0
         for k in range(6):
-            own.step[i] += J[k, i] * turned[k]
+            own.step[i] += rigid.jacobian[k, i] * wrench.jump[k]
         own.before[i], own.variance[i] = own.means[before, i], own.variances[before, i]
 
 
