@@ -1,6 +1,6 @@
 """Hypotheses of what changed the wrench at the flange, and how likely each makes what followed (FD-19).
 
-The flange sensor measures what the flange exerts on its load. What the configured load needs beyond that is, in axes of F,
+The flange sensor measures what the flange exerts on its load. What the configured load needs beyond that is, in axes of B,
 
     x = w_needed - w_sensor - bias = h + share p,
 

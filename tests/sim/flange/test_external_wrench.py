@@ -4,6 +4,7 @@ import math
 
 import msgspec
 import numpy as np
+import pinocchio as pin
 import pytest
 from numpy.typing import NDArray
 
@@ -40,6 +41,7 @@ class Arm:
         self.wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
         self.rng = np.random.default_rng(seed)
         self.gyro = np.zeros(3)
+        self.forces.model[0]["R"] = np.eye(3)
         self.odds: list[float] = []
         self.stepped: list[float] = []
 
@@ -256,6 +258,11 @@ def test_a_bias_that_is_followed_is_no_step() -> None:
     assert max(*arm.stepped, *arm.odds) < -3.0
 
 
+def turned_by(vector: Array) -> Array:
+    """Rotation about a vector by its length [rad]."""
+    return np.asarray(pin.exp3(vector))
+
+
 def dense(x: Array, mean: Array | float, covariance: Array) -> float:
     """Log density of a Gaussian without its constant of 2 pi."""
     off = x - mean
@@ -267,6 +274,7 @@ def dense(x: Array, mean: Array | float, covariance: Array) -> float:
 def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float, ...]) -> None:
     """The closed forms against the covariance of all ticks; payloads come and go, and sensors step, as the arm shakes."""
     arm, rng = Arm(seed), np.random.default_rng(seed)
+    start, attitudes = turned_by(np.array([0.4, -1.1, 0.7])), list[Array]()
     share = (1.0, 0.9, -0.5)[seed % 3]
     turn, step = np.array([4.0, 8.0, -4.0]), np.array([6.0, -18.0, 10.0, 0.0, 0.0, 0.0])
     for tick in range(KEPT + 5):
@@ -274,19 +282,27 @@ def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float,
         needs = PAYLOAD.mass * np.concatenate([UP + lift, np.cross(PAYLOAD.com, UP + lift)])
         after = step if seed >= 6 else share * needs
         x = after if tick > KEPT - 3 else 0.1 * rng.normal(size=6)
+        attitudes.append(np.kron(np.eye(2), turned_by(0.03 * rng.normal(size=3)) @ start))
+        arm.forces.model[0]["R"] = attitudes[-1][:3, :3]
         arm.tick(x + bias, UP + lift, bias, felt=0.1 * rng.normal(size=3), turn=turn)
     assert max(arm.wrench.lost, arm.wrench.stepped) > 3.0
     own = arm.wrench.record[0]
     here = (int(own["next"]) - 1) % KEPT
     x, p, felt = (np.stack([own[name][(here - k) % KEPT] for k in reversed(range(KEPT))]) for name in ("x", "p", "felt"))
-    lost, stepped = of_window(x - bias, p[:, :6], felt)
+    lost, stepped = of_window(x - bias, p, felt, attitudes[-KEPT:])
     assert arm.wrench.lost == pytest.approx(lost, rel=1e-9)
     assert arm.wrench.stepped == pytest.approx(stepped, rel=1e-9)
     told = [1.0 / (1.0 + math.exp(-odds)) for odds in (lost, stepped)]
     assert sum(told) <= 1.0 + 1e-12, "of one whole"
 
 
-LOAD_MOMENTS = [[body.mass * float(np.linalg.norm(body.com)) ** axis for axis in range(3)] for body in (TOOL + PAYLOAD, TOOL)]
+def moments_of(body: Body) -> tuple[float, float, float]:
+    """Mass, first and second moments about the flange, in the axis where these are largest [kg, kg·m, kg·m²]."""
+    about = body.inertia + body.mass * (body.com @ body.com * np.eye(3) - np.outer(body.com, body.com))
+    return body.mass, body.mass * float(np.linalg.norm(body.com)), float(np.linalg.eigvalsh(about)[-1])
+
+
+LOAD_MOMENTS = [moments_of(body) for body in (TOOL + PAYLOAD, TOOL)]
 TURN = math.sqrt(96.0 - STRAY * 2.0 * (0.003 / TICK) ** 2)
 """What of the turn is no noise of the gyro [rad/s²]."""
 SMOOTH = 1.0 - math.exp(-2.0 * math.pi * 60.0 * TICK)
@@ -328,19 +344,19 @@ def goes_on(x: Array, tick: int) -> float:
     return float(np.logaddexp.reduce([*ways, dense(x[tick], x0, np.diag(np.repeat(wide, 3))) - LN_RARE]))
 
 
-def of_window(x: Array, p: Array, felt: Array) -> tuple[float, float]:
+def of_window(x: Array, p: Array, felt: Array, attitudes: list[Array]) -> tuple[float, float]:
     """Log odds that the payload changed within the last ticks, and that the sensor stepped."""
     ahead = {tick: goes_on(x, tick) for tick in range(BEFORE, KEPT)}
     quiet = -3.0 - 1.5 * sum(math.log(of_noise(axis, 0, 0.0)) for axis in range(2))
     # No change, one in the newest tick, and one in the tick before it, which may be anything.
     early = [sum(ahead[tick] for tick in range(BEFORE, KEPT - n)) + quiet for n in (1, 2)]
     wide = np.repeat([(0.5 * bank.HAND) ** 2, (0.5 * bank.HAND * LEVER) ** 2], 3)
-    early[1] += dense(x[-1], 0.0, np.diag(wide))
+    early[1] += dense(attitudes[-1] @ x[-1], 0.0, np.diag(wide))
     other, lost, stepped = [sum(ahead.values()) + math.log(LONGEST + 1.0), *early], [-math.inf], [-math.inf]
     for length in range(SHORTEST, LONGEST + 1):
         start = KEPT - length
         known = sum(ahead[tick] for tick in range(BEFORE, start - 1)) + quiet
-        hands, payloads, (step, answer) = of_change(x, p, felt, length)
+        hands, payloads, (step, answer) = of_change(x, p, felt, attitudes, length)
         other += [known + one for one in hands] + [known + step - LN_RARE] + [known + one - way for one, way in payloads]
         lost += [known + one for one, _ in payloads]
         stepped.append(known + step + answer)
@@ -351,15 +367,23 @@ def of_window(x: Array, p: Array, felt: Array) -> tuple[float, float]:
 Payloads = list[tuple[float, float]]
 
 
-def of_change(x: Array, p: Array, felt: Array, length: int) -> tuple[list[float], Payloads, tuple[float, float]]:
+def of_change(
+    x: Array, p: Array, felt: Array, attitudes: list[Array], length: int
+) -> tuple[list[float], Payloads, tuple[float, float]]:
     """Log likelihoods of the ticks since a change.
 
     Those of hands; those of payloads, each with how much less likely a hand is that carries them; that of any step, with how much
     likelier the accelerations are then.
     """
     start = KEPT - length
-    after, needs = x[start:], p[start:]
+    after, needs, lines = (
+        np.stack([R @ row for R, row in zip(attitudes[start:], some[start:], strict=True)])
+        if some.shape[1] == 6
+        else some[start:]
+        for some in (x, p[:, :6], p[:, 6:])
+    )
     x0, steep = before(x, start - 1)
+    x0 = attitudes[start - 1] @ x0  # looked at from the base
     eye, ones, rise = np.eye(length), np.ones((length, length)), np.arange(1, length + 1) + 0.5
     hands = {(name, late): 0.0 for name in ("rising", "steady", "nobody") for late in (0.0, LATE)}
     anything = 0.0
@@ -406,7 +430,7 @@ def of_change(x: Array, p: Array, felt: Array, length: int) -> tuple[list[float]
         likelihood = -0.5 * square - 0.5 * float(np.linalg.slogdet(whole)[1]) - credit[kind]
         way = (share * needs.mean(axis=0) - (x0 if kind == FREED else 0.0)) ** 2
         swings = share * (np.diff(needs, axis=0) - (needs[-1] - needs[0]) / (length - 1.0))
-        line = swings[:, :3] @ PAYLOAD.com / np.linalg.norm(PAYLOAD.com)  # a turn makes no force along it
+        line = share * (np.diff(lines, axis=0) - (lines[-1] - lines[0]) / (length - 1.0))  # a turn makes no force along it
         off = [
             2.0 * ((bank.TOUCH * (1.0, LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
             for axis, late in ((0, LATE), (1, LATE), (0, 0.0))

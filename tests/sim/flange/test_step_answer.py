@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 UR5E = load_arm("ur5e")
 LOAD = Body(2.0, np.array([0.01, -0.02, 0.05]), np.eye(3) * 0.002)
 STEP = np.array([6.0, -8.0, 4.0, 0.0, 0.0, 0.3])
+"""Axes of B [N, N·m]."""
 TREMOR = 0.02
 """Of the torques, standard deviation [N·m]."""
 
@@ -34,8 +35,7 @@ class Joints:
         self.wrench = ExternalWrench(UR5E, self.forces)
         self.answer = StepAnswer(UR5E.n, self.forces, self.wrench)
         self.onset, self.rng = onset, np.random.default_rng(seed)
-        R = dynamics.recursion.R
-        self.torques = dynamics.recursion.jacobian.T @ np.concatenate([R @ STEP[:3], R @ STEP[3:]])
+        self.torques = dynamics.recursion.jacobian.T @ STEP
 
     def tick(self, apart: Array, age: int = 0) -> float:
         """`apart` is what the sensor's wrench makes beyond what the joints feel; a step is suspected at this age."""
