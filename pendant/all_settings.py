@@ -1,7 +1,9 @@
 """The one settings schema: every period and limit with default, range, unit, requirement and a line of text."""
 
 import hashlib
+from collections.abc import Iterable
 from enum import Enum
+from operator import attrgetter
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import msgspec
@@ -214,14 +216,26 @@ def apply(settings: Settings, changes: dict[str, Any]) -> Settings:
 
 def digest(settings: Settings) -> str:
     """Short hash of all values: 8 hexadecimal digits, equal for equal settings."""
-    return _hashed(settings, list(_ROWS.values()))
+    return _hashed(settings, _EVERY)
 
 
 def limits_checksum(settings: Settings) -> str:
     """Short hash of everything that is locked while the arm moves: 8 hexadecimal digits, equal for equal limits."""
-    return _hashed(settings, [row for row in _ROWS.values() if row.locked])
+    return _hashed(settings, _LOCKED)
 
 
-def _hashed(settings: Settings, rows: list[SettingRow]) -> str:
-    lines = "\n".join(f"{row.name}={value_of(settings, row.name)!r}" for row in rows)
-    return hashlib.sha256(lines.encode()).hexdigest()[:8]
+class _Named:
+    """The values of some rows, all at once: whatever takes settings hashes hundreds of them."""
+
+    def __init__(self, rows: Iterable[SettingRow]) -> None:
+        names = [row.name for row in rows]
+        self.values = attrgetter(*names)
+        self.lines = "\n".join(f"{name}={{!r}}" for name in names)
+
+
+_EVERY, _LOCKED = _Named(_ROWS.values()), _Named(row for row in _ROWS.values() if row.locked)
+
+
+def _hashed(settings: Settings, named: _Named) -> str:
+    values = [value.value if isinstance(value, Enum) else value for value in named.values(settings)]
+    return hashlib.sha256(named.lines.format(*values).encode()).hexdigest()[:8]

@@ -16,14 +16,16 @@ from pendant.tooling.tool_in_use import Tooling
 
 
 class Publisher:
-    """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself."""
+    """Makes decisions of what is known after everything that happens in a tick. It decides nothing itself.
+
+    `refresh` comes before the first `step`.
+    """
 
     __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_signs", "_taring", "_tooling")
 
-    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting, settings: Settings) -> None:
+    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting) -> None:
         self._robot, self._tooling, self._taring, self._scripting = robot, tooling, taring, scripting
         self._signs = 0
-        self.refresh(settings)
 
     def refresh(self, settings: Settings) -> None:
         """The settings are new."""

@@ -108,7 +108,7 @@ class Supervisor:
         )
         run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
         self._tare = TareRun(sensor, self._robot, run, tooling, haptics=self._haptics, readers=readers)
-        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting, settings=settings)
+        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting)
         self._refresh()
 
     @property

@@ -41,17 +41,29 @@ def rpy_from_matrix(matrix: ArrayLike) -> tuple[float, float, float]:
 
 def quaternion_from_matrix(matrix: ArrayLike) -> Array:
     """Unit quaternion wxyz (4,), w >= 0, of a rotation matrix (3, 3)."""
-    r = np.asarray(matrix, dtype=float)
+    # Numbers, not arrays: some controllers ask for several in every tick.
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = np.asarray(matrix, dtype=float).tolist()
     # Each row is the quaternion times four times one of its components; the row of the largest component is well conditioned.
-    rows = np.array([
-        [1 + r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-        [r[2, 1] - r[1, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[0, 2] + r[2, 0]],
-        [r[0, 2] - r[2, 0], r[1, 0] + r[0, 1], 1 - r[0, 0] + r[1, 1] - r[2, 2], r[2, 1] + r[1, 2]],
-        [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[2, 1] + r[1, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]],
-    ])  # fmt: skip
-    quaternion = rows[int(np.argmax(np.diag(rows)))]
-    quaternion = quaternion / np.linalg.norm(quaternion)
+    w, x, y, z = 1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz
+    largest = max(w, x, y, z)
+    if largest == w:
+        row = (w, zy - yz, xz - zx, yx - xy)
+    elif largest == x:
+        row = (zy - yz, x, yx + xy, xz + zx)
+    elif largest == y:
+        row = (xz - zx, yx + xy, y, zy + yz)
+    else:
+        row = (yx - xy, xz + zx, zy + yz, z)
+    quaternion = np.array(row)
+    quaternion = quaternion / math.sqrt(quaternion.dot(quaternion))
     return -quaternion if quaternion[0] < 0 else quaternion
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product of two vectors (3,); `np.cross`, which takes any number of them, needs ten times as long."""
+    ax, ay, az = a.tolist()
+    bx, by, bz = b.tolist()
+    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Array:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pendant.motion.script_requests import SIX_WAYS, ForceMode
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
+from sim.arm.frames import cross
 from sim.motion.curves import LEVER
 from sim.motion.line import LINE_GAIN, Line, rotation_vector
 from sim.motion.moves import Reference
@@ -125,7 +126,7 @@ class Compliance(LineStream):
             self.problem = "force mode: needs the flange force sensor"
             return
         at, force = estimate.tcp[:3], -estimate.F_user[:3]  # of the arm on the outside
-        torque = -estimate.F_user[3:] - np.cross(at - estimate.p_BF, force)
+        torque = -estimate.F_user[3:] - cross(at - estimate.p_BF, force)
         self._turn(mode, estimate)
         felt = np.concatenate((self._U.T @ force, self._U.T @ torque))
         for axis, value in zip(self._axes, felt, strict=True):
@@ -151,14 +152,14 @@ class Compliance(LineStream):
         z = U[:, 2]
         if mode.turns == "to_origin":
             y = np.array(mode.origin) - estimate.tcp[:3]
-            x = np.cross(y, z)
+            x = cross(y, z)
         else:
             x = estimate.tcp[3:] - z * float(z @ estimate.tcp[3:])
-            y = np.cross(z, x)
+            y = cross(z, x)
         sizes = float(np.linalg.norm(x)), float(np.linalg.norm(y))
         if min(sizes) > STILL:
             x, y = x / sizes[0], y / sizes[1]
-            self._U = np.column_stack((x, y, np.cross(x, y)))
+            self._U = np.column_stack((x, y, cross(x, y)))
 
     def _apart(self, p: Array, R: Array, q: Array) -> Array:
         """From the tool of a reference to a place: (6,) in axes of B [m, rad]."""

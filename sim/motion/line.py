@@ -58,7 +58,10 @@ class Line:
         p, R, jacobian = self._dynamics.update(q)
         lever = R @ self._tcp
         at_tcp = jacobian.copy()
-        at_tcp[:3] += np.cross(jacobian[3:].T, lever).T
+        (wx, wy, wz), (x, y, z) = jacobian[3:], lever.tolist()
+        at_tcp[0] += wy * z - wz * y
+        at_tcp[1] += wz * x - wx * z
+        at_tcp[2] += wx * y - wy * x
         return p + lever, R, at_tcp
 
     def singular(self, q: Array) -> bool:
@@ -94,8 +97,8 @@ class Line:
 
 def rotation_vector(R: Array) -> Array:
     """Axis times angle (3,) [rad] of a rotation matrix."""
-    w, *v = quaternion_from_matrix(R)
-    size = math.sqrt(sum(float(x) ** 2 for x in v))
+    w, *v = quaternion_from_matrix(R).tolist()
+    size = math.sqrt(sum(x**2 for x in v))
     return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
 
 

@@ -4,6 +4,7 @@ A stream is a list of steps, one a tick. `follow` gives what the spec asks for i
 and the kinds of events. `drive` gives the same of a supervisor.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from math import inf
 
@@ -178,15 +179,34 @@ class World:
 
 def follow(stream: list[Step], settings: Settings) -> list[Seen]:
     """What the spec asks for. The stream's settings changes are not followed: give streams without them."""
-    world = World()
-    seen: list[Seen] = []
-    for tick, step in enumerate(stream):
-        kinds: list[Kind] = []
-        _tick(world, tick, step, settings, kinds)
-        number = world.at if world.program in (ProgramState.RUNNING, ProgramState.PAUSED) else 0
-        law = _law(world, tick, settings)
-        seen.append((world.mode, world.safety, world.phase, law, world.program, number, tuple(kinds)))
-    return seen
+    return Follower(settings).go(stream)
+
+
+class Follower:
+    """Says of streams, one after the other, what the spec asks for."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._world = World()
+        self._tick = 0
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """All that what it says of the next stream depends on besides the stream."""
+        return self._tick, replace(self._world)
+
+    def go(self, stream: list[Step]) -> list[Seen]:
+        """What the spec asks for in the stream."""
+        world, settings = self._world, self._settings
+        seen: list[Seen] = []
+        for tick, step in enumerate(stream, self._tick):
+            kinds: list[Kind] = []
+            _tick(world, tick, step, settings, kinds)
+            number = world.at if world.program in (ProgramState.RUNNING, ProgramState.PAUSED) else 0
+            law = _law(world, tick, settings)
+            seen.append((world.mode, world.safety, world.phase, law, world.program, number, tuple(kinds)))
+        self._tick += len(stream)
+        return seen
 
 
 def _n(seconds: float) -> int:
@@ -616,39 +636,61 @@ def _stay(w: World, t: int, i: Step, s: Settings, pressed: bool, let_go: bool, s
 
 def agree(stream: list[Step], settings: Settings) -> list[Seen]:
     """Run both, compare every tick, return what was seen."""
-    return _compare(stream, settings, drive(Supervisor(settings, 6), stream))
+    return _compare(stream, drive(Supervisor(settings, 6), stream), follow(stream, settings))
 
 
 class Agreement:
-    """The same of many streams that begin differently and go on alike.
-
-    A supervisor in a state in which one has gone on like that decides the same (`Supervisor.state`): it is not asked twice.
+    """The same of many streams that begin differently and go on alike, in some ways.
 
     Args:
         settings: of all of them.
-        after: how they go on.
+        afters: the ways in which each goes on.
     """
 
-    def __init__(self, settings: Settings, after: list[Step]) -> None:
-        self._settings, self._after = settings, after
-        self._known: list[tuple[tuple[object, ...], list[Seen]]] = []
+    def __init__(self, settings: Settings, *afters: list[Step]) -> None:
+        self._afters = afters
+        self._driven = _GoneOn(lambda: Driver(Supervisor(settings, 6)), afters)
+        self._followed = _GoneOn(lambda: Follower(settings), afters)
 
     def agree(self, stream: list[Step]) -> None:
-        """Run both with `stream` and what comes after; compare every tick."""
-        driver = Driver(Supervisor(self._settings, 6))
-        seen = driver.go(stream)
-        state = driver.state
-        later = next((later for known, later in self._known if known == state), None)
-        if later is None:
-            later = driver.go(self._after)
-            self._known.append((state, later))
-        _compare([*stream, *self._after], self._settings, seen + later)
+        """Run both with `stream` and what comes after, in each way; compare every tick."""
+        driven, followed = self._driven.all_of(stream), self._followed.all_of(stream)
+        for after, seen, asked in zip(self._afters, driven, followed, strict=True):
+            _compare([*stream, *after], seen, asked)
 
 
-def _compare(stream: list[Step], settings: Settings, seen: list[Seen]) -> list[Seen]:
-    asked = follow(stream, settings)
-    for tick, (has, should) in enumerate(zip(seen, asked, strict=True)):
-        assert has == should, f"tick {tick}: {has}, should be {should}, after {stream[max(0, tick - 3) : tick + 1]}"
+class _GoneOn:
+    """What one of a kind does with streams and what comes after.
+
+    In a state in which one has gone on before, another goes on the same (`Supervisor.state`): it is not asked twice.
+    """
+
+    def __init__(self, make: Callable[[], Driver | Follower], afters: tuple[list[Step], ...]) -> None:
+        self._make, self._afters = make, afters
+        self._known: list[tuple[tuple[object, ...], list[list[Seen]]]] = []
+
+    def all_of(self, stream: list[Step]) -> list[list[Seen]]:
+        """What is seen of it with `stream` and each way to go on."""
+        one = self._make()
+        seen = one.go(stream)
+        state = one.state
+        known = next((later for before, later in self._known if before == state), None)
+        if known is None:
+            first, *others = self._afters
+            known = [one.go(first), *[self._anew(stream).go(after) for after in others]]
+            self._known.append((state, known))
+        return [seen + later for later in known]
+
+    def _anew(self, stream: list[Step]) -> Driver | Follower:
+        one = self._make()
+        one.go(stream)
+        return one
+
+
+def _compare(stream: list[Step], seen: list[Seen], asked: list[Seen]) -> list[Seen]:
+    if seen != asked:
+        for tick, (has, should) in enumerate(zip(seen, asked, strict=True)):
+            assert has == should, f"tick {tick}: {has}, should be {should}, after {stream[max(0, tick - 3) : tick + 1]}"
     return seen
 
 

@@ -63,8 +63,8 @@ class Parts:
             cast("Tooling", self.tooling),
             cast("Taring", self.taring),
             scripting=cast("Scripting", self.scripting),
-            settings=settings,
         )
+        self.publisher.refresh(settings)
         self.settings = settings
         self.set(**changes)
 

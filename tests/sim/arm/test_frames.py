@@ -4,6 +4,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from sim.arm.frames import (
+    cross,
     inertia_matrix,
     matrix_from_quaternion,
     quaternion_from_matrix,
@@ -70,6 +71,7 @@ def test_six_numbers_make_a_tensor() -> None:
 
 def test_a_skew_matrix_is_the_cross_product() -> None:
     np.testing.assert_allclose(skew([1, 2, 3]) @ [4, 5, 6], [-3, 6, -3])
+    np.testing.assert_array_equal(cross(np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0])), [-3, 6, -3])
 
 
 def test_a_transform_turns_then_moves() -> None:
