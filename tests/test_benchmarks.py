@@ -69,7 +69,7 @@ def test_a_bar_is_held_or_missed(value: float, limits: dict[str, float], held: b
 def run(monkeypatch: pytest.MonkeyPatch, name: str, *arguments: str) -> None:
     """Run a bench of one row from the command line."""
     monkeypatch.setattr(sys, "argv", [name, *arguments])
-    with pytest.raises(SystemExit, match="^0$"):
+    with pytest.raises(SystemExit, match=r"^0$"):
         common.main(name, lambda tried: tried.row("payload", arms.heaviest(tried.options.arm), "kg"))
 
 
@@ -85,7 +85,7 @@ def test_results_of_another_arm_name_it_and_stand_apart(tmp_path: Path, monkeypa
 
 def test_a_bench_that_chooses_its_own_arms_takes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["hold", "--out", str(tmp_path), "--arm", "ur3e"])
-    with pytest.raises(SystemExit, match="^2$"):
+    with pytest.raises(SystemExit, match=r"^2$"):
         common.main("hold", lambda tried: None)
     assert set(BENCHES) > arms.BENCHES
 
