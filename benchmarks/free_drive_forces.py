@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from benchmarks.arms import USUAL, load
-from benchmarks.common import Report, main, spread
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.postures import posture
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Inputs
@@ -252,6 +252,9 @@ def measure(report: Report) -> None:
         ended = np.isnan(values)
         report.share(f"{what}: free-drive ended meanwhile", int(ended.sum()), ended.size, at_most=0.0)
         values, others = values[~ended], others[~np.isnan(others)]
+        if not (values.size and others.size):
+            report.row(f"{what}, p95", NO_CASE, unit, at_most=bar, n=0)
+            continue
         p95 = float(np.percentile(values, 95))
         report.row(f"{what}, p95", p95, unit, at_most=bar, n=values.size)
         report.row(f"{what}, median", float(np.median(values)), unit, n=values.size)
