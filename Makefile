@@ -21,7 +21,7 @@ PIP := $(BIN)/python $(INSTALL)
 # One more than two cores have: a third of the time, tests wait for a clock.
 WORKERS ?= 3
 SEED ?= 1000
-BENCHES := $(filter-out __init__ common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
+BENCHES := $(filter-out __init__ arms common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 # Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable

@@ -15,6 +15,7 @@ from scipy.special import betaincinv
 
 from app.engine import spreading as engine
 from app.engine.source import commit_of, digest_of
+from benchmarks import arms
 from pendant.all_settings import Settings, digest
 
 T = TypeVar("T")
@@ -64,6 +65,7 @@ class Options:
     full: bool
     seed: int
     out: Path
+    arm: str = arms.USUAL
 
 
 @dataclass(slots=True)
@@ -114,10 +116,10 @@ class Report:
             sys.stderr.write(f"{self.name}: the code changed while it was measured ({self.digest}, now {after}): no result\n")
             return 2
         size = "full" if self.options.full else "quick"
-        document = {"bench": self.name, "size": size, "seed": self.options.seed}
+        document = {"bench": self.name, "arm": self.options.arm, "size": size, "seed": self.options.seed}
         document |= {"digest": self.digest, "commit": self.commit, "settings": digest(Settings())}
         keys = f"seed base {self.options.seed}, code {self.digest}, commit {self.commit}, settings {document['settings']}"
-        table = Table(title=f"{self.name} ({size}, {keys})")
+        table = Table(title=f"{self.name} ({self.options.arm}, {size}, {keys})")
         for column in ("figure", "n", "measured", "unit", f"{100.0 * CONFIDENCE:g} % bound", "bar", "held"):
             table.add_column(column)
         for row in self.rows:
@@ -144,8 +146,13 @@ def main(name: str, measure: Callable[[Report], None]) -> None:
     parser.add_argument("--full", action="store_true", help="the full size, up to 30 minutes")
     parser.add_argument("--seed", type=int, default=BASES[0], help="seed base")
     parser.add_argument("--out", type=Path, default=Path("out/bench"), help="folder of the JSON file")
+    if name in arms.BENCHES:
+        parser.add_argument("--arm", choices=arms.names(), default=arms.USUAL, help="another than the UR5e: a folder of its own")
     values = parser.parse_args()
-    report = Report(name, Options(values.full, values.seed, values.out))
+    arm = getattr(values, "arm", arms.USUAL)
+    # The results of an arm have a folder, and so a page, of their own: a row's name does not say of which arm it is.
+    folder = values.out if arm == arms.USUAL else values.out / arm
+    report = Report(name, Options(values.full, values.seed, folder, arm))
     start = time.perf_counter()
     measure(report)
     report.notes.append(f"took {time.perf_counter() - start:.0f} s")

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.arms import heaviest, senses
 from benchmarks.common import Report, main, spread
 from benchmarks.drop import enter
 from benchmarks.hold import IDLE, MOUNTINGS, flange
@@ -79,12 +80,16 @@ def measure_fault(fault: Fault) -> Result:
 
 def measure(report: Report) -> None:
     """Fill the report."""
+    arm = report.options.arm
+    if not senses(arm):
+        report.notes.append("there is no sensor that could drift")
+        return
     count = 200 if report.options.full else 20
-    cases, _ = draw(report.options.seed + 1100, -(-count // len(MOUNTINGS)), "sensor")
+    cases, _ = draw(report.options.seed + 1100, -(-count // len(MOUNTINGS)), "sensor", arm)
     rng = np.random.default_rng([report.options.seed, 13])
     faults: list[Fault] = []
     for k, case in enumerate(cases[:count]):
-        mass = float(rng.uniform(0.0, 5.0))
+        mass = float(rng.uniform(0.0, heaviest(arm)))
         kind = ("ramp", "step", "ramp", "step", "outage")[k % 5]
         size = float(rng.uniform(1.0, 20.0)) if kind == "ramp" else STEPS[k // 5 % len(STEPS)]
         faults.append(Fault(case._replace(true=mass, configured=mass), kind, size))

@@ -1,4 +1,4 @@
-"""Free-drive: what a hand needs to lead, turn, start and stop a UR5e, with and without friction taken off.
+"""Free-drive: what a hand needs to lead, turn, start and stop an arm, with and without friction taken off.
 
 Random postures (`benchmarks.postures`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and
 damper) leads the flange at 0.1 m/s along six directions, turns it at 0.3 rad/s, pushes the elbow, starts it from rest, and lets
@@ -12,8 +12,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from app.files.library import load_arm
-from benchmarks.common import Report, main, spread
+from benchmarks.arms import USUAL, load
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.postures import posture
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Inputs
@@ -47,6 +47,7 @@ class Case(NamedTuple):
     over: bool = False  # by 20 % too much
     rest: float = 10.0  # hands off after letting go [s]
     mismatch: Mismatch = "on"
+    arm: str = USUAL
 
 
 class Result(NamedTuple):
@@ -65,7 +66,7 @@ class Hand:
     """A simulation in free-drive, and a hand on it."""
 
     def __init__(self, case: Case) -> None:
-        arm = load_arm("ur5e")
+        arm = load(case.arm)
         probe = Simulation(arm, Scenario(mismatch="nominal"), Settings())
         q, self.thrown = posture(np.random.default_rng([case.seed, case.number]), probe)
         scenario = Scenario(
@@ -173,7 +174,7 @@ def directions() -> Array:
 
 def elbow_directions(hand: Hand) -> Array:
     """Both ways the elbow can go: about the shoulder and, unless it is within `LEVER` of its axis, about the base (k, 3)."""
-    elbow = hand.place("elbow") - np.array([0.0, 0.0, load_arm("ur5e").chain.d[0]])
+    elbow = hand.place("elbow") - np.array([0.0, 0.0, hand.simulation.arm.chain.d[0]])
     round_base = np.cross([0.0, 0.0, 1.0], elbow)
     up = np.cross(round_base, elbow)
     axes = [up / np.linalg.norm(up)]
@@ -235,10 +236,10 @@ FORCES = (
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    count, seed = (50 if report.options.full else 6), report.options.seed
-    cases = [Case(k, seed) for k in range(count)]
-    cases += [Case(k, seed, helped=False) for k in range(count)]
-    cases += [Case(k, seed, over=True, rest=10.0 if report.options.full else 4.0) for k in range(count)]
+    count, seed, arm = (50 if report.options.full else 6), report.options.seed, report.options.arm
+    cases = [Case(k, seed, arm=arm) for k in range(count)]
+    cases += [Case(k, seed, helped=False, arm=arm) for k in range(count)]
+    cases += [Case(k, seed, over=True, rest=10.0 if report.options.full else 4.0, arm=arm) for k in range(count)]
     rows = spread(measure_case, cases)
     helped, plain = [row for row, _ in rows[:count]], [row for row, _ in rows[count : 2 * count]]
     thrown = sum(number for _, number in rows[:count])
@@ -251,6 +252,9 @@ def measure(report: Report) -> None:
         ended = np.isnan(values)
         report.share(f"{what}: free-drive ended meanwhile", int(ended.sum()), ended.size, at_most=0.0)
         values, others = values[~ended], others[~np.isnan(others)]
+        if not (values.size and others.size):
+            report.row(f"{what}, p95", NO_CASE, unit, at_most=bar, n=0)
+            continue
         p95 = float(np.percentile(values, 95))
         report.row(f"{what}, p95", p95, unit, at_most=bar, n=values.size)
         report.row(f"{what}, median", float(np.median(values)), unit, n=values.size)

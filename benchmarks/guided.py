@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.arms import heaviest
 from benchmarks.common import Report, main, spread
 from benchmarks.drop import enter
 from benchmarks.hold import IDLE, MOUNTINGS
@@ -184,13 +185,13 @@ def measure_lead(lead: Lead) -> Result:
 def leads(report: Report, minutes: float) -> list[Lead]:
     """So many guided minutes in all, every part in every style."""
     rng = np.random.default_rng([report.options.seed, 17])
-    lengths: list[float] = []
+    arm, lengths = report.options.arm, list[float]()
     while sum(lengths) < minutes:
         lengths.append(float(rng.uniform(2.0, 10.0)) if report.options.full else 1.0)
-    cases, _ = draw(report.options.seed + 1700, -(-len(lengths) // len(MOUNTINGS)), "sensor")
+    cases, _ = draw(report.options.seed + 1700, -(-len(lengths) // len(MOUNTINGS)), "sensor", arm)
     made: list[Lead] = []
     for k, (case, length) in enumerate(zip(cases, lengths, strict=False)):
-        mass = float(rng.uniform(0.0, 5.0)) if rng.random() < 0.5 else 0.0
+        mass = float(rng.uniform(0.0, heaviest(arm))) if rng.random() < 0.5 else 0.0
         case = case._replace(true=mass, configured=mass)
         made.append(Lead(case, PARTS[k % len(PARTS)], STYLES[k // len(PARTS) % len(STYLES)], length))
     return made

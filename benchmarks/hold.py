@@ -12,6 +12,7 @@ from benchmarks.common import Report, main, spread
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.tick.modes import Mode
+from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
 from sim.plant.touch import Pull, Push
@@ -67,6 +68,11 @@ def travel(simulation: Simulation, seconds: float, start: np.ndarray) -> float:
     return worst
 
 
+def smallest_singular(arm: Arm) -> float:
+    """`SMALLEST_SINGULAR` of a UR5e; of an arm of another reach as much more or less."""
+    return SMALLEST_SINGULAR * arm.reach / 0.85
+
+
 def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
     """A random posture away from singularities, and how many were thrown away before."""
     arm = load_arm(arm_name)
@@ -75,7 +81,7 @@ def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
     while True:
         q = rng.uniform(-2.6, 2.6, arm.n)
         jacobian = probe.dynamics.update(q)[2]
-        if np.linalg.svd(jacobian, compute_uv=False)[-1] > SMALLEST_SINGULAR * arm.reach / 0.85:
+        if np.linalg.svd(jacobian, compute_uv=False)[-1] > smallest_singular(arm):
             return q.tolist(), redrawn
         redrawn += 1
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.arms import senses
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
@@ -238,7 +239,7 @@ def measure_pushes(arm: Arm, rng: np.random.Generator) -> Count:
 def arms(report: Report, what: str, count: int, per_arm: int) -> list[Arm]:
     """Arms with the right payload for `count` touches."""
     number = -(-count // per_arm)
-    cases, _ = draw(report.options.seed + 1300, -(-number // len(MOUNTINGS)), "sensor")
+    cases, _ = draw(report.options.seed + 1300, -(-number // len(MOUNTINGS)), "sensor", report.options.arm)
     found = [case._replace(configured=case.true) for case in cases[:number]]
     return [Arm(case, what, per_arm, what.startswith("must not") and k % 3 == 2) for k, case in enumerate(found)]
 
@@ -246,7 +247,8 @@ def arms(report: Report, what: str, count: int, per_arm: int) -> list[Arm]:
 def measure(report: Report) -> None:
     """Fill the report."""
     full = report.options.full
-    for what in ("must not", "must not, force alone"):
+    felt = senses(report.options.arm)  # a push, by the flange
+    for what in ("must not", "must not, force alone") if felt else ("must not",):
         results = spread(measure_arm, arms(report, what, 1000 if full else 72, PER_ARM))
         wrong = Counter(kind for result in results for kind in result.wrong)
         touches = sum(result.touches for result in results)
@@ -262,6 +264,8 @@ def measure(report: Report) -> None:
     report.row("bumps in the check: way of the flange, largest", max(r.way for r in results), "mm", at_most=10.0, n=bumps)
     refusals = Counter(kind for result in results for kind in result.kinds)
     report.notes.append("bumps: " + ", ".join(f"{kind} {number}" for kind, number in refusals.items()))
+    if not felt:
+        return
     results = spread(measure_arm, arms(report, "pushes", 1000 if full else 40, 8))
     pushes = sum(result.touches for result in results)
     on_time, entered = sum(r.on_time for r in results), sum(r.entered for r in results)

@@ -7,34 +7,37 @@ read for scoring alone.
 
 import numpy as np
 
+from benchmarks.arms import USUAL, load
 from benchmarks.common import Report, main, spread
-from benchmarks.contacts.hands import LATEST, LinkHands, LinkTouch, hands
+from benchmarks.contacts.hands import LATEST, LinkHands, LinkTouch, forces, hands
 
-ARMS = {"ur5e": 5.0, "ur10e": 10.0, "ur16e": 10.0}
-"""The arms, each with the largest payload of this bench [kg]. A UR3e cannot withstand such hands: its shoulder holds 54 N·m."""
-FORCES = (60.0, 80.0, 120.0, 200.0, 300.0)
+MOST = 10.0  # [kg] that hang on an arm, where it bears so much
+BESIDE = ("ur10e", "ur16e")
+"""Arms that are looked at beside the usual one, without a bar."""
 PUSHES = 4  # a case
 
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    full, seed = report.options.full, report.options.seed
-    rounds = {"ur5e": 88 if full else 6, "ur10e": 10 if full else 1, "ur16e": 10 if full else 1}
+    full, seed, arm = report.options.full, report.options.seed, report.options.arm
+    rounds = {arm: 88 if full else 6}
+    if arm == USUAL:
+        rounds |= dict.fromkeys(BESIDE, 10 if full else 1)
     cases = [
-        LinkHands(arm, share * most, soft, moving, seed + k, PUSHES)
-        for arm, most in ARMS.items()
-        for k in range(rounds[arm])
+        LinkHands(each, share * min(MOST, load(each).payload), soft, moving, seed + k, PUSHES)
+        for each, count in rounds.items()
+        for k in range(count)
         for share, soft, moving in ((0.0, False, False), (0.4, True, True), (1.0, False, k % 2 == 1))
     ]
     touches = [touch for some in spread(hands, cases) for touch in some]
-    first = [touch for touch in touches if touch.case.arm == "ur5e"]
-    _rows(report, "ur5e", first, bar=True)
+    first = [touch for touch in touches if touch.case.arm == arm]
+    _rows(report, arm, first, bar=True)
     for moving in (False, True):
-        _rows(report, "ur5e, at work" if moving else "ur5e, held", [touch for touch in first if touch.case.moving is moving])
-    for force in FORCES:
-        _rows(report, f"ur5e, {force:g} N", [touch for touch in first if touch.force == force])
-    for arm in list(ARMS)[1:]:
-        _rows(report, arm, [touch for touch in touches if touch.case.arm == arm])
+        _rows(report, f"{arm}, at work" if moving else f"{arm}, held", [touch for touch in first if touch.case.moving is moving])
+    for force in forces(arm):
+        _rows(report, f"{arm}, {force:g} N", [touch for touch in first if touch.force == force])
+    for each in list(rounds)[1:]:
+        _rows(report, each, [touch for touch in touches if touch.case.arm == each])
     report.notes += [touch.story for touch in touches if _wrong(touch)][:60]
 
 

@@ -11,13 +11,14 @@ import math
 
 import numpy as np
 
+from benchmarks.arms import heaviest, senses
 from benchmarks.common import Report, main, spread
 from benchmarks.payload import draw
 from benchmarks.wrenches.watched import Fall, Seen, Step, measure_fall, measure_step, measure_touches
 
 FALLS = ("rest", "guided", "hand stays", "carried")
 STEPS = ("rest", "guided")
-MASSES = (0.3, 5.0)  # [kg]
+LIGHTEST = 0.3  # [kg]
 SIZES = (5.0, 20.0)  # of a step [N]
 LEVELS = (0.5, 0.9, 0.99, 1.0)
 SOME = 1e-9  # the odds are 0 at least, in nats: that much is told where nothing is
@@ -26,18 +27,22 @@ HONEST = 0.985  # of what is told with 99 % or more
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    full = report.options.full
+    full, arm = report.options.full, report.options.arm
+    if not senses(arm):
+        report.notes.append("without a flange sensor there is no observer")
+        return
+    most = heaviest(arm)
     rng = np.random.default_rng([report.options.seed, 23])
-    cases, _ = draw(report.options.seed + 2300, 100 if full else 10, "sensor")
+    cases, _ = draw(report.options.seed + 2300, 100 if full else 10, "sensor", arm)
     falls: list[Fall] = []
     for k, case in enumerate(cases):
-        mass = float(np.exp(rng.uniform(*np.log(MASSES))))
+        mass = float(np.exp(rng.uniform(*np.log([LIGHTEST, most]))))
         falls.append(Fall(case._replace(true=mass, configured=mass), FALLS[k // 4 % 4]))
-    hands, _ = draw(report.options.seed + 2500, 50 if full else 5, "sensor")
+    hands, _ = draw(report.options.seed + 2500, 50 if full else 5, "sensor", arm)
     steps: list[Step] = []
-    cases, _ = draw(report.options.seed + 2700, 60 if full else 6, "sensor")
+    cases, _ = draw(report.options.seed + 2700, 60 if full else 6, "sensor", arm)
     for k, case in enumerate(cases):
-        mass = float(rng.uniform(0.0, MASSES[1]))
+        mass = float(rng.uniform(0.0, most))
         steps.append(Step(case._replace(true=mass, configured=mass), STEPS[k // 4 % 2], float(rng.uniform(*SIZES))))
     seen = [one for some in spread(measure_fall, falls) for one in some]
     seen += [one for some in spread(measure_step, steps) for one in some]

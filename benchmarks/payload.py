@@ -1,4 +1,4 @@
-"""Payload: true and configured each in 0 to 5 kg, over postures and mountings, and nobody touches the arm.
+"""Payload: true and configured each in 0 to 5 kg over postures and mountings, and nobody touches the arm.
 
 Grids: with the flange sensor, with it invalid, and with activation sequence and walls off. Truth is read for scoring alone.
 """
@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.files.library import load_arm
+from benchmarks import arms
 from benchmarks.common import Report, main, spread
-from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
+from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange, smallest_singular
 from pendant.all_settings import Settings, apply
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
@@ -22,7 +22,6 @@ from sim.plant.changes import SensorFault
 from sim.rigid_body.dynamics import Dynamics
 from sim.simulation import Simulation
 
-ARM = "ur5e"
 GRIDS = ("sensor", "no sensor", "unguarded")
 SETTLE = 1.0  # [s] before the button is pressed
 UNGUARDED = 1.0  # [s] in free-drive that are looked at without sequence and walls
@@ -40,6 +39,7 @@ class Case(NamedTuple):
     true: float  # [kg]
     configured: float  # [kg]
     grid: str
+    arm: str = arms.USUAL
 
 
 class Result(NamedTuple):
@@ -56,33 +56,33 @@ class Result(NamedTuple):
     cause: str  # parameter, or kind of the leaving
 
 
-def postures(count: int, rng: np.random.Generator) -> tuple[list[tuple[float, ...]], int]:
+def postures(count: int, rng: np.random.Generator, arm_name: str = arms.USUAL) -> tuple[list[tuple[float, ...]], int]:
     """Random postures away from singularities, and how many were thrown away."""
-    arm = load_arm(ARM)
+    arm = arms.load(arm_name)
     probe: Dynamics = Simulation(arm, Scenario(mismatch="nominal"), Settings()).dynamics
     found: list[tuple[float, ...]] = []
     redrawn = 0
     while len(found) < count:
         q = rng.uniform(-2.6, 2.6, arm.n)
-        if np.linalg.svd(probe.update(q)[2], compute_uv=False)[-1] > SMALLEST_SINGULAR:
+        if np.linalg.svd(probe.update(q)[2], compute_uv=False)[-1] > smallest_singular(arm):
             found.append(tuple(q.tolist()))
         else:
             redrawn += 1
     return found, redrawn
 
 
-def draw(options_seed: int, count: int, grid: str) -> tuple[list[Case], int]:
+def draw(options_seed: int, count: int, grid: str, arm: str = arms.USUAL) -> tuple[list[Case], int]:
     """`count` postures x 4 mountings; a third with the right payload, the others anything."""
     rng = np.random.default_rng([options_seed, GRIDS.index(grid) % 2])
-    found, redrawn = postures(count, rng)
+    found, redrawn = postures(count, rng, arm)
     cases: list[Case] = []
     for posture in found:
         for mounting in MOUNTINGS:
-            true, configured = rng.uniform(0.0, 5.0, 2)
+            true, configured = rng.uniform(0.0, arms.heaviest(arm), 2)
             number = len(cases)
             if number % 3 == 0:
                 configured = true
-            cases.append(Case(number, options_seed, mounting, posture, float(true), float(configured), grid))
+            cases.append(Case(number, options_seed, mounting, posture, float(true), float(configured), grid, arm))
     return cases, redrawn
 
 
@@ -92,8 +92,9 @@ def simulation(case: Case, settings: Settings = SETTINGS) -> Simulation:
     centre = rng.uniform([-0.03, -0.03, 0.0], [0.03, 0.03, 0.1])
     shift = rng.normal(size=3)
     shift *= NEAR * rng.uniform() / np.linalg.norm(shift)
+    arm = arms.load(case.arm)
     device = Simulation(
-        load_arm(ARM),
+        arm,
         Scenario(
             mounting=list(MOUNTINGS[case.mounting]),
             posture=list(case.posture),
@@ -103,7 +104,8 @@ def simulation(case: Case, settings: Settings = SETTINGS) -> Simulation:
         ),
         settings,
     )
-    changes = (SensorFault(sensor="force_torque", outage=True),) if case.grid == "no sensor" else ()
+    fails = case.grid == "no sensor" and arm.sensors.force_torque is not None
+    changes = (SensorFault(sensor="force_torque", outage=True),) if fails else ()
     device.tick(Wishes(IDLE.inputs, (), changes))
     for _ in range(round(500 * SETTLE)):
         device.tick(IDLE)
@@ -155,8 +157,9 @@ def measure_case(case: Case) -> Result:
 def measure(report: Report) -> None:
     """Fill the report."""
     count = 100 if report.options.full else 9
-    for grid in GRIDS:
-        cases, redrawn = draw(report.options.seed, count if grid != "unguarded" else max(count // 3, 5), grid)
+    arm = report.options.arm
+    for grid in GRIDS if arms.senses(arm) else GRIDS[1:]:
+        cases, redrawn = draw(report.options.seed, count if grid != "unguarded" else max(count // 3, 5), grid, arm)
         results = spread(measure_case, cases)
         (score_unguarded if grid == "unguarded" else score)(report, grid, results)
         report.notes.append(f"{grid}: {redrawn} postures near a singularity drawn again for {count}")

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from benchmarks.arms import heaviest
 from benchmarks.common import Report, main, spread
-from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, SMALLEST_SINGULAR, flange
+from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange, smallest_singular
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from pendant.all_settings import Settings, apply
 from pendant.event_table import TABLE
@@ -48,7 +49,7 @@ class Result(NamedTuple):
 def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
     """A direction in W in which the flange can go for `WAY` by the model's kinematics; None when 20 draws found none."""
     dynamics, q0 = device.dynamics, device.plant.q.copy()
-    limits = np.array(device.arm.limits.position)
+    limits, smallest = np.array(device.arm.limits.position), smallest_singular(device.arm)
     base = device.plant.data.xmat[device.plant.model.body("foot").id].reshape(3, 3)
     steps = 30
     for _ in range(20):
@@ -57,7 +58,7 @@ def free_way(device: Simulation, rng: np.random.Generator) -> np.ndarray | None:
         q = q0.copy()
         for _ in range(steps):
             jacobian = dynamics.update(q)[2]
-            if np.linalg.svd(jacobian, compute_uv=False)[-1] < SMALLEST_SINGULAR or np.any(np.abs(q) > limits - 0.2):
+            if np.linalg.svd(jacobian, compute_uv=False)[-1] < smallest or np.any(np.abs(q) > limits - 0.2):
                 break
             q = q + np.linalg.pinv(jacobian[:3]) @ direction * WAY / steps
         else:
@@ -94,11 +95,12 @@ def measure_push(push: Guiding) -> Result:
 
 def pushes(report: Report, sensor: bool, walls: bool, *, count: int, steady: bool = False) -> list[Guiding]:
     """Right payloads of 0 to 5 kg, forces and paces at random."""
-    cases, _ = draw(report.options.seed + 500, -(-count // len(MOUNTINGS)), "sensor" if sensor else "no sensor")
+    arm = report.options.arm
+    cases, _ = draw(report.options.seed + 500, -(-count // len(MOUNTINGS)), "sensor" if sensor else "no sensor", arm)
     rng = np.random.default_rng([report.options.seed, 5])
     made: list[Guiding] = []
     for case in cases[:count]:
-        mass = float(rng.uniform(0.0, 5.0))
+        mass = float(rng.uniform(0.0, heaviest(arm)))
         force, pace = float(rng.uniform(15.0, 40.0)), float(rng.uniform(0.12, 0.3))
         made.append(Guiding(case._replace(true=mass, configured=mass), force, pace, walls, sensor, steady))
     return made

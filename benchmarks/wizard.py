@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from app.files.library import load_arm
+from benchmarks.arms import USUAL
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import IDLE, MOUNTINGS
-from benchmarks.payload import ARM, postures
+from benchmarks.payload import postures
 from pendant.all_settings import Settings
 from pendant.events.event import Event, Kind
 from pendant.inputs import Command, Inputs
@@ -64,7 +65,7 @@ def measure_case(case: Case) -> Result:
     rng = np.random.default_rng([case.seed, case.number, GRIDS.index(case.grid)])
     centre = rng.uniform([-0.03, -0.03, 0.0], [0.03, 0.03, 0.1])
     device = Simulation(
-        load_arm(ARM),
+        load_arm(USUAL),
         Scenario(
             mounting=list(MOUNTINGS[case.mounting]),
             posture=list(case.posture),

@@ -5,16 +5,18 @@ import json
 import math
 import re
 import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from benchmarks import common, realtime, recording, tick
+from benchmarks import arms, common, drift, realtime, recording, tick
 from benchmarks.common import Options, Report
 
 FOLDER = Path(common.__file__).parent
-HELPERS = {"__init__", "common", "network_clients", "postures", "viewer"}
+HELPERS = {"__init__", "arms", "common", "network_clients", "postures", "viewer"}
 BENCHES = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem not in HELPERS)
 
 
@@ -62,6 +64,66 @@ def test_a_bar_is_held_or_missed(value: float, limits: dict[str, float], held: b
     assert len(written["settings"]) == 8
     assert (written["digest"], written["commit"]) == (common.code_digest(), common.commit())
     assert [row["held"] for row in written["rows"]] == [held]
+
+
+def run(monkeypatch: pytest.MonkeyPatch, name: str, *arguments: str) -> None:
+    """Run a bench of one row from the command line."""
+    monkeypatch.setattr(sys, "argv", [name, *arguments])
+    with pytest.raises(SystemExit, match=r"^0$"):
+        common.main(name, lambda tried: tried.row("payload", arms.heaviest(tried.options.arm), "kg"))
+
+
+def test_results_of_another_arm_name_it_and_stand_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for arm in ((), ("--arm", "ur3e")):
+        run(monkeypatch, "drop", "--out", str(tmp_path), *arm)
+    found = {path.parent: json.loads(path.read_text()) for path in tmp_path.rglob("*.json")}
+    assert {folder: (document["arm"], document["rows"][0]["value"]) for folder, document in found.items()} == {
+        tmp_path: ("ur5e", 5.0),
+        tmp_path / "ur3e": ("ur3e", 3.0),
+    }
+
+
+def test_a_bench_that_chooses_its_own_arms_takes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["hold", "--out", str(tmp_path), "--arm", "ur3e"])
+    with pytest.raises(SystemExit, match=r"^2$"):
+        common.main("hold", lambda tried: None)
+    assert set(BENCHES) > arms.BENCHES
+
+
+@pytest.mark.parametrize("name", sorted(arms.BENCHES))
+def test_a_bench_that_takes_an_arm_draws_its_cases_on_it(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module(f"benchmarks.{name}")
+    drawn: list[str] = []
+
+    class Enough(Exception):
+        pass
+
+    def spread(work: object, cases: Any) -> None:
+        for case in cases:
+            while not hasattr(case, "arm"):
+                case = case.case if hasattr(case, "case") else case[0]
+            drawn.append(case.arm)
+        raise Enough
+
+    monkeypatch.setattr(module, "spread", spread)
+    with pytest.raises(Enough):
+        module.measure(Report(name, Options(full=False, seed=1000, out=tmp_path, arm="ur3e")))
+    assert set(drawn) == {"ur3e"}
+
+
+def test_a_variant_has_another_flange_sensor_and_the_controller_knows(tmp_path: Path) -> None:
+    usual, noisy, none = (arms.load(name) for name in ("ur5e", "ur5e-noisy-sensor", "ur5e-without-sensor"))
+    first, other = usual.sensors.force_torque, noisy.sensors.force_torque
+    assert first is not None
+    assert other is not None
+    assert other.force.noise == pytest.approx(3.0 * first.force.noise)
+    assert other.torque.noise == pytest.approx(3.0 * first.torque.noise)
+    assert none.sensors.force_torque is None
+    assert [arms.senses(name) for name in arms.names()] == [name != "ur5e-without-sensor" for name in arms.names()]
+    tried = report(tmp_path)
+    tried.options = replace(tried.options, arm="ur5e-without-sensor")
+    drift.measure(tried)
+    assert tried.rows == [], "what does not apply is no bar that was held"
 
 
 def binomial(hits: int, n: int, share: float) -> float:

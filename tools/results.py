@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from benchmarks.arms import USUAL
 from benchmarks.common import NO_CASE, bound, code_digest, shown
 from tools.missed import Miss, Unreadable, followed, history, line, remember
 
@@ -29,7 +30,8 @@ python -m tools.results
 
 `make bench-full` takes hours; `make soak` is an hour by itself. Results of different code never stand on one page: they are keyed
 by a digest of all files of `sim/`, `pendant/`, `app/`, `assets/` and `benchmarks/`. The digest of the code as it is:
-`python -c "from benchmarks.common import code_digest; print(code_digest())"`.
+`python -c "from benchmarks.arms import USUAL
+from benchmarks.common import code_digest; print(code_digest())"`.
 """
 
 HOW_TO_READ = """\
@@ -124,7 +126,8 @@ def _of_commits(documents: list[Document]) -> str:
     """A digest may have several: a commit of pages or tests alone changes none."""
     commits = sorted({document["commit"] for document in documents})
     settings = sorted({document["settings"] for document in documents})
-    return f", commit {', '.join(commits)}, settings {', '.join(settings)}" if documents else ""
+    arms = sorted({document.get("arm", USUAL) for document in documents})
+    return f", commit {', '.join(commits)}, settings {', '.join(settings)}, arm {', '.join(arms)}" if documents else ""
 
 
 def figures(documents: list[Document]) -> list[list[str]]:

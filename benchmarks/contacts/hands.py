@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.files.library import load_arm, load_tool
+from app.files.library import load_tool
+from benchmarks.arms import HEAVIEST, heaviest, load
 from benchmarks.contacts.approaches import START
 from benchmarks.contacts.motion import program
 from benchmarks.contacts.recording import TICK
@@ -57,7 +58,7 @@ class LinkTouch(NamedTuple):
 def hands(case: LinkHands) -> list[LinkTouch]:
     """Run one case."""
     rng = np.random.default_rng([case.seed, 41])
-    arm = load_arm(case.arm)
+    arm = load(case.arm)
     com = [*(0.05 * rng.uniform(-1, 1, 2)).tolist(), 0.06]
     believed, true = (Load(mass=mass, com=com) for mass in (case.payload, case.payload * float(rng.uniform(0.8, 1.2))))
     q = rng.uniform(LOW, HIGH)
@@ -74,6 +75,11 @@ def hands(case: LinkHands) -> list[LinkTouch]:
     return [push(simulation, arm, case, rng) for _ in range(case.pushes)]
 
 
+def forces(arm: str) -> list[float]:
+    """Of hands [N]. Where an arm bears less than others, they are as much weaker, or its shoulder would not withstand them."""
+    return [force * heaviest(arm) / HEAVIEST for force in (60.0, 80.0, 120.0, 200.0, 300.0)]
+
+
 def wait(simulation: Simulation, ticks: int) -> None:
     """Nobody touches the arm."""
     for _ in range(ticks):
@@ -85,7 +91,7 @@ def push(simulation: Simulation, arm: Arm, case: LinkHands, rng: np.random.Gener
     link = int(rng.integers(2))
     joint = arm.chain.elbow - 1 + link
     part, share = arm.chain.joints[joint], float(rng.uniform(0.7, 0.95))
-    force = float(rng.choice([60.0, 80.0, 120.0, 200.0, 300.0]))
+    force = float(rng.choice(forces(case.arm)))
     rise, fall = (int(rng.integers(2, 25)) for _ in range(2))  # ticks: no hand comes or goes within one
     point, way, levers = drawn(simulation, arm, joint, share=share, rng=rng)
     for _ in range(200):
