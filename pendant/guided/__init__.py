@@ -1,1 +1,1 @@
-"""The free arm: whose force moves it, unintended motion, a lost payload, what ends it. Uses limits/, walls/."""
+"""The free arm: whose force moves it, unintended motion, a lost payload, what ends it. Uses limits/, sensor/, walls/."""

@@ -98,6 +98,11 @@ class UserForce:
         """Size of the user's force as the flange sensor alone tells it [N]; 0 where it has not been used."""
         return norm(self._by_sensor)
 
+    @property
+    def fluctuation(self) -> float:
+        """Mean square of what the force at the flange was lately off its mean, all axes together [N²]."""
+        return self._spread
+
     def shift(self, force: Vector) -> None:
         """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""
         x, y, z = force

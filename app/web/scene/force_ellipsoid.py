@@ -1,0 +1,57 @@
+"""What free-drive takes for the user's force: an arrow at the flange, round its tip the ellipsoid of 95 % (FD-19)."""
+
+import numpy as np
+import viser
+
+from app.web.scene.arm_marks import METRES_PER_NEWTON
+from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix
+from sim.exchange.snapshot import Snapshot
+
+LEAST_FORCE = 0.5
+"""A smaller force has no arrow and no label [N]."""
+
+COLOUR = (0, 158, 115)
+"""The touches' arrows are blue: those are the true forces."""
+
+THINNEST = 1e-3
+"""Semi-axis of an ellipsoid, at least [m]."""
+
+
+class ForceEllipsoid:
+    """Arrow, label and ellipsoid. `show` runs in the painter."""
+
+    def __init__(self, scene: viser.SceneApi) -> None:
+        nothing = np.zeros((1, 2, 3), dtype=np.float32)
+        self.arrow = scene.add_arrows(
+            "/user/arrow", nothing, COLOUR, shaft_radius=0.004, head_radius=0.01, head_length=0.02, visible=False
+        )
+        self.ellipsoid = scene.add_icosphere(
+            "/user/ellipsoid", radius=1.0, color=COLOUR, opacity=0.3, visible=False, cast_shadow=False, receive_shadow=False
+        )
+        self.label = scene.add_label("/user/label", "", visible=False, anchor="top-center", font_screen_scale=0.9)
+        self._shown: tuple[float, ...] = ()
+
+    def show(self, snapshot: Snapshot) -> bool:
+        """Draw those of a snapshot, or nothing; True if anything changed."""
+        shown, user = (), snapshot.user
+        if user is not None:
+            face, R_WB = snapshot.truth_links[-1], matrix_from_quaternion(snapshot.truth_links[0, 3:])
+            force = R_WB @ np.array(user.force)
+            axes, R_BE = user.ellipsoid()
+            tip = face[:3] + METRES_PER_NEWTON * force
+            size = float(np.linalg.norm(force))
+            values = (face[:3], tip, METRES_PER_NEWTON * axes, quaternion_from_matrix(R_WB @ R_BE), [size])
+            shown = tuple(np.round(np.concatenate(values), 3).tolist())
+        if shown == self._shown:
+            return False
+        self._shown = shown
+        self.ellipsoid.visible = bool(shown)
+        self.arrow.visible = self.label.visible = bool(shown) and shown[-1] >= LEAST_FORCE
+        if shown:
+            numbers = np.array(shown)
+            self.ellipsoid.position, self.ellipsoid.wxyz = numbers[3:6], numbers[9:13]
+            x, y, z = np.maximum(numbers[6:9], THINNEST).tolist()
+            self.ellipsoid.scale = (x, y, z)
+            self.arrow.points = numbers[:6].reshape(1, 2, 3).astype(np.float32)
+            self.label.position, self.label.text = numbers[3:6], f"Taken as yours: {shown[-1]:.0f} N"
+        return True

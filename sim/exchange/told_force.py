@@ -1,0 +1,14 @@
+"""The user's force with what is known of its error: of the arm's own sensors, for pictures and recordings (FD-19)."""
+
+from pendant.decision import Decision
+from pendant.guided.force_covariance import UncertainForce, covariance
+from pendant.tick.estimate import Estimate
+from sim.arm.arm_file import Arm
+from sim.estimation.wrench_hypotheses import SURE
+from sim.sensing.sensor_drift import sensor_spec
+
+
+def told_force(arm: Arm, estimate: Estimate, decision: Decision) -> UncertainForce | None:
+    """What free-drive took for the user's force in a tick; None while the flange sensor does not tell."""
+    taken = decision.taken
+    return None if taken is None else UncertainForce(taken.force, covariance(taken, estimate, sensor_spec(arm), SURE))
