@@ -10,7 +10,7 @@ against gravity, all in axes of B, its covariance is the sum of
     the sensor's gain: a share of the force, and of what of the load's weight has come to lie in another axis since entry,
     the load's mass: it makes that change larger or smaller, along one line,
     along gravity: of F there, any part that a payload can make may be one's, which one posture cannot tell from a steady hand,
-    the rest: any part of it may be the user's all the same.
+    the rest, as far as it is more than noise: any part of it may be the user's all the same.
 
 Of what is at most so large, and may be anything below it, a third of the square is the variance (a rectangular distribution:
 JCGM 100, Guide to the expression of uncertainty in measurement, 4.3.7). Joints tell a force with an error that is not known well
@@ -95,7 +95,10 @@ def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: f
     noise = sensor.noise_force**2 + (sensor.noise_acceleration * estimate.load_mass) ** 2
     swing = max(told.fluctuation / 3.0 - noise, 0.0)
     gain = sensor.gain * (estimate.load_mass * float(np.linalg.norm(swung)) + norm(told.force))
-    along, rest = float(up @ told.force), np.array(told.rest)
+    along = float(up @ told.force)
     payload = min((mass * GRAVITY) ** 2, along**2 / 3.0)
     everywhere = _LEFT * noise + (swing + told.slack**2 + gain**2) / 3.0
-    return everywhere * np.eye(3) + mass**2 * np.outer(swung, swung) + payload * np.outer(up, up) + np.outer(rest, rest) / 3.0
+    rest = np.array(told.rest)
+    size = float(rest @ rest)
+    theirs = max(size - 3.0 * noise, 0.0) / (3.0 * size) if size > 0.0 else 0.0  # what is noise is nobody's
+    return everywhere * np.eye(3) + mass**2 * np.outer(swung, swung) + payload * np.outer(up, up) + theirs * np.outer(rest, rest)
