@@ -10,7 +10,7 @@ from pendant.events.event import Event, Kind
 from pendant.guided.endings import KNOWN, SUSPECTED
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.pull import HandFelt, PullCauses
-from pendant.guided.sensor_bias import SensorBias
+from pendant.guided.sensor_bias import SLOWLY, SensorBias
 from pendant.guided.sensor_steps import LATER
 from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
@@ -260,3 +260,20 @@ def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:
     assert free.arm.pull.felt is HandFelt.LINK
     free.see(estimate(position=[0.04, 0.0, 0.0], speed=0.0))
     assert free.arm.pull.felt is HandFelt.NOBODY
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_what_is_taken_for_the_users_force_is_told_by_a_sensor_that_is_used(sensor: bool) -> None:
+    """FD-19: with what the sensor may have drifted by, and how the flange was turned at entry."""
+    free = Free(sensor=sensor)
+    assert free.arm.taken is None
+    free.during(50, estimate(force=20.0))
+    taken = free.arm.taken
+    assert (taken is not None) is sensor
+    if taken is not None:
+        assert taken.force == free.arm.user
+        assert taken.force[0] + taken.rest[0] == pytest.approx(20.0)
+        assert taken.slack == pytest.approx(SLOWLY * 50 * TICK)
+        assert taken.hung == (0.0, 0.0, 1.0)
+    free.see(estimate(wrench_valid=False))
+    assert free.arm.taken is None
