@@ -65,7 +65,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
     pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off
-    taken: TakenForce | None = None  # the user's force, as the flange sensor tells it (FD-19); None while it does not
+    taken: TakenForce | None = None  # for the user's force (FD-19); None while free-drive is off
 
     @property
     def amplified(self) -> bool:

@@ -74,12 +74,12 @@ def pull_at(log: Log, row: int) -> PullCauses | None:
 
 
 def user_at(said: PendantMessage) -> UncertainForce | None:
-    """What free-drive took for the user's force; None where the flange sensor did not tell."""
+    """What free-drive took for the user's force; None where it was not free."""
     user = said.user
     if user is None:
         return None
     x, y, z = user.force
-    return UncertainForce((x, y, z), np.array(user.covariance))
+    return UncertainForce((x, y, z), None if user.covariance is None else np.array(user.covariance))
 
 
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:

@@ -24,7 +24,7 @@ class UserMessage(msgspec.Struct, frozen=True, kw_only=True):
     """What free-drive takes for the user's force, in B."""
 
     force: Triple  # [N]
-    covariance: Annotated[list[Triple], Meta(min_length=3, max_length=3)]  # [N²]
+    covariance: Annotated[list[Triple], Meta(min_length=3, max_length=3)] | None  # [N²]; None: the joints tell the force
 
 
 class PeriodMessage(msgspec.Struct, frozen=True, kw_only=True):

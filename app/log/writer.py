@@ -48,6 +48,10 @@ class Block(NamedTuple):
     settings: list[tuple[int, Settings]]
 
 
+def _rows(matrix: np.ndarray[Any, Any] | None) -> list[list[float]] | None:
+    return None if matrix is None else matrix.tolist()
+
+
 class Writer:
     """The file of one recording.
 
@@ -134,7 +138,7 @@ class Writer:
             "touches": [
                 {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
             ],
-            "user": None if user is None else {"force": user.force, "covariance": user.covariance.tolist()},
+            "user": None if user is None else {"force": user.force, "covariance": _rows(user.covariance)},
         }
         self._say("/pendant", tick, content)
 

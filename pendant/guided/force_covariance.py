@@ -42,24 +42,32 @@ _LEFT = _WEIGHT / (2.0 - _WEIGHT) + 1.0 / WINDOW
 """Of a tick's variance: what the filter leaves, and the mean at entry."""
 
 
-class TakenForce(NamedTuple):
-    """What free-drive takes for the user's force, by the flange sensor, and what it needs to say how far off that may be."""
+class Doubts(NamedTuple):
+    """What there is to say how far off the force may be that the flange sensor tells."""
 
-    force: Vector  # axes of B [N]
-    rest: Vector  # what it feels beyond that and beyond what it felt at entry, axes of B [N]
-    fluctuation: float  # mean square of what the sensor felt lately beside its mean, all axes together [N²]
+    rest: Vector  # what it feels beyond the force and beyond what it felt at entry, axes of B [N]
+    fluctuation: float  # mean square of what it felt lately beside its mean, all axes together [N²]
     slack: float  # what it may have drifted by in an axis [N]
     hung: Vector  # upward at entry, axes of F
+
+
+class TakenForce(NamedTuple):
+    """What free-drive takes for the user's force."""
+
+    force: Vector  # axes of B [N]
+    doubts: Doubts | None  # None: the joints tell it
 
 
 class UncertainForce(NamedTuple):
     """A force and how far off it may be."""
 
     force: Vector  # axes of B [N]
-    covariance: Array  # (3, 3), axes of B [N²]
+    covariance: Array | None  # (3, 3), axes of B [N²]; None: that is not known
 
-    def ellipsoid(self) -> tuple[Array, Array]:
+    def ellipsoid(self) -> tuple[Array, Array] | None:
         """Where the true force is with 95 %: semi-axes (3,), rising [N]; a rotation (3, 3) whose columns are their directions."""
+        if self.covariance is None:
+            return None
         squares, directions = np.linalg.eigh(self.covariance)
         if np.linalg.det(directions) < 0.0:
             directions[:, 0] = -directions[:, 0]
@@ -71,17 +79,17 @@ def upward_in_flange(estimate: Estimate) -> Vector:
     return turned_back(flat(estimate.R_BF), upward(estimate.g_B.tolist()))
 
 
-def taken(hand: UserForce, slack: Slack, hung: Vector) -> TakenForce | None:
-    """Of a tick in which the flange sensor is used; None where the joints tell the force."""
-    if hand.user != ORIGIN and norm(hand.user) != hand.sensed:
-        return None
+def taken(hand: UserForce, slack: Slack, hung: Vector, *, use_wrench: bool) -> TakenForce:
+    """Of a tick in which the flange sensor is used or not; where it is, the joints may still tell more."""
+    if not use_wrench or (hand.user != ORIGIN and norm(hand.user) != hand.sensed):
+        return TakenForce(hand.user, None)
     x, y, z = hand.change
     a, b, c = hand.user
-    return TakenForce(hand.user, (x - a, y - b, z - c), hand.fluctuation, slack.force, hung)
+    return TakenForce(hand.user, Doubts((x - a, y - b, z - c), hand.fluctuation, slack.force, hung))
 
 
-def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: float) -> Array:
-    """Of the force (3, 3), axes of B [N²].
+def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: float) -> Array | None:
+    """Of the force (3, 3), axes of B [N²]; None where the joints tell it.
 
     Args:
         told: of the same tick as `estimate`.
@@ -89,16 +97,19 @@ def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: f
         sensor: what is known of it.
         mass: standard deviation of the payload's [kg].
     """
+    doubts = told.doubts
+    if doubts is None:
+        return None
     up = np.array(upward(estimate.g_B.tolist()))
     # What the load needs now and did not need at entry, in the axes of the sensor, for each kilogram.
-    swung = estimate.a_felt + GRAVITY * (up - np.array(turned(flat(estimate.R_BF), told.hung)))
+    swung = estimate.a_felt + GRAVITY * (up - np.array(turned(flat(estimate.R_BF), doubts.hung)))
     noise = sensor.noise_force**2 + (sensor.noise_acceleration * estimate.load_mass) ** 2
-    swing = max(told.fluctuation / 3.0 - noise, 0.0)
+    swing = max(doubts.fluctuation / 3.0 - noise, 0.0)
     gain = sensor.gain * (estimate.load_mass * float(np.linalg.norm(swung)) + norm(told.force))
     along = float(up @ told.force)
     payload = min((mass * GRAVITY) ** 2, along**2 / 3.0)
-    everywhere = _LEFT * noise + (swing + told.slack**2 + gain**2) / 3.0
-    rest = np.array(told.rest)
+    everywhere = _LEFT * noise + (swing + doubts.slack**2 + gain**2) / 3.0
+    rest = np.array(doubts.rest)
     size = float(rest @ rest)
     theirs = max(size - 3.0 * noise, 0.0) / (3.0 * size) if size > 0.0 else 0.0  # what is noise is nobody's
     return everywhere * np.eye(3) + mass**2 * np.outer(swung, swung) + payload * np.outer(up, up) + theirs * np.outer(rest, rest)

@@ -29,7 +29,7 @@ class FreeArm:
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
         pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
-        taken: what it takes for the user's force, by the flange sensor; None where the joints tell it, and in the tick of entry.
+        taken: what it takes for the user's force; None in the tick of entry.
         suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
@@ -129,7 +129,7 @@ class FreeArm:
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
-        self.taken = taken(hand, slack, self._hung) if bias.used else None
+        self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)

@@ -9,6 +9,6 @@ from sim.sensing.sensor_drift import sensor_spec
 
 
 def told_force(arm: Arm, estimate: Estimate, decision: Decision) -> UncertainForce | None:
-    """What free-drive took for the user's force in a tick; None while the flange sensor does not tell."""
+    """What free-drive took for the user's force in a tick; None while the arm is not free."""
     taken = decision.taken
     return None if taken is None else UncertainForce(taken.force, covariance(taken, estimate, sensor_spec(arm), SURE))

@@ -79,15 +79,18 @@ FIGURES = {
     YOURS: (
         "The force that free-drive takes for your hand's: the green arrow. In 95 of 100 moments the true one ends within the"
         " green ellipsoid, which reaches so far where it is narrowest and where it is widest. It is wide up and down where a"
-        " payload cannot be told from a steady hand."
+        " payload cannot be told from a steady hand. On a link the joints alone feel your hand, and there is no ellipsoid."
     )
 }
 """What a row of figures means."""
 
 
 def user_row(user: UncertainForce | None) -> list[tuple[str, str]]:
-    """What is taken for the user's force, and how far off it may be, as a row of figures; none while no sensor tells."""
+    """What is taken for the user's force, and how far off it may be, as a row of figures; none while it is not free."""
     if user is None:
         return []
-    least, _, most = user.ellipsoid()[0].tolist()
-    return [(YOURS, f"{norm(user.force):.0f} N, ± {least:.1f} to {most:.1f} N")]
+    force, ellipsoid = f"{norm(user.force):.0f} N", user.ellipsoid()
+    if ellipsoid is None:
+        return [(YOURS, f"{force}, by the joints alone")]
+    least, _, most = ellipsoid[0].tolist()
+    return [(YOURS, f"{force}, ± {least:.1f} to {most:.1f} N")]

@@ -34,24 +34,24 @@ class ForceEllipsoid:
     def show(self, snapshot: Snapshot) -> bool:
         """Draw those of a snapshot, or nothing; True if anything changed."""
         shown, user = (), snapshot.user
+        known = user is not None and user.covariance is not None
         if user is not None:
             face, R_WB = snapshot.truth_links[-1], matrix_from_quaternion(snapshot.truth_links[0, 3:])
             force = R_WB @ np.array(user.force)
-            axes, R_BE = user.ellipsoid()
-            tip = face[:3] + METRES_PER_NEWTON * force
-            size = float(np.linalg.norm(force))
-            values = (face[:3], tip, METRES_PER_NEWTON * axes, quaternion_from_matrix(R_WB @ R_BE), [size])
+            axes, R_BE = user.ellipsoid() or (np.zeros(3), np.eye(3))
+            tip, turn = face[:3] + METRES_PER_NEWTON * force, quaternion_from_matrix(R_WB @ R_BE)
+            values = (face[:3], tip, METRES_PER_NEWTON * axes, turn, [float(np.linalg.norm(force)), known])
             shown = tuple(np.round(np.concatenate(values), 3).tolist())
         if shown == self._shown:
             return False
         self._shown = shown
-        self.ellipsoid.visible = bool(shown)
-        self.arrow.visible = self.label.visible = bool(shown) and shown[-1] >= LEAST_FORCE
+        self.ellipsoid.visible = known
+        self.arrow.visible = self.label.visible = bool(shown) and shown[13] >= LEAST_FORCE
         if shown:
             numbers = np.array(shown)
             self.ellipsoid.position, self.ellipsoid.wxyz = numbers[3:6], numbers[9:13]
             x, y, z = np.maximum(numbers[6:9], THINNEST).tolist()
             self.ellipsoid.scale = (x, y, z)
             self.arrow.points = numbers[:6].reshape(1, 2, 3).astype(np.float32)
-            self.label.position, self.label.text = numbers[3:6], f"Taken as yours: {shown[-1]:.0f} N"
+            self.label.position, self.label.text = numbers[3:6], f"Taken as yours: {shown[13]:.0f} N"
         return True

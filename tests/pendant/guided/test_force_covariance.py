@@ -7,6 +7,7 @@ import pytest
 
 from pendant.guided.force_covariance import (
     WITHIN_95,
+    Doubts,
     TakenForce,
     UncertainForce,
     covariance,
@@ -30,7 +31,13 @@ FILTERED = ONCE / (2.0 - ONCE) + 1.0 / WINDOW
 
 
 def told(force: Vector = ORIGIN, rest: Vector = ORIGIN, fluctuation: float = 0.0, slack: float = 0.0) -> TakenForce:
-    return TakenForce(force, rest, fluctuation, slack, UP)
+    return TakenForce(force, Doubts(rest, fluctuation, slack, UP))
+
+
+def ellipsoid(seen: UncertainForce) -> tuple[np.ndarray, np.ndarray]:
+    found = seen.ellipsoid()
+    assert found is not None
+    return found
 
 
 def tipped(load_mass: float = 0.0) -> Estimate:
@@ -44,7 +51,7 @@ def test_on_an_arm_at_rest_the_noise_alone_is_left() -> None:
     sensor, load = QUIET._replace(noise_force=0.15, noise_acceleration=0.1), 2.0
     sigma = math.sqrt(FILTERED * (0.15**2 + (0.1 * load) ** 2))
     seen = UncertainForce(ORIGIN, covariance(told(), estimate(load_mass=load), sensor, KILOGRAM))
-    assert seen.ellipsoid()[0] == pytest.approx(math.sqrt(WITHIN_95) * sigma)
+    assert ellipsoid(seen)[0] == pytest.approx(math.sqrt(WITHIN_95) * sigma)
 
 
 def test_the_filter_leaves_so_much_of_the_noise() -> None:
@@ -111,7 +118,7 @@ def test_gravity_is_the_mountings() -> None:
     value = estimate()
     value.g_B = np.array([-GRAVITY, 0.0, 0.0])
     assert upward_in_flange(value) == (1.0, 0.0, 0.0)
-    hung = told((3.0, 0.0, 4.0))._replace(hung=(1.0, 0.0, 0.0))
+    hung = TakenForce((3.0, 0.0, 4.0), Doubts(ORIGIN, 0.0, 0.0, (1.0, 0.0, 0.0)))
     np.testing.assert_allclose(covariance(hung, value, QUIET, KILOGRAM), np.diag([3.0, 0.0, 0.0]), atol=1e-12)
 
 
@@ -122,7 +129,7 @@ def test_upward_at_entry_is_kept_in_the_flange() -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_the_ellipsoid_is_that_of_the_covariance(seed: int) -> None:
     root = np.random.default_rng(seed).normal(size=(3, 3))
-    axes, R = UncertainForce(ORIGIN, root @ root.T).ellipsoid()
+    axes, R = ellipsoid(UncertainForce(ORIGIN, root @ root.T))
     assert np.linalg.det(R) == pytest.approx(1.0)
     assert axes.tolist() == sorted(axes)
     np.testing.assert_allclose(R @ np.diag(axes**2 / WITHIN_95) @ R.T, root @ root.T, atol=1e-9)
@@ -135,22 +142,25 @@ def test_so_many_of_three_gaussian_numbers_are_within() -> None:
 
 def test_what_the_flange_sensor_tells_comes_with_its_rest() -> None:
     hand, slack = UserForce(estimate(), (0.0,) * 6), Slack(0.3, 0.0)
-    assert taken(hand, slack, UP) == TakenForce(ORIGIN, ORIGIN, 0.0, 0.3, UP)
+    assert taken(hand, slack, UP, use_wrench=True) == TakenForce(ORIGIN, Doubts(ORIGIN, 0.0, 0.3, UP))
     hand.step(estimate(force=20.0), use_wrench=True)
-    found = taken(hand, slack, UP)
+    force, found = taken(hand, slack, UP, use_wrench=True)
     assert found is not None
-    assert found.force == hand.user == pytest.approx((20.0 * ONCE, 0.0, 0.0))
+    assert force == hand.user == pytest.approx((20.0 * ONCE, 0.0, 0.0))
     assert found.rest == pytest.approx((20.0 * (1.0 - ONCE), 0.0, 0.0))
     assert found.fluctuation == hand.fluctuation > 0.0
     assert hand.stands_out((3.0 * math.sqrt(hand.fluctuation), 0.0, 0.0))
 
 
-@pytest.mark.parametrize("at_flange", [0.0, 0.5 * CARRIED])
-def test_of_what_the_joints_tell_there_is_none(at_flange: float) -> None:
+@pytest.mark.parametrize(("used", "at_flange"), [(True, 0.0), (True, 0.5 * CARRIED), (False, 0.0)])
+def test_of_what_the_joints_tell_there_is_none(used: bool, at_flange: float) -> None:
     hand = UserForce(estimate(), (0.0,) * 6)
     value = estimate(force=[0.0, at_flange, 0.0])
     value.F_joints = np.array([3.0 * FELT_BY_JOINTS, 0.0, 0.0])
     for _ in range(50):
-        hand.step(value, use_wrench=True)
+        hand.step(value, used)
     assert hand.user[0] > FELT_BY_JOINTS
-    assert taken(hand, Slack(0.0, 0.0), UP) is None
+    found = taken(hand, Slack(0.0, 0.0), UP, use_wrench=used)
+    assert found == TakenForce(hand.user, None)
+    assert covariance(found, value, QUIET, KILOGRAM) is None
+    assert UncertainForce(found.force, None).ellipsoid() is None

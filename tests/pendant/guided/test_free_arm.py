@@ -263,17 +263,18 @@ def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:
 
 
 @pytest.mark.parametrize("sensor", [True, False])
-def test_what_is_taken_for_the_users_force_is_told_by_a_sensor_that_is_used(sensor: bool) -> None:
+def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_that_is_used(sensor: bool) -> None:
     """FD-19: with what the sensor may have drifted by, and how the flange was turned at entry."""
     free = Free(sensor=sensor)
     assert free.arm.taken is None
     free.during(50, estimate(force=20.0))
     taken = free.arm.taken
-    assert (taken is not None) is sensor
-    if taken is not None:
-        assert taken.force == free.arm.user
-        assert taken.force[0] + taken.rest[0] == pytest.approx(20.0)
-        assert taken.slack == pytest.approx(SLOWLY * 50 * TICK)
-        assert taken.hung == (0.0, 0.0, 1.0)
+    assert taken is not None
+    assert taken.force == free.arm.user
+    assert (taken.doubts is not None) is sensor
+    if taken.doubts is not None:
+        assert taken.force[0] + taken.doubts.rest[0] == pytest.approx(20.0)
+        assert taken.doubts.slack == pytest.approx(SLOWLY * 50 * TICK)
+        assert taken.doubts.hung == (0.0, 0.0, 1.0)
     free.see(estimate(wrench_valid=False))
-    assert free.arm.taken is None
+    assert free.arm.taken == (free.arm.user, None)

@@ -65,6 +65,15 @@ def test_a_force_too_small_for_an_arrow_has_its_ellipsoid_at_the_flange(loop: Fa
     assert np.array(drawn.ellipsoid.scale) == pytest.approx(THINNEST)
 
 
+def test_a_force_that_the_joints_tell_is_an_arrow_alone(loop: FakeLoop, still: Served) -> None:
+    loop.user = UncertainForce((0.0, 30.0, 0.0), None)
+    still.scene.show(loop.latest())
+    drawn = still.scene.user
+    assert (drawn.arrow.visible, drawn.label.visible, drawn.ellipsoid.visible) == (True, True, False)
+    still.docks.show(loop.latest())
+    assert "30 N, by the joints alone" in still.docks.panel.numbers.shown
+
+
 def test_the_figures_tell_both_and_what_they_mean(loop: FakeLoop, still: Served) -> None:
     panel = still.docks.panel
     still.docks.show(loop.latest())
