@@ -78,8 +78,8 @@ def user_at(said: PendantMessage) -> UncertainForce | None:
     user = said.user
     if user is None:
         return None
-    x, y, z = user.force
-    return UncertainForce((x, y, z), None if user.covariance is None else np.array(user.covariance))
+    (x, y, z), (a, b, c) = user.force, user.at
+    return UncertainForce((x, y, z), None if user.covariance is None else np.array(user.covariance), (a, b, c))
 
 
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:

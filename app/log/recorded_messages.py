@@ -21,9 +21,10 @@ class TouchMessage(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class UserMessage(msgspec.Struct, frozen=True, kw_only=True):
-    """What free-drive takes for the user's force, in B."""
+    """What free-drive takes for the user's force, in axes of B."""
 
     force: Triple  # [N]
+    at: Triple  # where it is drawn, in F [m]
     covariance: Annotated[list[Triple], Meta(min_length=3, max_length=3)] | None  # [N²]; None: the joints tell the force
 
 

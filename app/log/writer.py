@@ -138,7 +138,7 @@ class Writer:
             "touches": [
                 {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
             ],
-            "user": None if user is None else {"force": user.force, "covariance": _rows(user.covariance)},
+            "user": None if user is None else {"force": user.force, "covariance": _rows(user.covariance), "at": user.at},
         }
         self._say("/pendant", tick, content)
 

@@ -63,6 +63,7 @@ class UncertainForce(NamedTuple):
 
     force: Vector  # axes of B [N]
     covariance: Array | None  # (3, 3), axes of B [N²]; None: that is not known
+    at: Vector = ORIGIN  # where it is drawn, in F [m]: the flange's origin would lie in the tool
 
     def ellipsoid(self) -> tuple[Array, Array] | None:
         """Where the true force is with 95 %: semi-axes (3,), rising [N]; a rotation (3, 3) whose columns are their directions."""

@@ -1,17 +1,22 @@
-"""What free-drive takes for the user's force: an arrow at the flange, round its tip the ellipsoid of 95 % (FD-19)."""
+"""What free-drive takes for the user's force: an arrow at the tool, round its tip the ellipsoid of 95 % (FD-19)."""
 
 import numpy as np
 import viser
 
-from app.web.scene.arm_marks import METRES_PER_NEWTON
 from sim.arm.frames import matrix_from_quaternion, quaternion_from_matrix
 from sim.exchange.snapshot import Snapshot
+
+METRES_PER_NEWTON = 0.015
+"""Of the arrow and of the ellipsoid: 2 N, which lead an arm, stand out of a tool."""
 
 LEAST_FORCE = 0.5
 """A smaller force has no arrow and no label [N]."""
 
 COLOUR = (0, 158, 115)
 """The touches' arrows are blue: those are the true forces."""
+
+BELOW = 0.02
+"""The label is so far below both [m]: on the tip it would cover them."""
 
 THINNEST = 1e-3
 """Semi-axis of an ellipsoid, at least [m]."""
@@ -37,10 +42,12 @@ class ForceEllipsoid:
         known = user is not None and user.covariance is not None
         if user is not None:
             face, R_WB = snapshot.truth_links[-1], matrix_from_quaternion(snapshot.truth_links[0, 3:])
+            point = face[:3] + matrix_from_quaternion(face[3:]) @ np.array(user.at)
             force = R_WB @ np.array(user.force)
             axes, R_BE = user.ellipsoid() or (np.zeros(3), np.eye(3))
-            tip, turn = face[:3] + METRES_PER_NEWTON * force, quaternion_from_matrix(R_WB @ R_BE)
-            values = (face[:3], tip, METRES_PER_NEWTON * axes, turn, [float(np.linalg.norm(force)), known])
+            tip, R_WE, axes = point + METRES_PER_NEWTON * force, R_WB @ R_BE, METRES_PER_NEWTON * axes
+            below = min(point[2], tip[2] - float(np.linalg.norm(R_WE[2] * axes))) - BELOW
+            values = (point, tip, axes, quaternion_from_matrix(R_WE), [float(np.linalg.norm(force)), known, below])
             shown = tuple(np.round(np.concatenate(values), 3).tolist())
         if shown == self._shown:
             return False
@@ -53,5 +60,5 @@ class ForceEllipsoid:
             x, y, z = np.maximum(numbers[6:9], THINNEST).tolist()
             self.ellipsoid.scale = (x, y, z)
             self.arrow.points = numbers[:6].reshape(1, 2, 3).astype(np.float32)
-            self.label.position, self.label.text = numbers[3:6], f"Taken as yours: {shown[13]:.0f} N"
+            self.label.position, self.label.text = (shown[3], shown[4], shown[15]), f"Taken as yours: {shown[13]:.0f} N"
         return True

@@ -98,7 +98,7 @@ def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]
         if picture >= 57:
             assert found.user is not None
             assert was.user is not None
-            assert found.user.force == was.user.force
+            assert (found.user.force, found.user.at) == (was.user.force, was.user.at)
             assert (was.user.covariance is None) is (picture == 60), "the sensor seems to have stepped"
             np.testing.assert_array_equal(found.user.covariance, was.user.covariance)
         else:

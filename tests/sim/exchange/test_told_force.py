@@ -8,7 +8,7 @@ from pendant.guided.force_covariance import WITHIN_95
 from pendant.inputs import NOTHING
 from pendant.tick.modes import TICK_RATE, Mode
 from sim.arm.frames import matrix_from_quaternion
-from sim.arm.scenario import Load, Scenario
+from sim.arm.scenario import Load, Scenario, ToolModel
 from sim.exchange.desk import Wishes
 from sim.exchange.told_force import told_force
 from sim.plant.changes import SensorFault
@@ -66,7 +66,8 @@ def test_the_true_force_is_in_the_ellipsoid_in_95_of_100_ticks_and_in_fewer_of_a
 
 
 def test_before_free_drive_there_is_none_and_without_the_flange_sensor_no_covariance() -> None:
-    bench = Bench()
+    tool = ToolModel(name="rod", mass=0.5, com=[0.0, 0.0, 0.06], tcp=[0.0, 0.0, 0.14])
+    bench = Bench(Scenario(mismatch="nominal", tool=tool))
     bench.run(0.5)
     assert bench.simulation.snapshot().user is None
     bench.enter()
@@ -74,7 +75,8 @@ def test_before_free_drive_there_is_none_and_without_the_flange_sensor_no_covari
     user = bench.simulation.snapshot().user
     assert user is not None
     assert user.covariance is not None
+    assert user.at == (0.0, 0.0, 0.14), "where the tool does not hide it"
     bench.change(SensorFault(sensor="force_torque", outage=True))
     bench.run(0.1)
     assert bench.mode is Mode.FREE_DRIVE
-    assert bench.simulation.snapshot().user == ((0.0, 0.0, 0.0), None)
+    assert bench.simulation.snapshot().user == ((0.0, 0.0, 0.0), None, (0.0, 0.0, 0.14))

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app.web.scene.arm_marks import METRES_PER_NEWTON
-from app.web.scene.force_ellipsoid import LEAST_FORCE, THINNEST
+from app.web.scene.force_ellipsoid import BELOW, LEAST_FORCE, METRES_PER_NEWTON, THINNEST
 from app.web.server import Served, serve
 from pendant.guided.force_covariance import WITHIN_95, UncertainForce
 from sim.arm.frames import matrix_from_quaternion
@@ -42,22 +41,25 @@ def test_both_are_there_while_a_force_is_told(loop: FakeLoop, still: Served) -> 
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_both_have_one_scale_and_lie_as_the_base_is_turned(loop: FakeLoop, still: Served, turned: bool) -> None:
-    loop.user = UncertainForce((0.0, 30.0, 0.0), VARIANCES)
+    loop.user = UncertainForce((0.0, 30.0, 0.0), VARIANCES, (0.0, 0.0, 0.2))
     snapshot, R_WB = loop.latest(), QUARTER if turned else np.eye(3)
     if turned:
         snapshot.truth_links[0, 3:] = [np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
     still.scene.show(snapshot)
-    drawn, face = still.scene.user, snapshot.truth_links[-1, :3]
+    drawn, face = still.scene.user, snapshot.truth_links[-1]
+    point = face[:3] + matrix_from_quaternion(face[3:]) @ [0.0, 0.0, 0.2]
     tail, tip = np.asarray(drawn.arrow.points)[0]
-    assert tail == pytest.approx(face, abs=1e-3)
+    assert tail == pytest.approx(point, abs=1e-3)
     assert tip - tail == pytest.approx(R_WB @ [0.0, 30.0 * METRES_PER_NEWTON, 0.0], abs=2e-3)
     assert drawn.ellipsoid.position == pytest.approx(tip, abs=1e-3)
+    lowest = tip[2] - METRES_PER_NEWTON * np.sqrt(WITHIN_95 * VARIANCES[2, 2])
+    assert drawn.label.position[2] == pytest.approx(min(tail[2], lowest) - BELOW, abs=2e-3), "it covers neither"
     R, axes = matrix_from_quaternion(drawn.ellipsoid.wxyz), np.array(drawn.ellipsoid.scale)
     squares = R @ np.diag(axes**2) @ R.T / (WITHIN_95 * METRES_PER_NEWTON**2)
     np.testing.assert_allclose(squares, R_WB @ VARIANCES @ R_WB.T, atol=0.5)
 
 
-def test_a_force_too_small_for_an_arrow_has_its_ellipsoid_at_the_flange(loop: FakeLoop, still: Served) -> None:
+def test_a_force_too_small_for_an_arrow_has_its_ellipsoid_at_the_tool(loop: FakeLoop, still: Served) -> None:
     loop.user = UncertainForce((0.5 * LEAST_FORCE, 0.0, 0.0), np.zeros((3, 3)))
     still.scene.show(loop.latest())
     drawn = still.scene.user
