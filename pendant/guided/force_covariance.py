@@ -45,7 +45,7 @@ _LEFT = _WEIGHT / (2.0 - _WEIGHT) + 1.0 / WINDOW
 class Doubts(NamedTuple):
     """What there is to say how far off the force may be that the flange sensor tells."""
 
-    rest: Vector  # what it feels beyond the force and beyond what it felt at entry, axes of B [N]
+    change: Vector  # all that it feels beyond what it felt at entry, axes of B [N]
     fluctuation: float  # mean square of what it felt lately beside its mean, all axes together [N²]
     slack: float  # what it may have drifted by in an axis [N]
     hung: Vector  # upward at entry, axes of F
@@ -82,11 +82,8 @@ def upward_in_flange(estimate: Estimate) -> Vector:
 
 def taken(hand: UserForce, slack: Slack, hung: Vector, *, use_wrench: bool) -> TakenForce:
     """Of a tick in which the flange sensor is used or not; where it is, the joints may still tell more."""
-    if not use_wrench or (hand.user != ORIGIN and norm(hand.user) != hand.sensed):
-        return TakenForce(hand.user, None)
-    x, y, z = hand.change
-    a, b, c = hand.user
-    return TakenForce(hand.user, Doubts((x - a, y - b, z - c), hand.fluctuation, slack.force, hung))
+    doubts = None if hand.by_joints or not use_wrench else Doubts(hand.change, hand.fluctuation, slack.force, hung)
+    return TakenForce(hand.user, doubts)
 
 
 def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: float) -> Array | None:
@@ -110,7 +107,7 @@ def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: f
     along = float(up @ told.force)
     payload = min((mass * GRAVITY) ** 2, along**2 / 3.0)
     everywhere = _LEFT * noise + (swing + doubts.slack**2 + gain**2) / 3.0
-    rest = np.array(doubts.rest)
+    rest = np.array(doubts.change) - np.array(told.force)
     size = float(rest @ rest)
     theirs = max(size - 3.0 * noise, 0.0) / (3.0 * size) if size > 0.0 else 0.0  # what is noise is nobody's
     return everywhere * np.eye(3) + mass**2 * np.outer(swung, swung) + payload * np.outer(up, up) + theirs * np.outer(rest, rest)

@@ -99,6 +99,11 @@ class UserForce:
         return norm(self._by_sensor)
 
     @property
+    def by_joints(self) -> bool:
+        """The joints tell the user's force, and not the flange sensor."""
+        return self.user is self._by_joints is not ORIGIN
+
+    @property
     def fluctuation(self) -> float:
         """Mean square of what the force at the flange was lately off its mean, all axes together [N²]."""
         return self._spread

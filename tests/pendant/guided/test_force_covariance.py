@@ -31,7 +31,8 @@ FILTERED = ONCE / (2.0 - ONCE) + 1.0 / WINDOW
 
 
 def told(force: Vector = ORIGIN, rest: Vector = ORIGIN, fluctuation: float = 0.0, slack: float = 0.0) -> TakenForce:
-    return TakenForce(force, Doubts(rest, fluctuation, slack, UP))
+    (x, y, z), (a, b, c) = force, rest
+    return TakenForce(force, Doubts((x + a, y + b, z + c), fluctuation, slack, UP))
 
 
 def ellipsoid(seen: UncertainForce) -> tuple[np.ndarray, np.ndarray]:
@@ -118,7 +119,7 @@ def test_gravity_is_the_mountings() -> None:
     value = estimate()
     value.g_B = np.array([-GRAVITY, 0.0, 0.0])
     assert upward_in_flange(value) == (1.0, 0.0, 0.0)
-    hung = TakenForce((3.0, 0.0, 4.0), Doubts(ORIGIN, 0.0, 0.0, (1.0, 0.0, 0.0)))
+    hung = TakenForce((3.0, 0.0, 4.0), Doubts((3.0, 0.0, 4.0), 0.0, 0.0, (1.0, 0.0, 0.0)))
     np.testing.assert_allclose(covariance(hung, value, QUIET, KILOGRAM), np.diag([3.0, 0.0, 0.0]), atol=1e-12)
 
 
@@ -140,14 +141,14 @@ def test_so_many_of_three_gaussian_numbers_are_within() -> None:
     assert np.mean((numbers**2).sum(axis=1) <= WITHIN_95) == pytest.approx(0.95, abs=0.002)
 
 
-def test_what_the_flange_sensor_tells_comes_with_its_rest() -> None:
+def test_what_the_flange_sensor_tells_comes_with_all_that_it_feels() -> None:
     hand, slack = UserForce(estimate(), (0.0,) * 6), Slack(0.3, 0.0)
     assert taken(hand, slack, UP, use_wrench=True) == TakenForce(ORIGIN, Doubts(ORIGIN, 0.0, 0.3, UP))
     hand.step(estimate(force=20.0), use_wrench=True)
     force, found = taken(hand, slack, UP, use_wrench=True)
     assert found is not None
     assert force == hand.user == pytest.approx((20.0 * ONCE, 0.0, 0.0))
-    assert found.rest == pytest.approx((20.0 * (1.0 - ONCE), 0.0, 0.0))
+    assert found.change == (20.0, 0.0, 0.0)
     assert found.fluctuation == hand.fluctuation > 0.0
     assert hand.stands_out((3.0 * math.sqrt(hand.fluctuation), 0.0, 0.0))
 

@@ -273,7 +273,7 @@ def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_t
     assert taken.force == free.arm.user
     assert (taken.doubts is not None) is sensor
     if taken.doubts is not None:
-        assert taken.force[0] + taken.doubts.rest[0] == pytest.approx(20.0)
+        assert taken.doubts.change == pytest.approx((20.0, 0.0, 0.0))
         assert taken.doubts.slack == pytest.approx(SLOWLY * 50 * TICK)
         assert taken.doubts.hung == (0.0, 0.0, 1.0)
     free.see(estimate(wrench_valid=False))
