@@ -89,7 +89,7 @@ def user_row(user: UncertainForce | None) -> list[tuple[str, str]]:
     """What is taken for the user's force, and how far off it may be, as a row of figures; none while it is not free."""
     if user is None:
         return []
-    force, ellipsoid = f"{norm(user.force):.0f} N", user.ellipsoid()
+    force, ellipsoid = f"{norm(user.force):.1f} N", user.ellipsoid()
     if ellipsoid is None:
         return [(YOURS, f"{force}, by the joints alone")]
     least, _, most = ellipsoid[0].tolist()

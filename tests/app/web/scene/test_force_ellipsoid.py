@@ -73,7 +73,7 @@ def test_a_force_that_the_joints_tell_is_an_arrow_alone(loop: FakeLoop, still: S
     drawn = still.scene.user
     assert (drawn.arrow.visible, drawn.label.visible, drawn.ellipsoid.visible) == (True, True, False)
     still.docks.show(loop.latest())
-    assert "30 N, by the joints alone" in still.docks.panel.numbers.shown
+    assert "30.0 N, by the joints alone" in still.docks.panel.numbers.shown
 
 
 def test_the_figures_tell_both_and_what_they_mean(loop: FakeLoop, still: Served) -> None:
@@ -82,5 +82,5 @@ def test_the_figures_tell_both_and_what_they_mean(loop: FakeLoop, still: Served)
     assert "Taken as yours" not in panel.numbers.shown
     loop.user = UncertainForce((0.0, 3.0, 4.0), VARIANCES / WITHIN_95)
     still.docks.show(loop.latest())
-    assert "5 N, ± 1.0 to 3.0 N" in panel.numbers.shown
+    assert "5.0 N, ± 1.0 to 3.0 N" in panel.numbers.shown
     assert 'title="The force that free-drive takes for your hand' in panel.numbers.shown
