@@ -1,10 +1,10 @@
 """Free-drive: what a hand needs to lead, turn, start and stop an arm, with and without friction taken off.
 
-Random postures (`benchmarks.postures`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and
-damper) leads the flange at 0.1 m/s along six directions, turns it at 0.3 rad/s, pushes the elbow, starts it from rest, and lets
-go. Each begins in the posture as drawn, free-drive just entered: an arm that was pushed about before stands elsewhere, often next
-to a singularity, and the bars speak of postures that are not. Besides, one long free-drive is measured: the arm is led and turned
-along all directions, pushed at the elbow, and let go. Truth is read for scoring alone.
+Random postures (`benchmarks.postures`), mismatch on, 1 kg of payload configured right. A virtual hand (spring and damper) leads
+the flange at 0.1 m/s along six directions, turns it at 0.3 rad/s, pushes the elbow, starts it from rest, and lets go. Each begins
+in the posture as drawn, free-drive just entered: an arm that was pushed about stands elsewhere, often next to a singularity.
+Besides, one long free-drive is measured: the arm is led and turned along all directions, pushed at the elbow, and let go. Truth
+is read for scoring alone.
 """
 
 from collections.abc import Callable
@@ -237,8 +237,7 @@ FORCES = (
 def measure(report: Report) -> None:
     """Fill the report."""
     count, seed, arm = (50 if report.options.full else 6), report.options.seed, report.options.arm
-    cases = [Case(k, seed, arm=arm) for k in range(count)]
-    cases += [Case(k, seed, helped=False, arm=arm) for k in range(count)]
+    cases = [Case(k, seed, helped=on, arm=arm) for on in (True, False) for k in range(count)]
     cases += [Case(k, seed, over=True, rest=10.0 if report.options.full else 4.0, arm=arm) for k in range(count)]
     rows = spread(measure_case, cases)
     helped, plain = [row for row, _ in rows[:count]], [row for row, _ in rows[count : 2 * count]]
@@ -255,10 +254,9 @@ def measure(report: Report) -> None:
         if not (values.size and others.size):
             report.row(f"{what}, p95", NO_CASE, unit, at_most=bar, n=0)
             continue
-        p95 = float(np.percentile(values, 95))
-        report.row(f"{what}, p95", p95, unit, at_most=bar, n=values.size)
-        report.row(f"{what}, median", float(np.median(values)), unit, n=values.size)
-        report.row(f"{what}, largest", float(values.max()), unit, n=values.size)
+        report.row(f"{what}, p95", p95 := float(np.percentile(values, 95)), unit, at_most=bar, n=values.size)
+        for part, value in (("median", np.median(values)), ("largest", values.max())):
+            report.row(f"{what}, {part}", float(value), unit, n=values.size)
         report.row(f"{what}, p95 without compensation", float(np.percentile(others, 95)), unit, n=others.size)
         report.row(f"{what}, without over with compensation", float(np.percentile(others, 95)) / p95, "times", n=values.size)
     n = len(helped)

@@ -6,6 +6,7 @@ from pendant.contact.contact_change import Contact
 from pendant.events.event import Event
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.periods import Remaining
+from pendant.guided.force_covariance import TakenForce
 from pendant.guided.pull import PullCauses
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks
@@ -64,6 +65,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
     pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off
+    taken: TakenForce | None = None  # for the user's force (FD-19); None while free-drive is off
 
     @property
     def amplified(self) -> bool:

@@ -104,6 +104,7 @@ class Publisher:
             signs=self._signs,
             script_done=self._scripting.done,
             pull=free.pull,
+            taken=None if arm is None else arm.taken,
         )
 
     def _free_axes(self) -> AxisLocks | None:

@@ -23,6 +23,7 @@ from sim.estimation.estimator import Estimator
 from sim.exchange.desk import Wishes
 from sim.exchange.scoring import Glance
 from sim.exchange.snapshot import Snapshot
+from sim.exchange.told_force import told_force
 from sim.plant.changes import AnyChange, AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
 from sim.plant.model import Step
 from sim.plant.true_arm import Plant
@@ -266,6 +267,7 @@ class Simulation:
             self._reference(),
             self.supervisor.containment.every_place(self.settings.walls),
             self._pulls.shown,
+            told_force(self.arm, self._estimate, self._decision),
         )
 
     def _reference(self) -> Array | None:

@@ -9,8 +9,10 @@ import numpy as np
 from app.files.checked import ABSENT, BadInput
 from app.log.layout import PULL, WORDS
 from app.log.reader import Log
+from app.log.recorded_messages import PendantMessage
 from pendant.decision import Decision
 from pendant.freedrive.periods import Remaining
+from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import NOT_TOLD, HandFelt, PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE, Law, Mode, Phase, Safety
@@ -71,6 +73,15 @@ def pull_at(log: Log, row: int) -> PullCauses | None:
     return PullCauses(HandFelt(int(felt)), told[0], 0.0 if math.isnan(share) else share, told[1])
 
 
+def user_at(said: PendantMessage) -> UncertainForce | None:
+    """What free-drive took for the user's force; None where it was not free."""
+    user = said.user
+    if user is None:
+        return None
+    (x, y, z), (a, b, c) = user.force, user.at
+    return UncertainForce((x, y, z), None if user.covariance is None else np.array(user.covariance), (a, b, c))
+
+
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
     """What was recorded, as the simulation would show it: poses of a picture, numbers of a tick."""
     said, frames, state = log.pictures[picture], log.frames[picture], log.state
@@ -122,4 +133,5 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         touches,
         truth_touched=bool(log.truth["touched"][row] > 0.0),
         pull=pull,
+        user=user_at(said),
     )

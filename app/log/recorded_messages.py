@@ -20,6 +20,14 @@ class TouchMessage(msgspec.Struct, frozen=True, kw_only=True):
     torque: Triple  # [N·m]
 
 
+class UserMessage(msgspec.Struct, frozen=True, kw_only=True):
+    """What free-drive takes for the user's force, in axes of B."""
+
+    force: Triple  # [N]
+    at: Triple  # where it is drawn, in F [m]
+    covariance: Annotated[list[Triple], Meta(min_length=3, max_length=3)] | None  # [N²]; None: the joints tell the force
+
+
 class PeriodMessage(msgspec.Struct, frozen=True, kw_only=True):
     """What is left of a period."""
 
@@ -37,6 +45,7 @@ class PendantMessage(msgspec.Struct, frozen=True, kw_only=True):
     phase: Phase
     periods: list[PeriodMessage]
     touches: list[TouchMessage]
+    user: UserMessage | None = None  # recordings lack it that were made before it came
 
 
 class Position(msgspec.Struct, frozen=True):

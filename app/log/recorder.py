@@ -20,6 +20,7 @@ from pendant.limits.parameters import PARAMETERS
 from pendant.program.steps import ProgramState
 from pendant.tick.modes import Mode, Phase, Safety
 from sim.exchange.recorded_rows import fill_rows
+from sim.exchange.told_force import told_force
 from sim.run.loop import SNAPSHOT_TICKS
 from sim.simulation import Simulation
 
@@ -93,8 +94,9 @@ class Recorder:
         self._take(simulation, decision, k)
         if simulation.tick_count % SNAPSHOT_TICKS == 1:
             plant = simulation.plant
+            user = told_force(simulation.arm, simulation.estimate, decision)
             poses = (plant.poses(), plant.object_poses(), plant.payload.pose())
-            self._pictures.append(Picture(tick, decision, *poses, plant.payload.load.mass, plant.hands.touched))
+            self._pictures.append(Picture(tick, decision, *poses, plant.payload.load.mass, plant.hands.touched, user))
         for event in decision.events:
             self._events.append((tick, event))
             if event.kind is Kind.SETTING_CHANGED:

@@ -18,6 +18,7 @@ from pendant.all_settings import Settings, describe, digest, limits_checksum, va
 from pendant.decision import Decision
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event
+from pendant.guided.force_covariance import UncertainForce
 from sim.arm.scenario import Plane, Scenario
 from sim.simulation import Simulation
 
@@ -32,6 +33,7 @@ class Picture(NamedTuple):
     payload: np.ndarray[Any, Any] | None
     payload_mass: float  # [kg]
     touches: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[float, ...]], ...]
+    user: UncertainForce | None  # what free-drive takes for the user's force
 
 
 class Block(NamedTuple):
@@ -44,6 +46,10 @@ class Block(NamedTuple):
     pictures: list[Picture]
     events: list[tuple[int, Event]]
     settings: list[tuple[int, Settings]]
+
+
+def _rows(matrix: np.ndarray[Any, Any] | None) -> list[list[float]] | None:
+    return None if matrix is None else matrix.tolist()
 
 
 class Writer:
@@ -122,7 +128,7 @@ class Writer:
             radius = (max(picture.payload_mass, 0.05) * 3.0 / (4.0 * math.pi * 1000.0)) ** (1.0 / 3.0)
             entities.append(foxglove.entity(tick, "payload", "payload", spheres=[foxglove.ball(radius)]))
         self._say("/scene", tick, foxglove.update(entities))
-        decision = picture.decision
+        decision, user = picture.decision, picture.user
         content = {
             "tick": tick,
             "mode": decision.mode,
@@ -132,6 +138,7 @@ class Writer:
             "touches": [
                 {"part": part, "point": point, "force": force, "torque": torque} for part, point, force, torque in picture.touches
             ],
+            "user": None if user is None else {"force": user.force, "covariance": _rows(user.covariance), "at": user.at},
         }
         self._say("/pendant", tick, content)
 

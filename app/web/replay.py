@@ -12,7 +12,7 @@ from app.log.events_file import EventLine
 from app.log.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
-from app.web.panel.state_words import SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row
+from app.web.panel.state_words import FIGURES, SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row, user_row
 from app.web.scene.arm_picture import Scene
 from app.web.widgets import style, svg
 from app.web.widgets.html import Html
@@ -76,7 +76,7 @@ class Replay(Site):
         decision = snapshot.decision
         word, colour = WORDS[decision.mode]
         self.light.show(svg.light(decision.mode.replace("_", "-"), word, SAFETY_WORDS[decision.safety], colour))
-        self.facts.show(svg.facts(_numbers(player, snapshot)))
+        self.facts.show(svg.facts(_numbers(player, snapshot), FIGURES))
         at = round(player.time, 2)
         if self.line.value != at:
             self._set = at
@@ -175,6 +175,7 @@ def _numbers(player: Player, snapshot: Snapshot) -> list[tuple[str, str]]:
         ("Tool speed", f"{1000 * seen.v_tcp:.0f} mm/s"),
         ("Force at the flange", f"{float(np.linalg.norm(seen.F_user[:3])):.1f} N"),
         *pull_row(snapshot.pull),
+        *user_row(snapshot.user),
         ("Payload true, configured", f"{snapshot.truth_payload_mass:.2f}, {snapshot.configured_mass:.2f} kg"),
         *periods,
     ]

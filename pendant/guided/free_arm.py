@@ -5,6 +5,7 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.endings import EndingWatch
+from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
@@ -28,6 +29,7 @@ class FreeArm:
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
         pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
+        taken: what it takes for the user's force; None in the tick of entry.
         suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
@@ -36,6 +38,7 @@ class FreeArm:
         "_bias",
         "_containment",
         "_hand",
+        "_hung",
         "_operation",
         "_singularity",
         "_zones",
@@ -45,6 +48,7 @@ class FreeArm:
         "pull",
         "singularity",
         "suspect",
+        "taken",
         "user",
     )
 
@@ -77,6 +81,8 @@ class FreeArm:
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
         self.damping: Damping | None = None
+        self._hung = upward_in_flange(estimate)
+        self.taken: TakenForce | None = None
         self.pull = PullCauses(HandFelt.NOBODY)
         self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
@@ -124,6 +130,7 @@ class FreeArm:
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
+        self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)

@@ -53,6 +53,7 @@ class UserForce:
         "_slow_joints",
         "_up",
         "change",
+        "fluctuation",
         "payload",
         "user",
         "usual",
@@ -79,12 +80,18 @@ class UserForce:
         self.user: Vector = ORIGIN  # the user's force, axes of B [N]
         self.change: Vector = ORIGIN  # of what the sensor feels, as measured, axes of B [N]
         self.usual: Vector = ORIGIN  # of that the mean lately [N]
+        self.fluctuation = 0.0  # mean square of what it lately was off that, all axes together [N²]
         self.payload: Vector = ORIGIN  # of the payload-like residual, axes of B [N]
 
     @property
     def sensed(self) -> float:
         """Size of the user's force as the flange sensor alone tells it [N]; 0 where it has not been used."""
         return norm(self._by_sensor)
+
+    @property
+    def by_joints(self) -> bool:
+        """The joints tell the user's force, and not the flange sensor."""
+        return self.user is self._by_joints is not ORIGIN
 
     def shift(self, force: Vector) -> None:
         """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""
@@ -121,6 +128,7 @@ class UserForce:
             self.change = (x, y, z)
             bx, by, bz = self.usual
             bx, by, bz = x - bx, y - by, z - bz
+            self.fluctuation += _JOINTS * (bx * bx + by * by + bz * bz - self.fluctuation)
             self.usual = (x - (1.0 - _JOINTS) * bx, y - (1.0 - _JOINTS) * by, z - (1.0 - _JOINTS) * bz)
             self._slow = slow = self._slow + settle * (x * ux + y * uy + z * uz - self._slow)
             residual = self._residual + slow

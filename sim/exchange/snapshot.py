@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
+from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.tick.estimate import Estimate
 from pendant.walls.barrier import Place
@@ -44,6 +45,7 @@ class Snapshot:
     reference: NDArray[np.float64] | None = None  # (n,) where the joints should be; None in free-drive [rad]
     places: tuple[tuple[AnyBorder, Place], ...] = ()  # walls and areas with where their shapes lie in B
     pull: PullCauses | None = None  # what pulls at the free arm: of the last 0.1 s the tick in which that is least a hand (FD-19)
+    user: UncertainForce | None = None  # what is taken for the user's force (FD-19); None while the arm is not free
 
     @property
     def p_FT(self) -> NDArray[np.float64]:

@@ -40,7 +40,8 @@ class Parts:
 
     def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
-            phase=Phase.HELD, arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful"), pull="pull",
+            phase=Phase.HELD, pull="pull",
+            arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful", taken="taken"),
             helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
@@ -88,7 +89,7 @@ class Parts:
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
-            "force": "force", "script_done": 7, "signs": 0, "pull": "pull",
+            "force": "force", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
         } | changes  # fmt: skip
 
 
@@ -97,7 +98,15 @@ def told(decision: Decision) -> dict[str, object]:
 
 
 TRYING = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "arm": None}
-TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singularity": None, "doubtful": False, "locks": None}
+TRIED = {
+    "mode": Mode.TEACH,
+    "phase": Phase.SEQUENCE,
+    "damping": None,
+    "singularity": None,
+    "doubtful": False,
+    "locks": None,
+    "taken": None,
+}
 
 
 @pytest.mark.parametrize(
@@ -107,7 +116,7 @@ TRIED = {"mode": Mode.TEACH, "phase": Phase.SEQUENCE, "damping": None, "singular
         ({"helping": False}, {"gain": 0.0}),
         ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
         ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
-        ({"arm": None}, {"damping": None, "singularity": None, "doubtful": False}),
+        ({"arm": None}, {"damping": None, "singularity": None, "doubtful": False, "taken": None}),
         ({"idle": True}, {"periods": ()}),
         ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
         ({"guided": Guided()}, {}),
@@ -147,7 +156,7 @@ def test_without_the_switch_no_periods_are_told() -> None:
 
 LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
-    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other"), "zones": (), "move": None,
+    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other", taken="other"), "zones": (), "move": None,
     "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
     "wizard": SimpleNamespace(progress="other"),

@@ -8,7 +8,17 @@ from app.web.panel.button_holds import ButtonHolds
 from app.web.panel.clock_pace import pace
 from app.web.panel.panel_message import HINTS, Remembered, said
 from app.web.panel.reasons_at_the_arm import rgb, show_reasons
-from app.web.panel.state_words import ASKED, LEAVING_PERIODS, PERIOD_COLOURS, PERIOD_WORDS, SAFETY_WORDS, WORDS, pull_row
+from app.web.panel.state_words import (
+    ASKED,
+    FIGURES,
+    LEAVING_PERIODS,
+    PERIOD_COLOURS,
+    PERIOD_WORDS,
+    SAFETY_WORDS,
+    WORDS,
+    pull_row,
+    user_row,
+)
 from app.web.panel.way_back import WayBack
 from app.web.running import Running
 from app.web.scene.arm_marks import ArmMarks
@@ -105,7 +115,7 @@ class Panel:
             self.back.show(snapshot, fresh),
             self.marks.light(rgb(colour)),
             show_reasons(self.marks, self.said, self._remembered, snapshot),
-            self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot))),
+            self.numbers.show(svg.bars(_nearest(bars), len(bars)) if bars else svg.facts(self._numbers(snapshot), FIGURES)),
             enable(self.leave, decision.mode is Mode.FREE_DRIVE or decision.phase is Phase.SEQUENCE),
             enable(self.free_drive, True),
             enable(self.reset, decision.mode is Mode.STOP),
@@ -156,6 +166,7 @@ class Panel:
             ("Speed of the tool", _speed(seen.v_tcp)),
             ("Speed of the elbow", _speed(seen.v_elbow)),
             *pull_row(snapshot.pull),
+            *user_row(snapshot.user),
             *_wall(snapshot.decision),
             ("Payload configured", f"{snapshot.configured_mass:.2f} kg"),
             ("Limits checksum", self._digest),

@@ -11,6 +11,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from app.web.scene.arm_marks import ball_radius
+from app.web.scene.force_ellipsoid import ForceEllipsoid
 from app.web.scene.stage import DARK, LIGHT, lay
 from app.web.scene.touch_arrow import TouchArrow
 from app.web.scene.wall_pictures import WallPictures
@@ -70,6 +71,7 @@ class Scene:
         )
         self._believed_label = server.scene.add_label("/believed label", "", visible=False, anchor="top-center")
         self.arrows = [TouchArrow(server.scene, i) for i in range(TOUCHES)]
+        self.user = ForceEllipsoid(server.scene)
         self.walls = WallPictures(server)
 
     def show(self, snapshot: Snapshot) -> bool:
@@ -85,6 +87,7 @@ class Scene:
             changed |= self._show_payload(snapshot)
             changed |= self._show_believed(snapshot)
             changed |= self._show_touches(snapshot)
+            changed |= self.user.show(snapshot)
             changed |= self.walls.show(snapshot)
         if changed:
             self._server.flush()

@@ -132,10 +132,14 @@ def who(text: str, hint: str, colour: Colour, *, watching: bool = False) -> str:
     )
 
 
-def facts(pairs: Iterable[tuple[str, str]]) -> str:
-    """Names and values in two columns."""
-    rows = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in pairs)
+def facts(pairs: Iterable[tuple[str, str]], hints: Mapping[str, str] = {}) -> str:
+    """Names and values in two columns; `hints` has what is told when the pointer rests on a name."""
+    rows = "".join(f"<dt{_hint(hints.get(name))}>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in pairs)
     return f'<dl class="pd-facts">{rows}</dl>'
+
+
+def _hint(text: str | None) -> str:
+    return "" if text is None else f' title="{escape(text)}"'
 
 
 def loads(true: float, configured: float) -> str:

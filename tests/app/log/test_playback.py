@@ -2,13 +2,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 from app.files.checked import BadInput, convert
 from app.files.library import mesh_path
-from app.log.playback import Player, snapshot_at
+from app.log.playback import Player, snapshot_at, user_at
 from app.log.reader import Log, read
+from app.log.recorded_messages import PendantMessage
 from app.log.recorder import Recorder
 from app.runs.runner import simulate
 from app.session.prepare import prepare
@@ -78,7 +80,7 @@ def test_a_time_has_its_tick_and_its_picture(player: Player, time: float, row: i
 
 def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]) -> None:
     log, seen = played
-    for picture in (0, 40, 60):
+    for picture in (0, 40, 57, 60):
         tick = 8 * picture + 1
         found, was = snapshot_at(log, picture, tick - 1), seen[tick]
         np.testing.assert_array_equal(found.truth_links, was.truth_links)
@@ -93,7 +95,22 @@ def test_a_snapshot_comes_back_as_it_was(played: tuple[Log, dict[int, Snapshot]]
         assert (found.tick, found.truth_payload_mass, found.configured_mass) == (tick, 1.0, 1.0)
         assert found.touches == was.touches
         assert found.decision.pull == found.pull == was.decision.pull
+        if picture >= 57:
+            assert found.user is not None
+            assert was.user is not None
+            assert (found.user.force, found.user.at) == (was.user.force, was.user.at)
+            assert was.user.covariance is not None, "a push is no step of the sensor"
+            np.testing.assert_array_equal(found.user.covariance, was.user.covariance)
+        else:
+            assert found.user is was.user is None
     assert any(each.touches for each in log.pictures)
+
+
+def test_a_recording_from_before_the_users_force_came_has_none(played: tuple[Log, dict[int, Snapshot]]) -> None:
+    said = msgspec.to_builtins(played[0].pictures[57])
+    assert user_at(msgspec.convert(said, PendantMessage)) is not None
+    del said["user"]
+    assert user_at(msgspec.convert(said, PendantMessage)) is None
 
 
 def test_a_log_without_a_tick_is_refused(played: tuple[Log, dict[int, Snapshot]]) -> None:

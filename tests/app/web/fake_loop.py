@@ -11,6 +11,7 @@ from pendant.decision import Decision
 from pendant.equipment.tools import Tool
 from pendant.events.event import Event, Kind
 from pendant.freedrive.periods import Remaining
+from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
 from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
@@ -107,6 +108,7 @@ class FakeLoop:
         self.places: tuple[tuple[AnyBorder, Place], ...] = ()
         self.touches: tuple[Any, ...] = ()
         self.pull: PullCauses | None = None
+        self.user: UncertainForce | None = None
         self.log: list[Event] = []
         self.wishes: list[Any] = []
         self.resets = 0
@@ -180,6 +182,7 @@ class FakeLoop:
             scenario=self.scenario,
             places=self.places,
             pull=self.pull,
+            user=self.user,
         )
 
     def events(self, since: int) -> list[Event]:

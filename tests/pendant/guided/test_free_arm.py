@@ -261,3 +261,21 @@ def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:
     assert free.arm.pull.felt is HandFelt.LINK
     free.see(estimate(position=[0.04, 0.0, 0.0], speed=0.0))
     assert free.arm.pull.felt is HandFelt.NOBODY
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_that_is_used(sensor: bool) -> None:
+    """FD-19: with what the sensor may have drifted by, and how the flange was turned at entry."""
+    free = Free(sensor=sensor)
+    assert free.arm.taken is None
+    free.during(50, estimate(force=20.0))
+    taken = free.arm.taken
+    assert taken is not None
+    assert taken.force == free.arm.user
+    assert (taken.doubts is not None) is sensor
+    if taken.doubts is not None:
+        assert taken.doubts.change == pytest.approx((20.0, 0.0, 0.0))
+        assert taken.doubts.slack == pytest.approx(SENSOR.drift_force * 50 * TICK)
+        assert taken.doubts.hung == (0.0, 0.0, 1.0)
+    free.see(estimate(wrench_valid=False))
+    assert free.arm.taken == (free.arm.user, None)
