@@ -173,7 +173,7 @@ def use(robot: Robot, hour: int, device: Simulation, home: np.ndarray) -> Use:
         hour,
         (empty, loaded),
         refused,
-        abs(said[0] - best) if said else math.nan,
+        min(abs(said[0] - best), abs(said[0] - WRONG.mass)) if said else math.nan,  # with a zero that is unknown, or known
         zeroed,
         tuple(refusals),
         contacts,

@@ -2,6 +2,7 @@
 
 import msgspec
 
+from pendant.limits.residual import PayloadError
 from pendant.limits.validity import Stillness, WrenchMean
 from pendant.sensor.taring import Taring
 from pendant.signals.enabling_device import Grip, enables
@@ -31,6 +32,12 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     def maybe_zero(self) -> bool:
         """The sensor's zero alone may be what is felt at the flange (FD-11)."""
         return self.taring is not None and self.taring.explains(self.estimate, self.mean.mean())
+
+    @property
+    def payload_error(self) -> PayloadError | None:
+        """Of the payload, as other postures tell it; None where nothing is known but the force of now."""
+        known = self.taring is not None and self.wrench_ok
+        return self.taring.payload_error(self.estimate, self.mean.mean()) if known else None
 
     @property
     def enabled(self) -> bool:

@@ -74,7 +74,7 @@ class TareRun:
         robot, taring = self._robot, self.taring
         move = robot.sequencer.move
         if self._tooling.changing or not wrench_ok:
-            taring.restart()
+            taring.restart(lost=not wrench_ok)
         else:
             freed = robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE or self._haptics.busy
             stands = robot.static and not freed and (move is None or isinstance(move, STANDING) or self._scripted)

@@ -2,13 +2,15 @@
 
 import math
 
+from msgspec.structs import replace
+
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.freedrive.settings import BeyondLimit
 from pendant.limits.dynamic_limits import DynamicLimits, Shares, in_activation
 from pendant.limits.parameters import ZEROS, EntryValues, Monitor, Observed
-from pendant.limits.residual import Split, Vector, mass_error, split, upward
+from pendant.limits.residual import PayloadError, Split, Vector, mass_error, split, upward, weight_error
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.tick.estimate import Estimate
 from pendant.tick.limit_engine import Gauge, Monitored
@@ -17,7 +19,7 @@ from pendant.tick.modes import TICK
 FORCE_SENSED = "flange force sensor"
 ACCELERATION_SENSED = "flange accelerometer"
 
-PAYLOAD_LIKE = frozenset({"payload-like force", "payload-like torque"})
+PAYLOAD_LIKE = frozenset({"payload-like force", "payload-like torque", "payload error"})
 
 SHORTEST = 0.25
 """Period that needs neither the handshake nor a stored state (FD-9) [s]."""
@@ -44,8 +46,10 @@ class Sequence:
         "_acceleration",
         "_against",
         "_dynamic",
+        "_force",
         "_joints",
         "_monitor",
+        "_payload",
         "_scale",
         "_share",
         "_since",
@@ -84,6 +88,7 @@ class Sequence:
         self._wrench = around.wrench_ok
         self._acceleration = estimate.acceleration_valid
         self._up: Vector = upward(estimate.g_B.tolist())
+        self._payload, self._force = around.payload_error, split(around.mean.mean(), self._up).payload_force  # at the start
         self._start = estimate.tick
         self._dynamic = DynamicLimits(in_activation(settings), estimate)
 
@@ -101,7 +106,12 @@ class Sequence:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
         parts = split(around.mean.mean(), self._up) if self._wrench else None
         shares = self._shares(around.estimate, parts)
-        beyond = self._monitor.step(Observed(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares))
+        view = Observed(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares)
+        if parts is not None and self._payload is not None:
+            # What the force has changed by since the start, a payload may have as well.
+            mass = self._payload.mass + mass_error(parts.payload_force - self._force)
+            view = replace(view, payload=PayloadError(mass, self._payload.margin))
+        beyond = self._monitor.step(view)
         if self._against is None:
             return beyond
         stored, changes = self._against
@@ -135,29 +145,32 @@ class Sequence:
         if settings.sequence.beyond_limit is BeyondLimit.PROTECTIVE_STOP:
             return Event(Kind.SEQUENCE_STOPPED, tick, dict(excess._asdict()))
         if gauge.name in PAYLOAD_LIKE:
-            force = split(around.mean.mean(), self._up).payload_force
+            force, known = _payload_like(around, self._up, settings)
             values: Values = {"mass": mass_error(force), "force": abs(force), "way": "up" if force > 0.0 else "down"}
-            return Event(Kind.REFUSED_PAYLOAD, tick, {**values, "zero": around.maybe_zero, "parameter": excess.parameter})
+            values |= {"zero": around.maybe_zero and not known, "parameter": excess.parameter}
+            return Event(Kind.REFUSED_PAYLOAD, tick, values)
         return Event(Kind.REFUSED_LIMIT, tick, dict(excess._asdict()))
 
 
 class SequenceVerdict:
     """Payload or push: what was refused as either is told apart by what stays when the user lets go (FD-11, FD-22)."""
 
-    __slots__ = ("_force", "_up", "waiting")
+    __slots__ = ("_bias", "_force", "_known", "_up", "waiting")
 
     GONE = 0.5  # share of the force below which it counts as gone
     SAME = 1.5  # a force that stayed within so much is the same [N]
 
     def __init__(self) -> None:
         self.waiting = False
-        self._force = 0.0
+        self._force = self._bias = 0.0
+        self._known = False  # the sensor's bias, which is part of what is felt [N]
         self._up: Vector = (0.0, 0.0, 1.0)
 
-    def begin(self, around: Surroundings) -> None:
+    def begin(self, around: Surroundings, settings: Settings) -> None:
         """A refusal that may be payload or push."""
         self._up = upward(around.estimate.g_B.tolist())
-        self._force = split(around.mean.mean(), self._up).payload_force
+        self._force, self._known = _payload_like(around, self._up, settings)
+        self._bias = split(around.mean.mean(), self._up).payload_force - self._force
         self.waiting = True
 
     def step(self, around: Surroundings, last: bool) -> list[Event]:
@@ -166,7 +179,7 @@ class SequenceVerdict:
             self.waiting = False
             return []
         tick = around.estimate.tick
-        force = split(around.mean.mean(), self._up).payload_force
+        force = split(around.mean.mean(), self._up).payload_force - self._bias
         if abs(force) < self.GONE * abs(self._force):
             self.waiting = False
             return [Event(Kind.RESIDUAL_GONE, tick, {"force": abs(self._force), "left": abs(force)})]
@@ -175,4 +188,13 @@ class SequenceVerdict:
         self.waiting = False
         if abs(force - self._force) > self.SAME:
             return []
-        return [Event(Kind.RESIDUAL_STAYED, tick, {"force": abs(force), "mass": mass_error(force), "zero": around.maybe_zero})]
+        zero = around.maybe_zero and not self._known
+        return [Event(Kind.RESIDUAL_STAYED, tick, {"force": abs(force), "mass": mass_error(force), "zero": zero})]
+
+
+def _payload_like(around: Surroundings, up: Vector, settings: Settings) -> tuple[float, bool]:
+    """The force as a wrong payload would cause it, without the sensor's bias where that is known, and whether it is [N]."""
+    known = around.payload_error
+    if known is not None and known.margin <= settings.limits.activation.payload_error.max:
+        return weight_error(known.mass), True
+    return split(around.mean.mean(), up).payload_force, False

@@ -218,7 +218,7 @@ class FreeDrive:
             assert cause is not None  # what refuses and what leaves is an event
             self.stop(cause, settings)
             if cause is Kind.REFUSED_PAYLOAD and self._gate.left > 0:
-                self._verdict.begin(around)
+                self._verdict.begin(around, settings)
 
     def _enter(self, around: Surroundings, settings: Settings) -> None:
         bias = self._bias

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import msgspec
 
 from pendant.limits.dynamic_limits import WHOLE, Shares
-from pendant.limits.residual import Split
+from pendant.limits.residual import PayloadError, Split
 from pendant.limits.settings import LimitReaction
 from pendant.settings.schema import Limit, Section, ticks
 from pendant.tick.estimate import Estimate
@@ -38,6 +38,7 @@ class Observed(msgspec.Struct, frozen=True, gc=False):
     share: float  # of a joint's load torque by which its limit rises
     shares: Shares = WHOLE  # of the limits that are left (FD-12b)
     heavier: float = 0.0  # by how much the load raises the limit on the user's force [N] (FD-13)
+    payload: PayloadError | None = None  # None: nothing is known of it
 
 
 Read = tuple[float, str, float]
@@ -145,6 +146,12 @@ def _payload_torque(view: Observed, base: float) -> Read:
     return _of(view).payload_torque, "flange", base
 
 
+def _payload_error(view: Observed, base: float) -> Read:
+    """Its limit is never less than what a right payload may seem to be wrong by."""
+    known = view.payload
+    return (0.0, "", base) if known is None else (abs(known.mass), "flange", max(base, known.margin))
+
+
 def _user_force(view: Observed, base: float) -> Read:
     return _of(view).user_force, "flange", base + view.heavier
 
@@ -183,6 +190,7 @@ PARAMETERS: dict[str, Parameter] = {
     "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
     "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
     "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),
+    "payload_error": Parameter("payload error", "kg", _payload_error, wrench=True),
     "user_force": Parameter("user force", "N", _user_force, wrench=True),
     "user_torque": Parameter("user torque", "N·m", _user_torque, wrench=True),
 }

@@ -24,6 +24,13 @@ class Split(msgspec.Struct, frozen=True, gc=False):
     user_torque: float  # about the direction of gravity [N·m]
 
 
+class PayloadError(msgspec.Struct, frozen=True, gc=False):
+    """What is known of the error of the payload's mass, true minus configured."""
+
+    mass: float  # [kg]
+    margin: float  # a right payload seems wrong by so much at most [kg]
+
+
 def upward(g: Sequence[float]) -> Vector:
     """Unit vector against gravity `g`, which is not zero."""
     x, y, z = g
@@ -47,3 +54,8 @@ def split(wrench: Sequence[float], up: Vector) -> Split:
 def mass_error(payload_force: float) -> float:
     """The payload error dm [kg] that explains `payload_force`: true minus configured."""
     return -payload_force / GRAVITY
+
+
+def weight_error(mass: float) -> float:
+    """The payload force [N] of a payload error [kg]."""
+    return -mass * GRAVITY

@@ -9,9 +9,10 @@ from collections import deque
 
 from pendant.events.event import Event, Kind, Values
 from pendant.limits.parameters import ZEROS
-from pendant.limits.residual import mass_error, split, upward
+from pendant.limits.residual import PayloadError, mass_error, split, upward
 from pendant.limits.settings import ActivationLimits
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.sensor.payload_known import PayloadKnown
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
@@ -42,22 +43,27 @@ class Taring:
         due: an untouched arm feels what may soon refuse free-drive.
     """
 
-    __slots__ = ("_count", "_reference", "_sensor", "_tick", "_weight", "_windows", "due", "zero")
+    __slots__ = ("_count", "_known", "_reference", "_sensor", "_tick", "_weight", "_windows", "due", "zero")
 
     def __init__(self, sensor: SensorSpec) -> None:
         self.zero: Wrench = ZEROS
         self.due = False
         self._sensor = sensor
+        self._known = PayloadKnown(sensor)
         self._count = 0  # ticks in the window that is being filled
         self._windows: deque[Wrench] = deque(maxlen=WINDOWS)  # means of F_user since the arm stands, axes of F
         self._reference: Wrench | None = None  # F_user of the untouched arm, axes of F [N, N·m]
         self._tick = 0  # in which it was followed last
         self._weight: Vector = ORIGIN  # of the load then, axes of F [N]
 
-    def restart(self) -> None:
-        """The sensor is out, or the configured load changes: the untouched arm is learned again."""
+    def restart(self, lost: bool) -> None:
+        """The sensor is out (`lost`), or the configured load changes: the untouched arm is learned again."""
         self._reference = None
         self._rest()
+        if lost:
+            self._known.forget()
+        else:
+            self._known.change()
 
     def step(self, estimate: Estimate, mean: WrenchMean, stands: bool, limits: ActivationLimits) -> list[Event]:
         """One tick with a valid sensor.
@@ -78,6 +84,7 @@ class Taring:
         wrench = mean.mean()
         present = in_flange(estimate, wrench)
         self._windows.append(present)
+        self._known.learn(estimate, self._raw(present))
         reference = self._follow(estimate, present)
         return [] if self._pulled(estimate, present, reference) else self._judge(estimate, reference, limits)
 
@@ -114,8 +121,18 @@ class Taring:
         """The bias of the sensor can be so far off that it alone makes this F_user, axes of B [N, N·m]."""
         return not self._beyond(estimate, in_flange(estimate, wrench))
 
+    def payload_error(self, estimate: Estimate, wrench: Wrench) -> PayloadError | None:
+        """The error of the payload's mass that this F_user shows, axes of B [N, N·m]; None where other postures tell nothing."""
+        return self._known.told(estimate, self._raw(in_flange(estimate, wrench)))
+
+    def _raw(self, present: Wrench) -> Vector:
+        """Force of F_user as it would be without any zero, axes of F [N]."""
+        x, y, z = _less(present, self.zero)[:3]
+        return x, y, z
+
     def _rest(self) -> None:
         self._count = 0
+        self._known.move()
         if self._windows:
             self._windows.clear()
 

@@ -113,4 +113,7 @@ def sensor_spec(arm: Arm) -> SensorSpec:
     drift, offset = lasting(force_torque.drift), most(force_torque.drift)
     noise = (force_torque.force.noise, force_torque.torque.noise)
     shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
-    return SensorSpec(*drift, *offset, *noise, shaken)
+    spec, wander = SensorSpec(*drift, *offset, *noise, shaken), force_torque.drift
+    if wander is None:
+        return spec._replace(walk_force=0.0)
+    return spec._replace(warm_up=wander.warm_up, walk_force=wander.walk_force, walk_time=wander.walk_time)

@@ -128,7 +128,7 @@ def test_payload_comes_first_of_several_reasons(force: float, way: str) -> None:
 def test_a_verdict_waits_for_what_stays_of_the_force(left: float, valid: bool, last: bool, kinds: list[Kind] | None) -> None:
     """FD-11: from 10 N, up to half counts as there, up to 1.5 N more or less as the same; `None`: it waits on."""
     verdict = SequenceVerdict()
-    verdict.begin(around(estimate(force=[0.0, 0.0, 10.0])))
+    verdict.begin(around(estimate(force=[0.0, 0.0, 10.0])), Settings())
     told = verdict.step(around(estimate(force=[3.0, 4.0, left], wrench_valid=valid)), last)
     assert [event.kind for event in told] == (kinds or [])
     assert verdict.waiting is (kinds is None)

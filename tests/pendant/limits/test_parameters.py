@@ -9,7 +9,7 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.limits.dynamic_limits import Shares
 from pendant.limits.parameters import PARAMETERS, ZEROS, EntryValues, Monitor, Observed, reference
-from pendant.limits.residual import split
+from pendant.limits.residual import PayloadError, split
 from pendant.settings.schema import Limit, Section
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
@@ -20,8 +20,9 @@ RATED = (150.0, 150.0, 150.0, 28.0, 28.0, 28.0)
 
 
 def view(value, since: EntryValues | None = None, scale: tuple[float, ...] = RATED, share: float = 0.0) -> Observed:
-    parts = split(value.F_user.tolist(), (0.0, 0.0, 1.0))
-    return Observed(value, since or EntryValues((0.0,) * 3, ZEROS, (0.0,) * 6, (0.0,) * 6), parts, JOINTS, scale, share)
+    parts, known = split(value.F_user.tolist(), (0.0, 0.0, 1.0)), PayloadError(-0.2, 0.1)
+    since = since or EntryValues((0.0,) * 3, ZEROS, (0.0,) * 6, (0.0,) * 6)
+    return Observed(value, since, parts, JOINTS, scale, share, payload=known)
 
 
 def test_every_limit_of_every_stage_is_of_a_parameter() -> None:
@@ -55,6 +56,7 @@ def test_sizes(seed: int) -> None:
         "motor_current": (np.abs(value.current).max(), JOINTS[int(np.abs(value.current).argmax())]),
         "payload_force": (value.F_user[2], "flange"),
         "payload_torque": (math.hypot(*value.F_user[3:5]), "flange"),
+        "payload_error": (0.2, "flange"),
         "user_force": (math.hypot(*value.F_user[:2]), "flange"),
         "user_torque": (abs(value.F_user[5]), "flange"),
     }
@@ -106,6 +108,14 @@ def test_a_monitor_checks_what_is_on_and_measured(stage: str) -> None:
     for _ in range(51):
         beyond = seeing.step(view(value))
     assert {gauge.name for gauge in beyond} >= {"flange acceleration", "user force"}
+
+
+@pytest.mark.parametrize(("margin", "high"), [(0.0, 0.3), (0.29, 0.3), (0.31, 0.31)])
+def test_no_payload_is_wrong_by_what_a_right_one_may_seem_to_be(margin: float, high: float) -> None:
+    known = msgspec.structs.replace(view(estimate()), payload=PayloadError(-0.5, margin))
+    assert PARAMETERS["payload_error"].read(known, 0.3) == (0.5, "flange", high)
+    unknown = msgspec.structs.replace(known, payload=None)
+    assert PARAMETERS["payload_error"].read(unknown, 0.3) == (0.0, "", 0.3), "without a part it is not shown"
 
 
 def test_a_motor_is_judged_by_its_rated_torque() -> None:

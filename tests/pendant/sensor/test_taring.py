@@ -308,7 +308,7 @@ def test_in_another_posture_a_load_may_weigh_something_else(mass: float, size: f
 
 def test_another_load_or_a_sensor_that_was_out_begins_again() -> None:
     bench = ready()
-    bench.feel(0.0, 4.0).taring.restart()
+    bench.feel(0.0, 4.0).taring.restart(lost=False)
     assert "must stand untouched" in bench.why_not()
     assert bench.run(READY).why_not() == ""
 
@@ -316,7 +316,7 @@ def test_another_load_or_a_sensor_that_was_out_begins_again() -> None:
 def test_the_zero_stays_when_the_sensor_was_out() -> None:
     bench = ready(1.0)
     bench.zero()
-    bench.taring.restart()
+    bench.taring.restart(lost=False)
     assert bench.taring.zero[0] == pytest.approx(-1.0)
 
 
@@ -409,3 +409,31 @@ def test_noise_and_drift_alone_refuse_nothing() -> None:
         for _ in range(WINDOWS):
             bench.feel(*rng.normal([0.012 * second] * 3 + [0.0] * 3, noise).tolist()).run(WINDOW)
         assert bench.why_not() == "", second
+
+
+def test_the_payloads_error_is_told_without_what_was_zeroed() -> None:
+    """0.5 kg too much, and a bias that was zeroed with it; F_user is minus what the sensor has too much."""
+    bench = Bench()
+    bias, weight = (2.0, -1.0, -1.0), 0.5 * GRAVITY
+    bench.feel(-bias[0], -bias[1], -bias[2] - weight).run(READY)
+    assert bench.taring.payload_error(bench.value(), tuple(bench.value().F_user.tolist())) is None
+    bench.zero()
+    bench.run(1, stands=False).R = ACROSS
+    bench.feel(-bias[0], -bias[1] + ACROSS[2, 1] * -weight, -bias[2])
+    bench.run(READY)
+    told = bench.taring.payload_error(bench.value(), tuple(bench.value().F_user.tolist()))
+    assert told is not None
+    assert told.mass == pytest.approx(0.5, abs=0.05)
+    assert told.margin < 0.3
+    bench.taring.restart(lost=False)
+    assert bench.taring.payload_error(bench.value(), ZEROS) is None, "one other posture does not tell another load"
+
+
+def test_a_sensor_that_was_out_tells_nothing_of_the_payload() -> None:
+    bench = ready()
+    bench.run(1, stands=False).R = ACROSS
+    bench.run(READY)
+    assert bench.taring.payload_error(bench.value(), ZEROS) is not None
+    bench.taring.restart(lost=True)
+    bench.run(READY)
+    assert bench.taring.payload_error(bench.value(), ZEROS) is None

@@ -1,0 +1,205 @@
+"""Error of the payload's mass, told apart from the flange sensor's bias by the postures in which the arm stood (FD-9, FD-11).
+
+A bias turns with the flange, a payload hangs along gravity. In one posture the sensor feels their sum; in two they can be told
+apart. A Kalman filter keeps what all postures said, in axes of F:
+
+    -F_user = bias + mass error * a + own,    a = -R_BF^T g
+
+The bias drifts as the sensor's maker says. The mass error may be another one in each posture, for a gripper may have closed on
+the way; `own` is what the sensor's gain makes of the load, and what pulls a little in one posture alone. So what a posture says
+along gravity is never taken for a bias, be it a payload or a hand. A hand across gravity that comes or goes makes a posture teach
+nothing; one that stays contradicts the others. The first postures count only where the same payload explains both.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.limits.residual import PayloadError
+from pendant.limits.validity import WINDOW
+from pendant.sensor.sensor_spec import SensorSpec
+from pendant.settings.schema import ticks
+from pendant.tick.estimate import Estimate
+from pendant.tick.modes import TICK
+from pendant.tick.pose import Vector
+
+Array = NDArray[np.float64]
+
+BIAS, RATE, MASS, OWN = slice(0, 3), slice(3, 6), 6, slice(7, 10)
+"""Places in the state [N], [N/s], [kg], [N]."""
+
+SIZE = 10
+
+ANYTHING = 100.0
+"""Standard deviation of a payload error of which nothing is known [kg]: it weighs nothing beside what is measured."""
+
+PULLS = 0.2
+"""Standard deviation of what pulls in one posture and not in another, such as a hose [N]; the sensor's torques into its forces
+make a quarter of it."""
+
+UNSTEADY = 0.1
+"""Standard deviation of a window beyond its noise [N]: an arm that came to rest still swings a little on its gears."""
+
+FALSE_ALARM = 16.3
+"""A chi-square of three values exceeds it by chance once in a thousand times: more contradicts what is known."""
+
+SURE = 3.29
+"""Standard deviations that an error exceeds once in a thousand times: so many right payloads may be refused."""
+
+STOOD = 10
+"""Windows that an arm must have stood for, so that a posture teaches anything: as for zeroing, a hand on its way is none."""
+
+STEADY = ticks(5.0) // WINDOW
+"""Windows that contradict what is known until that is given up: no hand is as steady (contact_free_baseline)."""
+
+WITNESSES = 2
+"""Postures that must have agreed on bias and payload until a third that does not is believed to have another payload: one alone
+may have been touched all the time."""
+
+
+TURNED = math.cos(math.radians(10.0))
+"""Gravity in the flange must have turned by so much for a posture to be another witness."""
+
+
+class _Belief(NamedTuple):
+    """Mean (SIZE,) and covariance (SIZE, SIZE) of the state."""
+
+    x: Array
+    P: Array
+    tick: int | None = None  # of the last window
+    postures: int = 0  # that agree on it
+    a: Array = np.zeros(3)  # specific force in the last of these [m/s²]
+    compared: bool = False  # its mass error was found in another posture, as the load is configured
+
+
+class PayloadKnown:
+    """One window of an arm that stands after the other."""
+
+    __slots__ = ("_a", "_before", "_contrary", "_nothing", "_now", "_sensor", "_touched", "_windows")
+
+    def __init__(self, sensor: SensorSpec) -> None:
+        self._sensor = sensor
+        # Of the bias what the maker says is known, all values within that equally likely; of the payload nothing.
+        P = np.zeros((SIZE, SIZE))
+        P[BIAS, BIAS], P[RATE, RATE] = np.eye(3) * sensor.offset_force**2 / 3.0, np.eye(3) * sensor.drift_force**2 / 3.0
+        P[MASS, MASS] = ANYTHING**2
+        self._nothing = _Belief(np.zeros(SIZE), P)
+        self.forget()
+
+    def forget(self) -> None:
+        """The sensor was out: its bias may be another."""
+        self._now = self._before = self._nothing
+        self._a = self._nothing.a  # specific force in this posture
+        self._contrary = 0  # windows that contradicted what is known since one agreed with it
+        self._touched, self._windows = False, 0
+
+    def move(self) -> None:
+        """The arm moves: what is felt next is another posture's."""
+        if self._windows or self._touched:
+            now = self._before
+            if self._windows >= STOOD:
+                now = self._now
+                if self._a @ now.a < TURNED * (self._a @ self._a):
+                    now = now._replace(postures=now.postures + 1, a=self._a)
+            self._now = self._before = now._replace(compared=True)
+            self._touched, self._windows = False, 0
+
+    def change(self) -> None:
+        """Another load is configured."""
+        self._now, self._before = [_other_mass(each)._replace(compared=False) for each in (self._now, self._before)]
+
+    def learn(self, estimate: Estimate, force: Vector) -> None:
+        """A window in which the arm stands.
+
+        Args:
+            estimate: of its last tick.
+            force: mean of F_user without any zero, axes of F [N].
+        """
+        if self._touched:
+            return
+        seen = self._seen(estimate, force)
+        if seen is not None:
+            self._now, self._contrary, self._windows = seen, 0, self._windows + 1
+            self._a = _specific(estimate)
+        elif self._windows:  # a hand came or went, and may have been there before
+            self._now, self._touched, self._windows = self._before, True, 0
+        else:
+            self._contrary += 1
+            if self._contrary == STEADY:
+                self.forget()
+
+    def told(self, estimate: Estimate, force: Vector) -> PayloadError | None:
+        """The payload's error from this force, as `learn`, and other postures; None where there are none, or they contradict."""
+        seen = self._seen(estimate, force) if self._trusted or self._now.compared else None
+        return None if seen is None else PayloadError(float(seen.x[MASS]), SURE * math.sqrt(seen.P[MASS, MASS]))
+
+    @property
+    def _trusted(self) -> bool:
+        """So many postures agreed on bias and payload that one which does not has another payload."""
+        return self._now.postures >= WITNESSES
+
+    def _predicted(self, tick: int) -> _Belief:
+        """As the sensor may have drifted since the last window."""
+        sensor, now = self._sensor, self._now
+        passed = 0.0 if now.tick is None else (tick - now.tick) * TICK
+        cools = math.exp(-passed / sensor.warm_up)
+        F = np.eye(SIZE)
+        F[BIAS, RATE], F[RATE, RATE] = np.eye(3) * sensor.warm_up * (1.0 - cools), np.eye(3) * cools
+        P = F @ now.P @ F.T
+        P[BIAS, BIAS] += np.eye(3) * sensor.walk_force**2 * (1.0 - math.exp(-2.0 * passed / sensor.walk_time))
+        P[RATE, RATE] += np.eye(3) * sensor.drift_force**2 / 3.0 * (1.0 - cools * cools)
+        return now._replace(tick=tick, x=F @ now.x, P=P)
+
+    def _own(self, estimate: Estimate) -> Array:
+        """Variance (3,) of what is a posture's own, axes of F [N²]."""
+        weight = estimate.load_mass * _specific(estimate)
+        return (self._sensor.gain * weight) ** 2 / 3.0 + PULLS**2
+
+    def _seen(self, estimate: Estimate, force: Vector) -> _Belief | None:
+        """With this force; None where no bias and no payload explain it."""
+        belief = self._predicted(estimate.tick)
+        if not self._windows:
+            belief = _renewed(belief, self._own(estimate))
+            if not self._trusted and self._corrected(belief, estimate, force)[1] > FALSE_ALARM:
+                return None
+            belief = _other_mass(belief)
+        seen, off = self._corrected(belief, estimate, force)
+        if off > FALSE_ALARM and self._windows:  # another payload, or a hand along gravity
+            seen, off = self._corrected(_other_mass(belief), estimate, force)
+        return None if off > FALSE_ALARM else seen
+
+    def _corrected(self, belief: _Belief, estimate: Estimate, force: Vector) -> tuple[_Belief, float]:
+        """A Kalman filter's step, and how far the force is from what was believed, as a chi-square."""
+        sensor, P = self._sensor, belief.P
+        noise = math.hypot(sensor.noise_force, sensor.noise_acceleration * estimate.load_mass)
+        H = np.zeros((3, SIZE))
+        H[:, BIAS] = H[:, OWN] = np.eye(3)
+        H[:, MASS] = _specific(estimate)
+        HP, off = H @ P, -np.array(force) - H @ belief.x
+        S = HP @ H.T + (noise * noise / WINDOW + UNSTEADY * UNSTEADY) * np.eye(3)
+        K = np.linalg.solve(S, HP).T
+        P = P - K @ HP
+        return belief._replace(x=belief.x + K @ off, P=0.5 * (P + P.T)), float(off @ np.linalg.solve(S, off))
+
+
+def _specific(estimate: Estimate) -> Array:
+    """Specific force of what stands (3,), axes of F [m/s²]."""
+    return -estimate.g_B @ estimate.R_BF
+
+
+def _other_mass(belief: _Belief) -> _Belief:
+    """Nothing is known of the payload's error."""
+    x, P = belief.x.copy(), belief.P.copy()
+    x[MASS] = P[MASS] = P[:, MASS] = 0.0
+    P[MASS, MASS] = ANYTHING**2
+    return belief._replace(x=x, P=P)
+
+
+def _renewed(belief: _Belief, own: Array) -> _Belief:
+    """In another posture, whose own has the variance `own` (3,)."""
+    x, P = belief.x.copy(), belief.P.copy()
+    x[OWN] = P[OWN] = P[:, OWN] = 0.0
+    P[OWN, OWN] = np.diag(own)
+    return belief._replace(x=x, P=P)
