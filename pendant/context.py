@@ -36,8 +36,9 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
     @property
     def payload_error(self) -> PayloadError | None:
         """Of the payload, as other postures tell it; None where nothing is known but the force of now."""
-        known = self.taring is not None and self.wrench_ok
-        return self.taring.payload_error(self.estimate, self.mean.mean()) if known else None
+        if self.taring is None or not self.wrench_ok:
+            return None
+        return self.taring.payload_error(self.estimate, self.mean.mean())
 
     @property
     def enabled(self) -> bool:
