@@ -5,7 +5,7 @@ from collections.abc import Callable
 from itertools import combinations
 
 import pytest
-from msgspec.structs import astuple
+from msgspec.structs import astuple, replace
 
 from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
@@ -13,8 +13,11 @@ from pendant.events.event import Event, Kind
 from pendant.freedrive.sequence import Sequence, SequenceVerdict
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.parameters import reference
+from pendant.limits.residual import PayloadError
 from pendant.limits.validity import Stillness, WrenchMean
-from pendant.tick.estimate import Estimate
+from pendant.sensor.sensor_spec import SensorSpec
+from pendant.sensor.taring import Taring
+from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
@@ -276,3 +279,60 @@ def test_only_what_was_there_at_the_start_is_missed() -> None:
     ):
         assert sequence(estimate()).missing(around(broken)) == sensor
         assert sequence(broken).missing(around(broken)) == ""
+
+
+class OtherPostures(Taring):
+    """Knows the payload's error from other postures; the sensor's bias is what is felt beside it."""
+
+    def __init__(self, error: PayloadError | None, explains: bool = True) -> None:
+        super().__init__(SensorSpec())
+        self._told, self._explains = error, explains
+
+    def payload_error(self, estimate: Estimate, wrench: tuple[float, ...]) -> PayloadError | None:
+        return self._told
+
+    def explains(self, estimate: Estimate, wrench: tuple[float, ...]) -> bool:
+        return self._explains
+
+
+def known(value: Estimate, error: PayloadError | None) -> Surroundings:
+    return replace(around(value), taring=OtherPostures(error))
+
+
+@pytest.mark.parametrize(
+    ("mass", "more", "refused"), [(0.29, 0.0, False), (0.31, 0.0, True), (-0.31, 0.0, True), (0.1, 0.25, True)]
+)
+def test_a_payload_that_other_postures_know_to_be_wrong_is_refused(mass: float, more: float, refused: bool) -> None:
+    """FD-9: also when it became so since the sequence began."""
+    first, now = known(estimate(force=3.0), PayloadError(mass, 0.1)), around(estimate(force=[3.0, 0.0, -more * GRAVITY]))
+    begun = Sequence(first, Settings(), joints=JOINTS, rated=(100.0,) * 6, stored=None)
+    assert [gauge.name for gauge in begun.check(now)] == ["payload error"] * refused
+
+
+def test_without_the_sensor_other_postures_tell_nothing() -> None:
+    blind = estimate(wrench_valid=False)
+    begun = Sequence(known(blind, PayloadError(2.0, 0.1)), Settings(), joints=JOINTS, rated=(100.0,) * 6, stored=None)
+    assert begun.check(around(blind)) == []
+    assert around(estimate()).payload_error is None
+
+
+@pytest.mark.parametrize(("margin", "said", "zero"), [(0.1, 0.5, False), (0.3, 0.5, False), (0.31, -0.7, True)])
+def test_where_the_payload_is_known_well_its_mass_is_said_and_the_zero_is_no_cause(
+    margin: float, said: float, zero: bool
+) -> None:
+    """FD-11: of 7 N more than that the sensor's bias is the cause."""
+    value = known(estimate(force=[0.0, 0.0, 0.7 * GRAVITY]), PayloadError(0.5, margin))
+    begun = Sequence(value, Settings(), joints=JOINTS, rated=(100.0,) * 6, stored=None)
+    refusal = begun.refusal(begun.check(value), value, Settings())
+    assert refusal.kind is Kind.REFUSED_PAYLOAD
+    assert (refusal.values["mass"], refusal.values["zero"]) == (pytest.approx(said), zero)
+
+
+@pytest.mark.parametrize(("error", "mass", "zero"), [(PayloadError(0.5, 0.1), 0.5, False), (None, -0.7, True)])
+def test_what_stays_is_said_without_the_bias_that_is_known(error: PayloadError | None, mass: float, zero: bool) -> None:
+    """FD-11, FD-22."""
+    value, verdict = known(estimate(force=[0.0, 0.0, 0.7 * GRAVITY]), error), SequenceVerdict()
+    verdict.begin(value, Settings())
+    (told,) = verdict.step(value, True)
+    assert told.kind is Kind.RESIDUAL_STAYED
+    assert told.values == {"force": pytest.approx(abs(mass) * GRAVITY), "mass": pytest.approx(mass), "zero": zero}
