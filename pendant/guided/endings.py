@@ -100,8 +100,9 @@ class EndingWatch:
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
         stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
         self.suspect = odds >= SUSPECTED or stepped >= -SUSPECTED
-        if odds >= KNOWN:
-            mass = estimate.lost_share * self._held
+        fell = baseline is None and self._on.payload and estimate.payload_fell
+        if fell or odds >= KNOWN:
+            mass = self._held if fell else estimate.lost_share * self._held
             return Ending(Kind.STOPPED_PAYLOAD, {"mass": -mass, "force": abs(mass) * GRAVITY})
         torque = ORIGIN if baseline is None else _torque(estimate, baseline)
         soft = self._soft

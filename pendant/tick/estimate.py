@@ -76,6 +76,7 @@ class Estimate:
     lost_share: float = 0.0  # of the payload that is gone then
     step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]
     step_force: float = 0.0  # size of the step then [N]
+    payload_fell: bool = False  # as the joints tell, in free-drive without a valid flange sensor
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":

@@ -11,7 +11,7 @@ from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.adaptive_friction import AdaptiveFriction
-from sim.estimation.joint_tracking import TORQUE_BANDWIDTH
+from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
 from sim.estimation.transmission_torque import DYNAMICS
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class HandHelp:
             asked=(n,),  # that, filtered
             felt=(n,),  # by the joints beyond it, filtered
             usual=(n,),  # of what is felt
-            late=(3, n),  # transmission torque, `_late`
+            late=(3, n),  # transmission torque, delayed
             began=(n,),  # angles in which free-drive began
             smooth=(),
             lag=(),
@@ -131,7 +131,7 @@ def _take_off(law, friction, joints, torque) -> None:
     for i in range(torque.size):
         breakaway = terms[i, 0] * warmth[i]
         model = ways[DYNAMICS, i]
-        unexplained = model - _late(own, model - tau_ext[i], i) - own.hand[i] - own.usual[i]
+        unexplained = model - delayed(own.late, own.lag, model - tau_ext[i], i) - own.hand[i] - own.usual[i]
         own.asked[i] += own.smooth * (own.capped[i] - own.asked[i])
         own.felt[i] += own.smooth * (unexplained - own.felt[i])
         ask, felt = own.asked[i], own.felt[i]
@@ -151,15 +151,3 @@ def _take_off(law, friction, joints, torque) -> None:
         if most == 0.0:
             share = 0.0
         torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
-
-
-@kernel
-def _late(own, measured, i) -> float:
-    """What a joint's gear bears, as late as the rigid model, which sees accelerations through the filter of the output angle.
-
-    Without that, links that swing on their springs pass for a hand, and the help for it keeps them swinging.
-    """
-    for k in range(3):
-        own.late[k, i] += own.lag * (measured - own.late[k, i])
-        measured = own.late[k, i]
-    return measured

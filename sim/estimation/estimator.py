@@ -22,6 +22,7 @@ from sim.estimation.joint_tracking import (
     tracking_gains,
 )
 from sim.estimation.momentum_observer import MomentumObserver
+from sim.estimation.payload_fall import PayloadFall
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
@@ -84,6 +85,7 @@ class Estimator:
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(arm, self.forces)
         self.answer = StepAnswer(arm.n, self.forces, self.wrench)
+        self.fall = PayloadFall(arm, dynamics)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
         self.tick = 0
@@ -92,6 +94,7 @@ class Estimator:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         self.forces.set_load(load)
         self.wrench.set_load(load, payload)
+        self.fall.set_payload(payload)
 
     def update(
         self,
@@ -138,9 +141,11 @@ class Estimator:
         moving = self._estimate_torques(sample, use, learn)
         self._observe(sample, learn and moving)
         self.forces.update(sample, self.q, q, self.transmission.external)
-        bias = bias if sample.wrench_valid else None
+        free, bias = bias is not None, bias if sample.wrench_valid else None
         self.wrench.update(bias, accelerations=sample.acceleration_valid)
         self.answer.update(bias is not None)
+        self.fall.begun = free and self.fall.begun
+        fell = free and self.fall.update(self.q, q, self.transmission, sensed=bias is not None)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -156,6 +161,7 @@ class Estimator:
         known.energy = self._energy(rigid.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
         known.step_odds, known.step_force = self.answer.odds, self.answer.size
+        known.payload_fell = fell
         return known
 
     def _energy(self, links: Array) -> float:

@@ -351,3 +351,26 @@ def test_the_hands_torque_is_its_change_in_every_axis() -> None:
     turned = estimate(torque=[0.3, 0.6, -0.1])
     turned.R_BF[:] = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     assert _torque(turned, baseline) == pytest.approx((0.5, 0.5, -0.4))
+
+
+def fallen() -> Estimate:
+    """The joints tell that the payload fell."""
+    value = loaded()
+    value.payload_fell = True
+    return value
+
+
+def test_without_the_flange_sensor_the_joints_tell_that_the_payload_fell() -> None:
+    """FD-19: all of it."""
+    free = Free(held=2.0)
+    assert free.see(loaded(), use_wrench=False) is None
+    ending = free.see(fallen(), use_wrench=False)
+    assert ending == Ending(Kind.STOPPED_PAYLOAD, {"mass": -2.0, "force": pytest.approx(2.0 * G)})
+
+
+def test_where_the_flange_sensor_is_used_the_joints_are_not_asked() -> None:
+    assert Free(held=2.0).see(fallen()) is None
+
+
+def test_the_switch_stands_for_what_the_joints_tell_as_well() -> None:
+    assert Free(held=2.0, unexplained__payload=False).see(fallen(), use_wrench=False) is None

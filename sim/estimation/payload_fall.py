@@ -1,0 +1,109 @@
+"""Whether the payload fell, as the joints alone tell it: for free-drive without a flange sensor (FD-19).
+
+An arm goes on bearing a payload that it has lost. With the wrench p that this payload would need in the flange's motion, and the
+flange's Jacobian J, the joints then feel
+
+    tau_ext = tau_ext at entry + J' p.
+
+A hand makes these torques, too, if it pushes upward as hard as the payload weighs, and harder the faster the arm rises. Gears
+tell torques as well as their stiffness is known; so the payload fell where all but that share of the change is as J' p says, for
+as long as a fall is looked at elsewhere. A swinging link needs a torque that its gear shows at once and its acceleration later:
+what gears bear is delayed as much as accelerations are.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.modes import TICK
+from sim.arm.arm_file import Arm
+from sim.arm.chain import Body
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
+from sim.estimation.transmission_torque import DYNAMICS, TransmissionTorque
+from sim.flange.external_wrench import LONGEST
+from sim.flange.flange_forces import about_flange, needed, turn_both
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.calibration import ENCODER_RIPPLE, STIFFNESS
+
+Array = NDArray[np.float64]
+
+
+class PayloadFall:
+    """One free-drive at a time.
+
+    Attributes:
+        begun: it has begun; to be cleared when it ends.
+    """
+
+    def __init__(self, arm: Arm, dynamics: Dynamics) -> None:
+        """
+        Args:
+            arm: the numbers of its gears and encoders.
+            dynamics: the controller's rigid model, whose recursion has been run in the tick before `update`.
+        """
+        self._dynamics, self._model, spring = dynamics, dynamics.recursion.record, arm.transmissions
+        self._record = record(
+            mass=(),  # of the payload [kg]
+            com=(3,),
+            inertia=(3, 3),  # about the flange
+            before=(arm.n,),  # tau_ext at entry [N·m]
+            borne=(3, arm.n),  # by the gears, delayed
+            lag=(),
+            noise=(),  # square of what encoders alone may change torques by [N²·m²]
+            lasts="i8",  # ticks
+        )
+        own = self._own = self._record[0]
+        ripple = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
+        own["noise"] = ripple @ ripple
+        own["lag"] = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
+        self.begun = self._blind = False
+
+    def set_payload(self, payload: Body) -> None:
+        """Take `payload` (in F) as what may fall."""
+        own = self._own
+        own["mass"], own["com"], own["inertia"], own["lasts"] = payload.mass, payload.com, about_flange(payload), 0
+
+    def update(self, q: Array, motion: Array, transmission: TransmissionTorque, *, sensed: bool) -> bool:
+        """One tick of free-drive. Returns whether the payload fell; False while the flange sensor tells that.
+
+        Args:
+            q: joint angles (n,) [rad].
+            motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
+            transmission: updated in the same tick.
+            sensed: the flange sensor is valid; once it was not, the joints go on to tell.
+        """
+        own = self._own
+        if not self.begun:
+            self.begun, self._blind, own["lasts"] = True, False, 0
+            own["before"] = transmission.external
+        if (sensed and not self._blind) or own["mass"] <= 0.0:
+            return False
+        model, external = transmission.ways[DYNAMICS], transmission.external
+        if not self._blind:
+            self._blind = True
+            own["borne"] = model - external
+        moved = (*self._dynamics.specific_force(q, motion[1], motion[2]), model, external)
+        return _update(self._record, self._model, moved)
+
+
+@kernel
+def _update(falls, rigid, moved) -> bool:
+    own, R, jacobian, v_F = falls[0], rigid[0].R, rigid[0].jacobian, rigid[0].v_F
+    force, turn, model, external = moved
+    gyro, wrench = np.empty(3), np.empty(6)
+    for k in range(3):
+        gyro[k] = R[0, k] * v_F[3] + R[1, k] * v_F[4] + R[2, k] * v_F[5]
+    needed((own.mass, own.com, own.inertia), (force, gyro, turn), wrench)
+    turn_both(R, wrench, wrench)
+    change = left = 0.0
+    for i in range(external.size):
+        felt = model[i] - delayed(own.borne, own.lag, model[i] - external[i], i) - own.before[i]
+        change += felt * felt
+        for k in range(6):
+            felt -= jacobian[k, i] * wrench[k]
+        left += felt * felt
+    own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
+    return own.lasts >= LONGEST

@@ -1,0 +1,175 @@
+"""Whether the payload fell, as the joints alone tell it (FD-19)."""
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from msgspec.structs import replace
+from numpy.typing import NDArray
+
+from pendant.events.event import Kind
+from pendant.tick.modes import Mode
+from sim.arm.chain import Body, chain
+from sim.arm.scenario import Load, Scenario
+from sim.estimation.payload_fall import PayloadFall
+from sim.estimation.transmission_torque import TransmissionTorque
+from sim.exchange.desk import Wishes
+from sim.flange.external_wrench import LONGEST
+from sim.plant.changes import DropPayload, SensorFault
+from sim.plant.touch import Pull, Push
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.calibration import STIFFNESS
+from tests.sim.arms import UR5E
+from tests.sim.bench import CENTRE, LONG, NOTHING, Bench
+
+Array = NDArray[np.float64]
+N = UR5E.n
+PAYLOAD = Body(3.0, np.array([0.01, -0.02, 0.08]), np.eye(3) * 0.004)
+BENT = np.array([0.3, -1.2, 1.5, -0.8, -1.2, 0.7])
+MOTION = np.array([[0.0] * N, [0.1, -0.3, 0.2, 0.5, -0.4, 0.2], [0.5, 1.0, -0.8, 0.4, 0.3, -0.2]])
+SETTLED = 100
+"""Ticks after which the delay of the torques is over."""
+
+SENSORLESS = replace(UR5E, sensors=replace(UR5E.sensors, force_torque=None, accelerometer=None, gyro=None))
+
+
+class Joints:
+    """An arm in one motion, whose joints feel what a test wants."""
+
+    def __init__(self, payload: Body = PAYLOAD, motion: Array = MOTION) -> None:
+        rigid = chain(UR5E)
+        self.motion, self.model = motion, np.full(N, 20.0)
+        self.lost = self.needs(payload, motion)
+        dynamics = Dynamics(rigid, rigid.links, payload, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
+        dynamics.recursion.run(BENT, motion, np.zeros(3))
+        self.fall = PayloadFall(UR5E, dynamics)
+        self.fall.set_payload(payload)
+
+    @staticmethod
+    def needs(payload: Body, motion: Array) -> Array:
+        """What a payload alone takes of each joint in a motion [N·m], by the rigid model with it and without."""
+        torques: list[Array] = []
+        for load in (payload, Body(0.0, np.zeros(3), np.zeros((3, 3)))):
+            rigid = chain(UR5E)
+            dynamics = Dynamics(rigid, rigid.links, load, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
+            dynamics.recursion.run(BENT, motion, np.zeros(3))
+            torques.append(dynamics.recursion.torque.copy())
+        return torques[0] - torques[1]
+
+    def tick(self, external: Array, *, sensed: bool = False) -> bool:
+        transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external))
+        return self.fall.update(BENT, self.motion, transmission, sensed=sensed)
+
+    def course(self, external: Array, before: Array | float = 0.0, ticks: int = SETTLED) -> list[bool]:
+        """The joints feel `before`, and then `external` beyond it."""
+        for _ in range(5):
+            assert not self.tick(np.zeros(N) + before)
+        return [self.tick(external + before) for _ in range(ticks)]
+
+
+@pytest.mark.parametrize("motion", [0.0 * MOTION, MOTION])
+def test_what_the_payload_needs_in_its_motion_is_its_fall(motion: Array) -> None:
+    joints = Joints(motion=motion)
+    told = joints.course(joints.lost)
+    assert told[-1]
+    assert told.index(True) >= LONGEST, "as long as a fall is looked at"
+
+
+def test_what_was_felt_at_entry_is_no_fall() -> None:
+    joints = Joints()
+    assert joints.course(joints.lost, before=2.0 * joints.lost)[-1]
+    joints = Joints()
+    assert not any(joints.course(0.0 * joints.lost, before=joints.lost))
+
+
+@pytest.mark.parametrize(
+    ("share", "fell"),
+    [(1.0 / (1.0 + 0.99 * STIFFNESS), True), (1.0 / (1.0 + 1.01 * STIFFNESS), False), (1.24, True), (1.26, False), (-1.0, False)],
+)
+def test_the_change_is_told_as_well_as_the_gears_stiffness_is_known(share: float, fell: bool) -> None:
+    """|x - 1| < STIFFNESS x, from 1 / 1.2 to 1 / 0.8 of the payload; on its way there a push may be within for some ticks."""
+    joints = Joints()
+    assert joints.course(share * joints.lost)[-1] is fell
+
+
+@pytest.mark.parametrize("joint", range(N))
+def test_a_push_on_one_link_is_no_fall(joint: int) -> None:
+    joints = Joints()
+    assert not any(joints.course(40.0 * np.eye(N)[joint]))
+
+
+def test_a_payload_lighter_than_the_ripple_of_the_encoders_says_nothing() -> None:
+    light = Joints(Body(0.2, PAYLOAD.com, np.zeros((3, 3))))
+    assert np.linalg.norm(light.lost) < 3.0
+    assert not any(light.course(light.lost))
+
+
+def test_without_a_payload_nothing_falls() -> None:
+    joints = Joints(Body(0.0, np.zeros(3), np.zeros((3, 3))))
+    assert not any(joints.course(Joints().lost))
+
+
+def test_while_the_flange_sensor_tells_the_joints_do_not() -> None:
+    joints = Joints()
+    joints.tick(np.zeros(N), sensed=True)
+    assert not any(joints.tick(joints.lost, sensed=True) for _ in range(SETTLED))
+
+
+def test_a_sensor_that_comes_back_is_not_asked_again() -> None:
+    """Free-drive does not use it again either."""
+    joints = Joints()
+    joints.tick(np.zeros(N), sensed=True)
+    joints.tick(np.zeros(N))
+    assert any(joints.tick(joints.lost, sensed=True) for _ in range(SETTLED))
+
+
+def test_each_free_drive_has_a_beginning_of_its_own() -> None:
+    joints = Joints()
+    assert joints.course(joints.lost)[-1]
+    joints.fall.begun = False
+    assert not any(joints.tick(joints.lost) for _ in range(SETTLED))
+
+
+def arm(payload: float, *, sensor: bool) -> Bench:
+    """A free arm, with all mismatch, whose flange sensor is not there or goes out after entry."""
+    load = Load(mass=payload, com=[0.0, 0.0, 0.05])
+    scenario = Scenario(payload_true=load, payload_configured=load, seed=7)
+    bench = Bench(scenario, LONG, UR5E if sensor else SENSORLESS)
+    bench.run(1.0)
+    bench.enter()
+    if sensor:
+        bench.change(SensorFault(sensor="force_torque", outage=True))
+        bench.run(0.1)
+    return bench
+
+
+@pytest.mark.parametrize("sensor", [False, True])
+@pytest.mark.parametrize("payload", [2.0, 4.5])
+def test_a_payload_that_falls_off_an_arm_that_cannot_feel_its_flange_is_a_stop(payload: float, sensor: bool) -> None:
+    bench = arm(payload, sensor=sensor)
+    start = bench.plant.data.body("flange").xpos[2]
+    bench.change(DropPayload())
+    bench.run(0.1)
+    assert bench.mode is Mode.STOP
+    (told,) = (event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD)
+    assert told.values["mass"] == pytest.approx(-payload)
+    bench.run(1.0)
+    assert bench.plant.data.body("flange").xpos[2] - start < 0.06, "[m]; it rose by a metre"
+
+
+@pytest.mark.parametrize("force", [[30.0, 0.0, 0.0], [0.0, 0.0, -30.0], [0.0, 25.0, 15.0], [0.0, 0.0, 90.0]])
+def test_a_hand_is_no_fall(force: list[float]) -> None:
+    x, y, z = force
+    bench = arm(3.0, sensor=False)
+    bench.run(0.08, Push("flange", CENTRE, (x, y, z)))
+    assert not [event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD]
+
+
+def test_a_hand_that_leads_is_no_fall() -> None:
+    bench = arm(3.0, sensor=False)
+    start = bench.plant.data.body("flange").xpos.copy()
+    for tick in range(500):
+        target = start + 0.1 * tick / 500 * np.array([0.3, 0.9, 0.3])
+        bench.tick(Wishes(NOTHING, (Pull("flange", CENTRE, tuple(target.tolist()), 40.0),), ()))
+    assert not [event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD]
