@@ -252,6 +252,7 @@ def test_a_snapshot_never_changes_afterwards() -> None:
             "lost_odds",
             "lost_share",
             "step_odds",
+            "payload_fell",
         }
         assert changed or field.name in same
     assert (later.truth_links != first.truth_links).any()
