@@ -37,9 +37,9 @@ test: $(VENV)/dev.stamp
 	$(BIN)/ruff check --quiet $(ROOM) tests/$(ROOM)
 	$(BIN)/pytest -q tests/$(ROOM) tests/test_rooms.py
 else
-# What keeps one core busy goes in pairs; the rest has the machine to itself.
-test: $(VENV)/dev.stamp
-	$(MAKE) --no-print-directory -j2 --output-sync=target wheel types lint contracts kernels
+# What keeps one core busy goes in pairs: the environment of the wheel is filled while that of the tests is.
+test: | $(BIN)/python
+	$(MAKE) --no-print-directory -j2 --output-sync=target wheel kernels types lint contracts
 	$(MAKE) --no-print-directory unit
 	$(MAKE) --no-print-directory e2e
 endif
@@ -108,10 +108,10 @@ pictures: | $(BIN)/python
 	fi
 
 # The wheel, alone in an empty environment, run from an empty folder.
-wheel: $(VENV)/dev.stamp
+wheel: | $(BIN)/python
 	@rm -rf build/wheel && mkdir -p build/wheel/empty
-	$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	$(PYTHON) -m venv build/wheel/venv
+	build/wheel/venv/bin/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	build/wheel/venv/bin/python $(INSTALL) build/wheel/*.whl
 	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
 	@rm -rf build/wheel
