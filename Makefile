@@ -20,13 +20,19 @@ INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
 # One more than two cores have: a third of the time, tests wait for a clock.
 WORKERS ?= 3
+# Tests that only compute: without a clock, a client or a browser. The longest come first, so that no worker is left with one.
+COMPUTING := tests/app/runs/test_claim_mutants.py tests/pendant tests/app/session \
+	$(addprefix tests/sim/,arm compiled control estimation flange motion plant rigid_body sensing)
+# Measured within half a millimetre of what a hand does in a real browser: alone on the machine.
+PUSHED := tests/e2e/test_push.py
 SEED ?= 1000
 BENCHES := $(filter-out __init__ arms common network_clients postures viewer,$(basename $(notdir $(wildcard benchmarks/*.py))))
 # Where Python is told to keep no compiled modules, each process of the tests would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels unit e2e e2e-full wheel browser pictures
+.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels wheel browser pictures
+.PHONY: paced computing pushed e2e e2e-full
 
 run: $(VENV)/run.stamp
 	$(BIN)/pendant serve --open
@@ -37,11 +43,13 @@ test: $(VENV)/dev.stamp
 	$(BIN)/ruff check --quiet $(ROOM) tests/$(ROOM)
 	$(BIN)/pytest -q tests/$(ROOM) tests/test_rooms.py
 else
-# What keeps one core busy goes in pairs; the rest has the machine to itself.
-test: $(VENV)/dev.stamp
-	$(MAKE) --no-print-directory -j2 --output-sync=target wheel types lint contracts kernels
-	$(MAKE) --no-print-directory unit
-	$(MAKE) --no-print-directory e2e
+# What keeps one core busy goes in pairs: the environment of the wheel is filled while that of the tests is. Then what only
+# computes takes the time that others wait for a clock, a client or a browser.
+test: | $(BIN)/python
+	$(MAKE) --no-print-directory -j2 --output-sync=target wheel kernels types lint contracts
+	$(MAKE) --no-print-directory pictures browser
+	$(MAKE) --no-print-directory -j2 --output-sync=target paced computing
+	$(MAKE) --no-print-directory pushed
 endif
 
 $(BIN)/python:
@@ -75,10 +83,19 @@ contracts: $(VENV)/dev.stamp
 kernels: $(VENV)/dev.stamp
 	$(BIN)/python -c "import app.cli, app.serving; from app.runs.warm_up import warm_up; warm_up()"
 
-unit: $(VENV)/dev.stamp | pictures
-	$(BIN)/pytest -q -n $(WORKERS) --ignore=tests/e2e --durations=10
+# All tests that are neither `computing` nor `pushed`.
+paced: $(VENV)/dev.stamp | pictures browser
+	$(BIN)/pytest -q -n $(WORKERS) --dist worksteal $(addprefix --ignore=,tests/e2e $(COMPUTING)) --durations=10
+	$(BIN)/pytest -q -m "not every_size" tests/e2e $(addprefix --ignore=,$(PUSHED))
 
-# Alone on the machine: these measure motion against the clock of a real browser.
+# At the lowest priority: what has a clock to keep does not wait for these.
+computing: $(VENV)/dev.stamp
+	nice -n 19 $(BIN)/pytest -q -n 2 --dist worksteal $(COMPUTING) --durations=10
+
+pushed: $(VENV)/dev.stamp | browser
+	$(BIN)/pytest -q -m "not every_size" $(PUSHED)
+
+# One at a time: these measure motion against the clock of a real browser.
 e2e: $(VENV)/dev.stamp | browser
 	$(BIN)/pytest -q -m "not every_size" tests/e2e
 
@@ -108,10 +125,10 @@ pictures: | $(BIN)/python
 	fi
 
 # The wheel, alone in an empty environment, run from an empty folder.
-wheel: $(VENV)/dev.stamp
+wheel: | $(BIN)/python
 	@rm -rf build/wheel && mkdir -p build/wheel/empty
-	$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	$(PYTHON) -m venv build/wheel/venv
+	build/wheel/venv/bin/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir build/wheel .
 	build/wheel/venv/bin/python $(INSTALL) build/wheel/*.whl
 	cd build/wheel/empty && ../venv/bin/pendant run free-drive --out out && ../venv/bin/pendant robots >/dev/null
 	@rm -rf build/wheel
