@@ -85,7 +85,7 @@ class Estimator:
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(arm, self.forces)
         self.answer = StepAnswer(arm.n, self.forces, self.wrench)
-        self.fall = PayloadFall(arm, dynamics)
+        self.fall = PayloadFall(arm, dynamics, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
         self.tick = 0
@@ -94,7 +94,6 @@ class Estimator:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         self.forces.set_load(load)
         self.wrench.set_load(load, payload)
-        self.fall.set_payload(payload)
 
     def update(
         self,
@@ -144,8 +143,6 @@ class Estimator:
         free, bias = bias is not None, bias if sample.wrench_valid else None
         self.wrench.update(bias, accelerations=sample.acceleration_valid)
         self.answer.update(bias is not None)
-        self.fall.begun = free and self.fall.begun
-        fell = free and self.fall.update(self.q, q, self.transmission, sensed=bias is not None)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -161,7 +158,7 @@ class Estimator:
         known.energy = self._energy(rigid.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
         known.step_odds, known.step_force = self.answer.odds, self.answer.size
-        known.payload_fell = fell
+        known.payload_fell = self.fall.update(self.q, q, self.transmission, free=free, sensed=bias is not None)
         return known
 
     def _energy(self, links: Array) -> float:

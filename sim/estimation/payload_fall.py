@@ -18,37 +18,30 @@ from numpy.typing import NDArray
 
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
-from sim.arm.chain import Body
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
 from sim.estimation.transmission_torque import DYNAMICS, TransmissionTorque
-from sim.flange.external_wrench import LONGEST
-from sim.flange.flange_forces import about_flange, needed, turn_both
+from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.flange_forces import needed, turn_both
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import ENCODER_RIPPLE, STIFFNESS
+from sim.sensing.calibration import STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
 
 class PayloadFall:
-    """One free-drive at a time.
+    """One tick at a time, in free-drive alone."""
 
-    Attributes:
-        begun: it has begun; to be cleared when it ends.
-    """
-
-    def __init__(self, arm: Arm, dynamics: Dynamics) -> None:
+    def __init__(self, arm: Arm, dynamics: Dynamics, wrench: ExternalWrench) -> None:
         """
         Args:
             arm: the numbers of its gears and encoders.
             dynamics: the controller's rigid model, whose recursion has been run in the tick before `update`.
+            wrench: knows the payload that may fall.
         """
-        self._dynamics, self._model, spring = dynamics, dynamics.recursion.record, arm.transmissions
+        self._dynamics, self._model, self._wrench = dynamics, dynamics.recursion.record, wrench
         self._record = record(
-            mass=(),  # of the payload [kg]
-            com=(3,),
-            inertia=(3, 3),  # about the flange
             before=(arm.n,),  # tau_ext at entry [N·m]
             borne=(3, arm.n),  # by the gears, delayed
             lag=(),
@@ -56,47 +49,46 @@ class PayloadFall:
             lasts="i8",  # ticks
         )
         own = self._own = self._record[0]
-        ripple = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
+        ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
         own["lag"] = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
-        self.begun = self._blind = False
+        self._begun = self._blind = False
 
-    def set_payload(self, payload: Body) -> None:
-        """Take `payload` (in F) as what may fall."""
-        own = self._own
-        own["mass"], own["com"], own["inertia"], own["lasts"] = payload.mass, payload.com, about_flange(payload), 0
-
-    def update(self, q: Array, motion: Array, transmission: TransmissionTorque, *, sensed: bool) -> bool:
-        """One tick of free-drive. Returns whether the payload fell; False while the flange sensor tells that.
+    def update(self, q: Array, motion: Array, transmission: TransmissionTorque, *, free: bool, sensed: bool) -> bool:
+        """One tick. Returns whether the payload fell; False outside free-drive, and while the flange sensor tells that.
 
         Args:
             q: joint angles (n,) [rad].
             motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
             transmission: updated in the same tick.
+            free: free-drive is on.
             sensed: the flange sensor is valid; once it was not, the joints go on to tell.
         """
+        if not free:
+            self._begun = False
+            return False
         own = self._own
-        if not self.begun:
-            self.begun, self._blind, own["lasts"] = True, False, 0
+        if not self._begun:
+            self._begun, self._blind, own["lasts"] = True, False, 0
             own["before"] = transmission.external
-        if (sensed and not self._blind) or own["mass"] <= 0.0:
+        if sensed and not self._blind:
             return False
         model, external = transmission.ways[DYNAMICS], transmission.external
         if not self._blind:
             self._blind = True
             own["borne"] = model - external
         moved = (*self._dynamics.specific_force(q, motion[1], motion[2]), model, external)
-        return _update(self._record, self._model, moved)
+        return _update(self._record, self._model, self._wrench.record, moved)
 
 
 @kernel
-def _update(falls, rigid, moved) -> bool:
-    own, R, jacobian, v_F = falls[0], rigid[0].R, rigid[0].jacobian, rigid[0].v_F
+def _update(falls, rigid, wrenches, moved) -> bool:
+    own, payload, R, jacobian, v_F = falls[0], wrenches[0], rigid[0].R, rigid[0].jacobian, rigid[0].v_F
     force, turn, model, external = moved
     gyro, wrench = np.empty(3), np.empty(6)
     for k in range(3):
         gyro[k] = R[0, k] * v_F[3] + R[1, k] * v_F[4] + R[2, k] * v_F[5]
-    needed((own.mass, own.com, own.inertia), (force, gyro, turn), wrench)
+    needed((payload.mass, payload.com, payload.inertia), (force, gyro, turn), wrench)
     turn_both(R, wrench, wrench)
     change = left = 0.0
     for i in range(external.size):

@@ -15,7 +15,7 @@ from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.transmission_torque import CONTACT, SOFTEST, STIFFEST
-from sim.sensing.calibration import ENCODER_RIPPLE, FORCE_OFFSET, LINK_MASS, MOTOR_CONSTANT, STIFFNESS, TORQUE_OFFSET
+from sim.sensing.calibration import FORCE_OFFSET, LINK_MASS, MOTOR_CONSTANT, STIFFNESS, TORQUE_OFFSET, ripple_torque
 
 Array = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class TorqueErrors:
     """
 
     def __init__(self, arm: Arm) -> None:
-        n, spring = arm.n, arm.transmissions
+        n = arm.n
         size = ZERO + OWN * n
         self.record = record(
             causes=(n, CAUSES),
@@ -74,7 +74,7 @@ class TorqueErrors:
         )
         own = self._own = self.record[0]
         self.causes, self.shares, self.misfit = own["causes"], own["shares"], own["misfit"]
-        ripple = ENCODER_RIPPLE * (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness))
+        ripple = ripple_torque(arm.transmissions)
         most, walk = own["most"], own["walk"]
         most[:3], most[3:ZERO], walk[:3], walk[3:ZERO] = FORCE_OFFSET, TORQUE_OFFSET, FORCE_WALK, TORQUE_WALK
         most[ZERO:], walk[ZERO:] = np.repeat(ripple, OWN), np.repeat(RIPPLE_WALK * ripple, OWN)

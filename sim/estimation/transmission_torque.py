@@ -10,7 +10,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.sensing.calibration import ENCODER_RIPPLE, LINK_MASS, MOTOR_CONSTANT, STIFFNESS
+from sim.sensing.calibration import LINK_MASS, MOTOR_CONSTANT, STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
@@ -70,10 +70,9 @@ class TransmissionTorque:
 
     def __init__(self, arm: Arm, inertia: Array) -> None:
         """`inertia` (n,) is what a joint usually has to move [kg·m²]."""
-        n, spring = arm.n, arm.transmissions
+        n = arm.n
         limit = np.array(arm.limits.torque)
-        stiffness = np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)
-        ripple = ENCODER_RIPPLE * stiffness
+        ripple = ripple_torque(arm.transmissions)
         self.record = record(
             floor=(n,),  # of the model's deviation [N·m]
             ripple=(n,),  # of the deflection's offset [N·m]

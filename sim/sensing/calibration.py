@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.arm.arm_file import Arm
+from sim.arm.arm_file import Arm, Transmissions
 from sim.arm.chain import Body, Chain
 
 Array = NDArray[np.float64]
@@ -74,6 +74,11 @@ def draw(arm: Arm, rng: np.random.Generator) -> Calibration:
         wrench_offset=scale * rng.uniform(-1.0, 1.0, 6),
         wrench_warm=warm * rng.uniform(-1.0, 1.0, 6),
     )
+
+
+def ripple_torque(springs: Transmissions) -> Array:
+    """What the ripple of each joint's output encoder makes of a torque that comes from the deflection (n,), at most [N·m]."""
+    return ENCODER_RIPPLE * (np.array(springs.stiffness) + np.array(springs.hysteresis_stiffness))
 
 
 def believed(chain: Chain, calibration: Calibration) -> tuple[Body, ...]:

@@ -15,7 +15,8 @@ from sim.arm.scenario import Load, Scenario
 from sim.estimation.payload_fall import PayloadFall
 from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
-from sim.flange.external_wrench import LONGEST
+from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.flange_forces import FlangeForces
 from sim.plant.changes import DropPayload, SensorFault
 from sim.plant.touch import Pull, Push
 from sim.rigid_body.dynamics import Dynamics
@@ -43,8 +44,9 @@ class Joints:
         self.lost = self.needs(payload, motion)
         dynamics = Dynamics(rigid, rigid.links, payload, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
         dynamics.recursion.run(BENT, motion, np.zeros(3))
-        self.fall = PayloadFall(UR5E, dynamics)
-        self.fall.set_payload(payload)
+        wrench = ExternalWrench(UR5E, FlangeForces(dynamics))
+        wrench.set_load(payload, payload)
+        self.fall = PayloadFall(UR5E, dynamics, wrench)
 
     @staticmethod
     def needs(payload: Body, motion: Array) -> Array:
@@ -57,9 +59,9 @@ class Joints:
             torques.append(dynamics.recursion.torque.copy())
         return torques[0] - torques[1]
 
-    def tick(self, external: Array, *, sensed: bool = False) -> bool:
+    def tick(self, external: Array, *, free: bool = True, sensed: bool = False) -> bool:
         transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external))
-        return self.fall.update(BENT, self.motion, transmission, sensed=sensed)
+        return self.fall.update(BENT, self.motion, transmission, free=free, sensed=sensed)
 
     def course(self, external: Array, before: Array | float = 0.0, ticks: int = SETTLED) -> list[bool]:
         """The joints feel `before`, and then `external` beyond it."""
@@ -127,7 +129,7 @@ def test_a_sensor_that_comes_back_is_not_asked_again() -> None:
 def test_each_free_drive_has_a_beginning_of_its_own() -> None:
     joints = Joints()
     assert joints.course(joints.lost)[-1]
-    joints.fall.begun = False
+    assert not joints.tick(joints.lost, free=False)
     assert not any(joints.tick(joints.lost) for _ in range(SETTLED))
 
 
