@@ -5,6 +5,7 @@ import io
 import re
 import tokenize
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -54,6 +55,7 @@ def comments(source: str) -> list[Comment]:
     return [Comment(*token.start, token.string) for token in tokens if token.type == tokenize.COMMENT]
 
 
+@cache
 def prose(source: str) -> str:
     """What a module says in words: its docstrings, those of attributes too, and its comments."""
     strings = [

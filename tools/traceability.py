@@ -10,7 +10,7 @@ import yaml
 from app.session.claims import CLAIMS
 from pendant.all_settings import describe
 from pendant.events.event import Kind
-from tools.citations import ORDER, ROOT, cited, comments, files, prose
+from tools.citations import ID, ORDER, ROOT, cited, comments, files, prose
 
 PAGE = ROOT / "docs" / "reference" / "traceability.md"
 BUILT = ("pendant", "sim", "app")
@@ -42,7 +42,8 @@ def modules(tops: Iterable[str]) -> Table:
     """The modules of some rooms."""
     table: Table = defaultdict(list)
     for path in files(*tops):
-        for ident in cited(prose(path.read_text(encoding="utf-8"))):
+        source = path.read_text(encoding="utf-8")
+        for ident in cited(prose(source)) if ID.search(source) else ():
             table[ident].append(link(path))
     return table
 
@@ -97,7 +98,7 @@ def sessions() -> Table:
     table: Table = defaultdict(list)
     for path in files("assets/sessions", ends=(".yaml",)):
         text = path.read_text(encoding="utf-8")
-        shown = " ".join(CLAIMS[name].ids for name in yaml.safe_load(text).get("claims", []))
+        shown = " ".join(CLAIMS[name].ids for name in yaml.load(text, yaml.CSafeLoader).get("claims", []))
         for ident in cited(f"{text}\n{shown}"):
             table[ident].append(link(path))
     return table

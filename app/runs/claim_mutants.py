@@ -154,11 +154,13 @@ def judged(mutant: Mutant, verdicts: Verdicts | str) -> Trial:
     """Whether the session noticed the mutant, of what it came to, and what was seen."""
     if isinstance(verdicts, str):
         return Trial(mutant, False, verdicts)
-    failed = [(f"{expected}: {seen}", looked) for passed, expected, seen, looked in verdicts if not passed]
-    named = [line for line, looked in failed if looked and mutant.fails in line.partition(": ")[0]]
+    failed = [(expected, seen, looked) for passed, expected, seen, looked in verdicts if not passed]
+    named = [f"{expected}: {seen}" for expected, seen, looked in failed if looked and mutant.fails in expected]
     if named:
         return Trial(mutant, True, named[0])
-    return Trial(mutant, False, f"fails, but for another reason: {failed[0][0]}" if failed else "everything is as expected")
+    if failed:
+        return Trial(mutant, False, f"fails, but for another reason: {failed[0][0]}: {failed[0][1]}")
+    return Trial(mutant, False, "everything is as expected")
 
 
 @dataclass(slots=True)
@@ -230,7 +232,8 @@ def _started(context: "ForkServerContext", mutant: Mutant, product: Path) -> _Ru
     copy = copy_of(product, Path(folder.name) / "product")
     change(mutant, copy, product)
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=trial, args=(str(copy), mutant.session, str(copy.parent / "out"), theirs), daemon=True)
+    asked = str(copy), mutant.session, mutant.fails, str(copy.parent / "out"), theirs
+    process = context.Process(target=trial, args=asked, daemon=True)
     process.start()
     theirs.close()
     return _Run(mutant, process, ours, time.monotonic() + LONGEST, folder)

@@ -13,7 +13,7 @@ import msgspec
 from app.files.checked import ABSENT, BadInput, load
 from app.runs.claim_mutants import Trial
 from app.runs.jobs import Job, run_all
-from app.runs.runner import RunOutcome
+from app.runs.runner import RunOutcome, missed
 from app.session.claims import CLAIMS, Claim
 from app.session.prepare import prepare, without
 from app.session.session_file import Session, bundled, find
@@ -84,7 +84,7 @@ def cover(out: Path, told: Callable[[int, int], None] = lambda done, of: None) -
     jobs: list[Job] = []
     for name, session in sessions.items():
         jobs.append(Job(f"{name}.yaml", session, out / name / "on", recorded=False))
-        jobs.append(Job(f"{name}.yaml", without(session), out / name / "off", recorded=False))
+        jobs.append(Job(f"{name}.yaml", without(session), out / name / "off", recorded=False, enough=missed))
     outcomes: dict[int, RunOutcome] = {}
     for place, outcome in run_all(jobs):
         outcomes[place] = outcome

@@ -1,6 +1,6 @@
 """Runs sessions as jobs: one in this process, many on the engine."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -8,6 +8,7 @@ from app.engine.spreading import spread
 from app.log.reader import read
 from app.report.files import write_report
 from app.runs.runner import Progress, RunOutcome, record, run, silent, simulate
+from app.session.expectation_watch import Verdict
 from app.session.prepare import prepare
 from app.session.session_file import Session
 
@@ -20,13 +21,15 @@ class Job(NamedTuple):
     out: Path | None  # folder for the results; None: none are kept
     realtime: bool = False
     recorded: bool = True  # with log.mcap, summary.json and report.html; otherwise events.jsonl alone
+    enough: Callable[[Verdict], bool] | None = None  # of `run`, where nothing is recorded
 
 
 def work(job: Job, progress: Progress = silent) -> RunOutcome:
     """Run one job in this process. Raises BadInput: what the session says cannot be used."""
     prepared = prepare(job.session, job.name)
     if job.out is None or not job.recorded:
-        return run(job.session, prepared, simulate(prepared), job.out, realtime=job.realtime, progress=progress)
+        simulation = simulate(prepared)
+        return run(job.session, prepared, simulation, job.out, realtime=job.realtime, progress=progress, enough=job.enough)
     outcome = record(job.session, prepared, job.out, realtime=job.realtime, progress=progress)
     write_report(read(job.out / "log.mcap"), job.out, outcome.verdicts)
     return outcome

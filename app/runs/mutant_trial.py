@@ -31,12 +31,13 @@ _start: Any = numba.njit(_nothing)
 _start()
 
 
-def trial(copy: str, session: str, out: str, told: Connection) -> None:
+def trial(copy: str, session: str, fails: str, out: str, told: Connection) -> None:
     """Run a bundled session of the copy; `told` is sent its verdicts, as tuples, or a line that says why there are none.
 
     Args:
         copy: folder with the packages of the product.
         session: its name.
+        fails: words of an expectation; the run ends where that is not met.
         out: folder for what the run writes.
         told: where the result is sent.
     """
@@ -44,20 +45,20 @@ def trial(copy: str, session: str, out: str, told: Connection) -> None:
         del sys.modules[name]
     sys.path.insert(0, copy)
     try:
-        told.send(_verdicts(Path(copy), session, Path(out)))
+        told.send(_verdicts(Path(copy), session, fails, Path(out)))
     except Exception as error:  # noqa: BLE001 - whatever a mutant breaks down with
         told.send(f"breaks down: {type(error).__name__}: {' '.join(str(error).split())}")
 
 
-def _verdicts(copy: Path, session: str, out: Path) -> list[tuple[bool, str, str, bool]]:
+def _verdicts(copy: Path, session: str, fails: str, out: Path) -> list[tuple[bool, str, str, bool]]:
     import app
     from app.files.checked import load
-    from app.runs.runner import run, simulate
+    from app.runs.runner import missed, run, simulate
     from app.session.prepare import prepare
     from app.session.session_file import Session, find
 
     assert Path(app.__file__).is_relative_to(copy), "the product itself was imported, not its copy"
     asked = load(find(session), Session)
     prepared = prepare(asked, f"{session}.yaml")
-    verdicts = run(asked, prepared, simulate(prepared), out).verdicts
-    return [(verdict.passed, verdict.expected, verdict.seen, verdict.looked) for verdict in verdicts]
+    outcome = run(asked, prepared, simulate(prepared), out, enough=lambda told: missed(told) and fails in told.expected)
+    return [(verdict.passed, verdict.expected, verdict.seen, verdict.looked) for verdict in outcome.verdicts]

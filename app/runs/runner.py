@@ -67,6 +67,12 @@ class RunOutcome:
     seconds: float = 0.0  # simulated
     took: float = 0.0  # on the wall clock [s]
 
+    def see(self, tick: int, decision: Decision) -> None:
+        """Take in one tick."""
+        self.events += decision.events
+        if not self.modes or self.modes[-1][1] is not decision.mode:
+            self.modes.append((tick * TICK, decision.mode))
+
     @property
     def passed(self) -> bool:
         """Whether every expectation was met."""
@@ -75,7 +81,12 @@ class RunOutcome:
     @property
     def unmet(self) -> bool:
         """Whether something was seen that an expectation forbids; what it waits for was there."""
-        return any(verdict.looked and not verdict.passed for verdict in self.verdicts)
+        return any(map(missed, self.verdicts))
+
+
+def missed(verdict: Verdict) -> bool:
+    """Something was seen that the expectation forbids; what it waits for was there."""
+    return verdict.looked and not verdict.passed
 
 
 BROKEN = (ArithmeticError, np.linalg.LinAlgError, mujoco.FatalError)
@@ -160,6 +171,7 @@ def run(
     realtime: bool = False,
     progress: Progress = silent,
     see: Callable[[Decision], None] = lambda decision: None,
+    enough: Callable[[Verdict], bool] | None = None,
 ) -> RunOutcome:
     """Run a session to its end.
 
@@ -171,6 +183,7 @@ def run(
         realtime: keep the pace of the wall clock.
         progress: told the simulated seconds done, ten times a simulated second.
         see: shown the decision of every tick that was done; a recorder, for example.
+        enough: with a verdict of which it says yes the run ends early, and has those verdicts alone that are known by then.
 
     Raises:
         BadInput: the file cannot be written, or what is simulated breaks down.
@@ -201,11 +214,12 @@ def run(
             see(decision)
             if file is not None:
                 file.write(tick, decision.events)
-            outcome.events += decision.events
-            if not outcome.modes or outcome.modes[-1][1] is not decision.mode:
-                outcome.modes.append((tick * TICK, decision.mode))
+            outcome.see(tick, decision)
             if tick % tenth == 0:
                 progress(tick * TICK)
+                if enough is not None and any(map(enough, known := _known(watches, tick, decision, simulation.glance))):
+                    outcome.verdicts, outcome.seconds, outcome.took = known, tick * TICK, time.perf_counter() - begun
+                    return outcome
             if realtime:
                 time.sleep(max(0.0, begun + tick * TICK - time.perf_counter()))
     _compare(watches, session, prepared)
@@ -215,6 +229,15 @@ def run(
         seen = f'"{action.after}" never came (time {action.nth}), or too late'
         outcome.verdicts.append(Verdict(False, f"timeline[{place}] begins", seen, looked=False))
     return outcome
+
+
+def _known(watches: list[Watch], tick: int, decision: Decision, glance: Callable[[], Scored]) -> list[Verdict]:
+    """The verdicts that wait for no later tick."""
+    over = [each for each in watches if each.over(tick)]
+    for each in over:
+        if not each.settled() and each.last < tick:
+            each.see(tick, decision, glance)
+    return [each.verdict() for each in over]
 
 
 def _compare(watches: list[Watch], session: Session, prepared: Prepared) -> None:

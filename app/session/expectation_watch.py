@@ -79,6 +79,11 @@ class Watch:
         """Whether the verdict cannot change any more, although the interval has not ended."""
         return False
 
+    def over(self, tick: int) -> bool:
+        """Whether the verdict waits for nothing that comes after a tick."""
+        start = self.trigger.happened
+        return start is not None and (self.settled() or (self.end is not None and tick >= start + self.end))
+
     def expected(self) -> str:
         """The expectation, in words."""
         raise NotImplementedError

@@ -167,6 +167,10 @@ class ComparedWatch(ValueWatch):
             return math.sqrt(self.squares / self.count) if self.count else math.nan
         return self.high[0]
 
+    def over(self, tick: int) -> bool:
+        """See `Watch.over`: the other run comes after this one."""
+        return False
+
     def expected(self) -> str:
         """See `Watch.expected`."""
         wanted = self.wanted

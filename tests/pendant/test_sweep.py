@@ -224,17 +224,23 @@ def test_options_do_what_the_spec_says(name: str) -> None:
             agreement.agree([*stream, step])
 
 
-@pytest.mark.parametrize("option", [CHECKED, STOPPING, TEACH_FIRST], ids=["checked", "stopping", "teach first"])
+@pytest.mark.parametrize(
+    ("option", "inputs"),
+    [(CHECKED, INPUTS), (STOPPING, FOR_OPTIONS), (TEACH_FIRST, FOR_OPTIONS)],
+    ids=["checked", "stopping", "teach first"],
+)
 @pytest.mark.parametrize("name", CHECKED_SITUATIONS)
-def test_every_input_in_the_activation_sequence_does_what_the_spec_says(name: str, option: Settings) -> None:
+def test_every_input_in_the_activation_sequence_does_what_the_spec_says(
+    name: str, option: Settings, inputs: dict[str, Step]
+) -> None:
     stream = CHECKED_SITUATIONS[name]
     assert agree(stream, option)[-1][2] is Phase.SEQUENCE
     assert agree(stream, option)[-1][3] is Law.FREE
     agreement = Agreement(option, ticks_of(140), ticks_of(30, held=True) + ticks_of(160))
-    for step in INPUTS.values():
+    for step in inputs.values():
         agreement.agree([*stream, step])
     agreement = Agreement(option, ticks_of(100))
-    for step in INPUTS.values():
+    for step in inputs.values():
         agreement.agree([*stream, *[step] * 40])
 
 

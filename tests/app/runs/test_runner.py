@@ -6,7 +6,7 @@ import pytest
 
 from app.files.checked import convert, load
 from app.runs.coverage import claiming
-from app.runs.runner import RunOutcome, run, simulate
+from app.runs.runner import RunOutcome, missed, run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session, bundled, find
 from benchmarks import determinism
@@ -56,6 +56,30 @@ def test_the_modes_and_the_unmet_are_told(tmp_path: Path) -> None:
     assert outcome.verdicts[2].expected == "timeline[2] begins"
     assert not outcome.passed
     assert told == pytest.approx([0.1 * i for i in range(1, 23)])
+
+
+def test_a_run_ends_with_a_verdict_that_is_enough(tmp_path: Path) -> None:
+    """What has ended by then is told: also an event that did not come, of which no tick told."""
+    session = made(
+        duration=2.0,
+        expectations=[
+            {"expect": "state", "mode": "STOP", "at": 1.9},
+            {"expect": "state", "mode": "TEACH", "at": 0.05},
+            {"expect": "event", "kind": "left_period", "from": 0.0, "to": 0.25},
+            {"expect": "no_event", "kind": "left_period"},
+            {"expect": "state", "mode": "RUN", "at": 0.27},
+        ],
+    )
+    ran = run(session, prepare(session, "s.yaml"), FakeSimulation(), tmp_path, enough=missed)
+    assert [(told.expected, told.passed) for told in ran.verdicts] == [
+        ("mode TEACH at 0.050 s", True),
+        ("event left_period from 0.000 s to 0.250 s", False),
+        ("mode RUN at 0.270 s", False),
+    ]
+    assert ran.seconds == pytest.approx(0.3)
+    whole = run(session, prepare(session, "s.yaml"), FakeSimulation(), tmp_path, enough=lambda told: False)
+    assert whole.seconds == 2.0
+    assert len(whole.verdicts) == 5
 
 
 def test_nobody_looks_no_snapshot_is_made(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Every bundled session that names a switch: with it, all is met; without it, something is not."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 from app.files.checked import BadInput, convert
 from app.runs import coverage
 from app.runs.coverage import ClaimRow, claiming, rows_of
-from app.runs.runner import RunOutcome, run, simulate
+from app.runs.runner import RunOutcome, missed, run, simulate
 from app.session.claims import CLAIMS
 from app.session.expectation_watch import Verdict
 from app.session.prepare import prepare, without
@@ -22,9 +23,9 @@ LATE = RunOutcome(verdicts=[Verdict(False, "mode STOP", "never came", looked=Fal
 UNMET = RunOutcome(verdicts=[Verdict(True, "mode TEACH", "at 1 s"), Verdict(False, "mode STOP", "mode TEACH | at 2 s")])
 
 
-def ran(session: Session, out: Path) -> RunOutcome:
+def ran(session: Session, out: Path, enough: Callable[[Verdict], bool] | None = None) -> RunOutcome:
     prepared = prepare(session, "claim")
-    return run(session, prepared, simulate(prepared), out)
+    return run(session, prepared, simulate(prepared), out, enough=enough)
 
 
 def made(**fields: Any) -> Session:
@@ -41,7 +42,7 @@ def test_a_claiming_session_holds(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", SESSIONS)
 def test_and_fails_without_its_switch(name: str, tmp_path: Path) -> None:
-    assert ran(without(SESSIONS[name]), tmp_path).unmet
+    assert ran(without(SESSIONS[name]), tmp_path, missed).unmet
 
 
 def test_the_rows_are_those_of_the_sources() -> None:
