@@ -14,7 +14,8 @@ ROOT = Path(__file__).parent.parent
 MODULES = (
     "pendant/freedrive/manipulation.py",
     "pendant/guided/endings.py",
-    "pendant/guided/odds.py",
+    "pendant/sensor/hand_model.py",
+    "pendant/sensor/odds.py",
     "pendant/guided/sensor_bias.py",
     "pendant/guided/unintended_motion.py",
     "pendant/guided/user_force.py",
@@ -22,6 +23,7 @@ MODULES = (
     "pendant/limits/residual.py",
     "pendant/signals/contact_free_baseline.py",
     "pendant/signals/joint_push.py",
+    "sim/estimation/payload_fall.py",
     "sim/flange/external_wrench.py",
     "sim/flange/step_answer.py",
     "sim/flange/wrench_hypotheses.py",

@@ -232,8 +232,8 @@ def _started(context: "ForkServerContext", mutant: Mutant, product: Path) -> _Ru
     copy = copy_of(product, Path(folder.name) / "product")
     change(mutant, copy, product)
     ours, theirs = context.Pipe(duplex=False)
-    asked = str(copy), mutant.session, mutant.fails, str(copy.parent / "out"), theirs
-    process = context.Process(target=trial, args=asked, daemon=True)
+    args = str(copy), (mutant.session, mutant.fails), str(copy.parent / "out"), theirs
+    process = context.Process(target=trial, args=args, daemon=True)
     process.start()
     theirs.close()
     return _Run(mutant, process, ours, time.monotonic() + LONGEST, folder)

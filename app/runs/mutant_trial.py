@@ -31,13 +31,12 @@ _start: Any = numba.njit(_nothing)
 _start()
 
 
-def trial(copy: str, session: str, fails: str, out: str, told: Connection) -> None:
+def trial(copy: str, asked: tuple[str, str], out: str, told: Connection) -> None:
     """Run a bundled session of the copy; `told` is sent its verdicts, as tuples, or a line that says why there are none.
 
     Args:
         copy: folder with the packages of the product.
-        session: its name.
-        fails: words of an expectation; the run ends where that is not met.
+        asked: name of the session; words of the expectation with which the run ends where that is not met.
         out: folder for what the run writes.
         told: where the result is sent.
     """
@@ -45,7 +44,7 @@ def trial(copy: str, session: str, fails: str, out: str, told: Connection) -> No
         del sys.modules[name]
     sys.path.insert(0, copy)
     try:
-        told.send(_verdicts(Path(copy), session, fails, Path(out)))
+        told.send(_verdicts(Path(copy), *asked, Path(out)))
     except Exception as error:  # noqa: BLE001 - whatever a mutant breaks down with
         told.send(f"breaks down: {type(error).__name__}: {' '.join(str(error).split())}")
 

@@ -5,15 +5,13 @@ import math
 from pendant.all_settings import Settings
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split, upward
+from pendant.sensor.hand_model import TOUCH
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.limit_engine import Excess
-from pendant.tick.modes import TICK
 from pendant.tick.pose import Wrench
 
-SETTLING = 0.5
-"""Time constant with which a change that a payload could explain stops counting as the user's [s]: a hand never keeps one."""
-
-RATE = 1.0 - math.exp(-TICK / SETTLING)
+RATE = 1.0 - math.exp(-1.0 / TOUCH)
+"""Weight of a tick in a change that a payload could explain and stops counting as the user's: a hand never keeps one."""
 
 
 class Maintained:

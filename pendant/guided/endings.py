@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
-from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
 from pendant.limits.residual import Split
 from pendant.limits.soft_limits import Damping, SoftLimits
+from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
 

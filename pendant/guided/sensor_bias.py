@@ -11,24 +11,16 @@ from collections import deque
 from typing import NamedTuple
 
 from pendant.events.event import Event, Kind
-from pendant.guided.odds import KNOWN, TOUCH
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
+from pendant.sensor.hand_model import SLOWEST, TOUCH, TREMOR
+from pendant.sensor.odds import HALF, KNOWN
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, dot, flat, norm, turned
-
-SLOW = 3.0
-"""So fast may a force drift [N/s]; torques drift by `LEVER` times as much."""
-
-NOISY = 0.5
-"""What of a change was too fast waits for the next windows up to so much [N], for it may be noise; more is a hand's."""
-
-ANSWER = 0.3
-"""Share of a change from which on it is a hand's, for the joints feel it; of a sensor's only the help for it, the other way."""
 
 SMOOTH = 1.0 / WINDOW
 """Weight of a tick in what the joints feel: their mean over a window."""
@@ -133,13 +125,15 @@ class BiasFollower:
             return None
         since, answer = _less(force, self._began), _less(felt, self._felt)
         size = dot(since, since)
-        if size >= least * least and dot(since, answer) >= ANSWER * size:
+        # Of what a sensor alone feels the joints feel the help for it, the other way.
+        if size >= least * least and dot(since, answer) >= HALF * size:
             return None
         change = [now - then for now, then in zip(mean, self._followed, strict=True)]
         time = WINDOW * TICK
-        gone = (*_within(change[:3], SLOW * time), *_within(change[3:], LEVER * SLOW * time))
+        gone = (*_within(change[:3], SLOWEST * time), *_within(change[3:], LEVER * SLOWEST * time))
+        # What was too fast may be noise, up to a hand's tremor, and waits for the next windows; more is a hand's.
         rest = [whole - part for whole, part in zip(change, gone, strict=True)]
-        later = (*_within(rest[:3], NOISY), *_within(rest[3:], LEVER * NOISY))
+        later = (*_within(rest[:3], TREMOR), *_within(rest[3:], LEVER * TREMOR))
         self._followed = tuple([now - part for now, part in zip(mean, later, strict=True)])
         return gone
 

@@ -5,23 +5,14 @@ import math
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.settings import Unexplained
-from pendant.guided.user_force import CARRIED, UserForce
+from pendant.guided.user_force import ON_A_LINK, UserForce
 from pendant.guided.work import Work
 from pendant.limits.parameters import EntryValues
+from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, norm
-
-AWAY = 0.015
-"""An arm at rest that nobody touches goes no farther on its own [m], however slowly: friction all but holds a wrong payload."""
-
-UNFELT = 0.01
-"""Without the flange sensor no farther once it counts as moving [m]: a light hand is not felt then, but an arm that breaks away
-from its friction is as fast as a hand in 0.3 s."""
-
-HALF = 0.5
-"""From this share of what is allowed on nothing helps the arm: a hand then pushes, and an arm that nobody leads comes to rest."""
 
 
 class Way:
@@ -116,7 +107,7 @@ class UnintendedMotion:
         caused = driven or x * x + y * y + z * z >= least * least
         # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
         usual = norm(hand.usual)
-        by_link = use_wrench and usual < CARRIED + slack.force
+        by_link = use_wrench and usual < ON_A_LINK + slack.force
         wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
@@ -154,11 +145,12 @@ class UnintendedMotion:
             whole.work.step(estimate, *wrench)
             length = whole.length(estimate) if use_wrench else stretch.length(estimate) if moves else 0.0
             paid = by_link and whole.work.paid
-            most = max(AWAY, self._helped + HALF * AWAY) if use_wrench else UNFELT
+            away = self._on.distance
+            most = max(away, self._helped + HALF * away) if use_wrench else away  # without it nothing helps a light hand
             if length > most and not paid:
                 return whole if use_wrench else stretch
-            self._at_rest = not (paid and length > AWAY)
-            far = use_wrench and not paid and length > HALF * AWAY
+            self._at_rest = not (paid and length > away)
+            far = use_wrench and not paid and length > HALF * away
             if not far:
                 self._helped = length
             self.led = paid and whole.work.settled

@@ -7,35 +7,25 @@ gravity may be a payload's; it stops counting as the user's with a time constant
 import math
 
 from pendant.limits.residual import upward
+from pendant.sensor.hand_model import KEEPS, STEADY
+from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, dot, flat, norm, turned_back
 
-SETTLING = 1.5
-"""Time constant with which a change along gravity becomes payload-like [s]: a sensor that drifts by 2 N/s stays below 3 N."""
-
-LED_SETTLING = 4.0
-"""While the flange moves that takes longer [s]: a hand may lead the arm gently up or down for seconds."""
-
 SWING = 0.05
 """Time constant that takes the arm's own swinging off what the flange sensor feels [s]: a hand's push lasts longer."""
 
-DOUBT = 0.5
-"""Of the force of a payload that was wrong from the beginning: a smaller change may be its inertia and is no user force."""
-
-JOINTS_SWING = 0.1
-"""Time constant that takes an arm's own swinging off what the joints feel, and of the force lately [s]."""
+JOINTS_SWING = 2.0 * SWING
+"""The same of what the joints feel, and of the force lately [s]: between them and the flange are the gears."""
 
 FELT_BY_JOINTS = 10.0
 """A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
 
-ON_A_LINK = 5.0
-"""And from here on [N] while the flange sensor feels no more than `CARRIED`: it would feel what falls."""
+ON_A_LINK = HALF * FELT_BY_JOINTS
+"""And from here on [N] while the flange sensor feels a smaller change: it would feel what falls, which hangs there."""
 
-CARRIED = 4.0
-"""Largest change at the flange [N] beside which the joints are asked: what is hung on the arm hangs there, not on a link."""
-
-_SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (SETTLING, LED_SETTLING, SWING, JOINTS_SWING))
+_SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (KEEPS, STEADY, SWING, JOINTS_SWING))
 
 
 class UserForce:
@@ -70,7 +60,7 @@ class UserForce:
         force: Vector = (baseline[0], baseline[1], baseline[2])
         self._residual = dot(force, self._up)
         self._payload = self._residual - min(max(self._residual, -offset), offset)
-        self._doubt = DOUBT * abs(self._payload)
+        self._doubt = HALF * abs(self._payload)  # a smaller change may be its inertia
         beside = _less(force, self._payload, self._up)
         self._baseline = turned_back(flat(estimate.R_BF), beside)  # an offset of the sensor turns with the flange
         self._felt: Vector = _triple(estimate.F_joints.tolist())
@@ -138,7 +128,7 @@ class UserForce:
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
             by_sensor = math.hypot(sx, sy, sz)
-            felt = felt or (size >= ON_A_LINK and math.hypot(x, y, z) < CARRIED)
+            felt = felt or (size >= ON_A_LINK and math.hypot(x, y, z) < ON_A_LINK)
             if not felt or by_sensor >= FELT_BY_JOINTS:
                 user, size, felt = self._by_sensor, by_sensor, True
         self.user = user if felt and size >= self._doubt else ORIGIN

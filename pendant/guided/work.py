@@ -10,15 +10,13 @@ deflection of the gears, so that an error of the friction estimate alone pays no
 F . v + tau . w there, which its sensor tells better than the joints do.
 """
 
+from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, dot
 
 LEFT = 0.15
 """Share of its friction that the control law leaves to whoever leads the arm; `sim.control.free_drive_law` takes the rest off."""
-
-ASKED = 0.5
-"""Share of that rest which somebody must pay (bench `guided`, `payload`)."""
 
 
 class Work:
@@ -59,7 +57,7 @@ class Work:
             done += (now - before) * speed
             rubbed += friction * speed
         done *= TICK
-        rubbed *= ASKED * LEFT * TICK
+        rubbed *= HALF * LEFT * TICK
         self._ticks += 1
         self._slower = self._energy - estimate.energy
         self._rubbed += rubbed

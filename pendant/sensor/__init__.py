@@ -1,1 +1,1 @@
-"""The flange sensor's zero: what the maker says of it, taring, its bias in free-drive. Uses limits/."""
+"""The flange sensor: what the maker says of it, its zero, and what tells a hand from its errors. Uses limits/."""

@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import WINDOW
+from pendant.sensor.hand_model import STEADY
+from pendant.sensor.odds import RARELY
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
@@ -45,14 +47,11 @@ UNSTEADY = 0.1
 FALSE_ALARM = 16.3
 """A chi-square of three values exceeds it by chance once in a thousand times: more contradicts what is known."""
 
-SURE = 3.29
-"""Standard deviations that an error exceeds once in a thousand times: so many right payloads may be refused."""
-
 STOOD = 10
 """Windows that an arm must have stood for, so that a posture teaches anything: as for zeroing, a hand on its way is none."""
 
-STEADY = ticks(5.0) // WINDOW
-"""Windows that contradict what is known until that is given up: no hand is as steady (contact_free_baseline)."""
+STILL = ticks(STEADY) // WINDOW
+"""Windows that contradict what is known until that is given up: no hand is as steady."""
 
 WITNESSES = 2
 """Postures that must have agreed on bias and payload until a third that does not is believed to have another payload: one alone
@@ -127,13 +126,13 @@ class PayloadKnown:
             self._now, self._touched, self._windows = self._before, True, 0
         else:
             self._contrary += 1
-            if self._contrary == STEADY:
+            if self._contrary == STILL:
                 self.forget()
 
     def told(self, estimate: Estimate, force: Vector) -> PayloadError | None:
         """The payload's error from this force, as `learn`, and other postures; None where there are none, or they contradict."""
         seen = self._seen(estimate, force) if self._trusted or self._now.compared else None
-        return None if seen is None else PayloadError(float(seen.x[MASS]), SURE * math.sqrt(seen.P[MASS, MASS]))
+        return None if seen is None else PayloadError(float(seen.x[MASS]), RARELY * math.sqrt(seen.P[MASS, MASS]))
 
     @property
     def _trusted(self) -> bool:

@@ -3,23 +3,19 @@
 import math
 from collections.abc import Sequence
 
+from pendant.limits.validity import WINDOW
+from pendant.sensor.hand_model import KEEPS, STEADY, TREMOR
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 
-SETTLING = ticks(0.1)
-"""Ticks over which it is learned afresh."""
+FOLLOW = TICK / KEEPS
+"""It follows small changes, as a sensor drifts, by this share a tick."""
 
-FOLLOW = TICK / 1.0
-"""It follows small changes, as a sensor drifts, with a time constant of 1 s."""
+STILL = ticks(STEADY)
+"""Ticks after which a change that stays within a hand's tremor is none of a hand's."""
 
-CREEP = 0.2 * TICK
-"""It follows large ones by so much a second: less than a hand would notice [N or N·m a tick]."""
-
-STEADY = ticks(5.0)
-"""A hand trembles: a change that stays as steady as a sensor for so long is none of its making."""
-
-TREMOR = 0.7
-"""A steady change stays within this [N or N·m]."""
+CREEP = TREMOR / STILL
+"""It follows large ones by so much: less than a hand would notice [N or N·m a tick]."""
 
 
 class Untouched:
@@ -53,7 +49,7 @@ class Untouched:
     def step(self, values: Sequence[float]) -> list[float]:
         """One tick of finite values. Returns their change, zeros while it is being learned."""
         base = self._base
-        if self._count < SETTLING:
+        if self._count < WINDOW:
             self._count += 1
             for k, value in enumerate(values):
                 base[k] += (value - base[k]) / self._count
@@ -71,12 +67,12 @@ class Untouched:
         self.change = change
         if abs(size - self._held) > TREMOR:
             self._held, self._steady = size, 0
-        elif self._steady < STEADY:
+        elif self._steady < STILL:
             self._steady += 1
         if size < self._near:
             self.noise = math.sqrt(self.noise * self.noise + FOLLOW * (size * size - self.noise * self.noise))
             share = FOLLOW
-        elif self._steady == STEADY:
+        elif self._steady == STILL:
             share = 1.0
         else:
             share = CREEP / size

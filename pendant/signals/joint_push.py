@@ -2,17 +2,10 @@
 
 from collections.abc import Sequence
 
+from pendant.sensor.odds import HALF, RARELY
 from pendant.signals.contact_free_baseline import Untouched
+from pendant.signals.push_signal import STAYS
 from pendant.signals.settings import JointPush
-
-NOISES = 3.0
-"""The threshold is at least so many times the noise that was measured while nobody pushed."""
-
-STAYS = 0.75
-"""A push that is present stays so down to this share of its threshold."""
-
-OFF = 1.0 / 3.0
-"""Below this share of its threshold, in all joints that are asked, no hand is felt. A released arm swings for 0.4 s."""
 
 
 class JointPushSignal:
@@ -37,9 +30,9 @@ class JointPushSignal:
 
     def step(self, torques: Sequence[float], use: JointPush) -> bool:
         """One tick of the external torques, base to flange [N·m]."""
-        needed = max(use.threshold, NOISES * self._torques.noise)
+        needed = max(use.threshold, RARELY * self._torques.noise)
         asked = self._torques.step(torques)[use.first - 1 : use.last]
         most = max(map(abs, asked), default=0.0)
-        self.touched = most > OFF * needed
+        self.touched = most > HALF * needed  # a released arm swings for 0.4 s
         self.present = most > (STAYS * needed if self.present else needed)
         return self.present

@@ -22,8 +22,9 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
 from sim.estimation.transmission_torque import DYNAMICS, TransmissionTorque
-from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import needed, turn_both
+from sim.flange.wrench_hypotheses import LONGEST
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import STIFFNESS, ripple_torque
 

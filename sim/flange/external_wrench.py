@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from pendant.sensor.sensor_spec import SensorSpec
+from pendant.limits.validity import WINDOW
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
@@ -22,6 +22,7 @@ from sim.flange.wrench_hypotheses import (
     LATE,
     LINE,
     LN_RARE,
+    LONGEST,
     LOST,
     MORE,
     SHORTEST,
@@ -36,9 +37,7 @@ from sim.flange.wrench_hypotheses import (
     spread,
 )
 from sim.flange.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
-
-LONGEST = 10
-"""Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
+from sim.sensing.sensor_drift import sensor_spec
 
 LN_ONSETS = math.log(LONGEST + 1.0)
 
@@ -65,6 +64,7 @@ class ExternalWrench:
         self._forces = forces
         self.record = record(
             noise=(2,),  # of the sensor in a tick [N, N·m]
+            offset=(),  # standard deviation of what the bias is off [N]
             shaking=(),  # of the accelerometer [m/s²]
             turning=(),  # of the angular acceleration that the load is taken to need [rad/s²]
             jitter=(),  # variance of the gyro's difference, each axis [rad²/s⁴]
@@ -97,12 +97,13 @@ class ExternalWrench:
             age="i8",  # ticks since it
         )
         own = self._own = self.record[0]
-        force_torque, accelerometer, gyro = arm.sensors.force_torque, arm.sensors.accelerometer, arm.sensors.gyro
-        self._sensed = force_torque is not None
+        gyro, told = arm.sensors.gyro, sensor_spec(arm)
+        self._sensed = arm.sensors.force_torque is not None
         self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
-        if force_torque is not None:
-            own["noise"] = force_torque.force.noise, force_torque.torque.noise
-        own["shaking"] = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
+        own["noise"] = told.noise_force, told.noise_torque
+        # It is the mean of a window, and the sensor's zero has wandered since.
+        own["offset"] = math.hypot(told.walk_force, told.noise_force / math.sqrt(WINDOW))
+        own["shaking"] = told.noise_acceleration
         own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
         own["turning"] = math.sqrt(own["jitter"] * forces.passed)
         own["lost"] = own["stepped"] = -math.inf

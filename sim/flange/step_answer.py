@@ -18,14 +18,15 @@ import math
 
 import numpy as np
 
-from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.user_force import JOINTS_SWING
+from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
+from sim.flange.wrench_hypotheses import LONGEST
 from sim.sensing.calibration import STIFFNESS
 
 ANSWER = ticks(JOINTS_SWING)

@@ -37,7 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.guided.odds import TOUCH as A_TOUCH
+from pendant.sensor.hand_model import LARGEST, LEVER, RISE, TOUCH, TREMOR
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
 from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN
@@ -47,14 +47,8 @@ Array = NDArray[np.float64]
 BEFORE = 4
 """Ticks of which the mean is the wrench before a change."""
 
-HAND, RISE = 50.0, 5.0
-"""A hand's largest force [N] (FD-3), and the ticks that it takes at least to get there: 10 ms."""
-
-TOUCH = 0.5
-"""What a hand's force may be off that straight rise [N]."""
-
-LEVER = 0.1
-"""Lever of a hand's force about the flange [m]: torques of a hand are so many times its forces."""
+LONGEST = 10
+"""Ticks since the change that are looked at, at most: 20 ms, in which a dropped payload has to be known (bench `drop`)."""
 
 SURE = 1.0 / 2.576
 """Standard deviation of the payload's mass [kg]: the activation sequence refuses 99 of 100 payloads that are wrong by 1 kg."""
@@ -62,17 +56,13 @@ SURE = 1.0 / 2.576
 CENTRE = 0.006
 """Standard deviation of the payload's centre in each direction [m]: bench `payload` draws it within 10 mm."""
 
-OFFSET = 0.3
-"""Standard deviation of what the bias is off [N]: the noise of the mean that it comes from, and the drift of a minute."""
-
 GAIN = WRENCH_GAIN + 2.0 * WRENCH_CROSS_TALK / 5.0
 """Error of the sensor in share of what it measures, at most."""
-
 
 LATE = math.sqrt(0.5)
 """Share of an angular acceleration at the bandwidth of its filter that is missed."""
 
-RARE = 1.0 / A_TOUCH
+RARE = 1.0 / TOUCH
 """Share of the ticks in which a hand does what none of its hypotheses says, or changes at once: once in a touch."""
 
 LN_OFTEN, LN_RARE = -math.log((1.0 - RARE) / 6.0), -math.log(RARE)
@@ -119,7 +109,7 @@ def spread(own, late):
 @kernel
 def jump(own, steep, axis):
     """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
-    return (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
+    return (TREMOR * (1.0 if axis == 0 else LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
 
 
 @kernel
@@ -134,7 +124,7 @@ def hand(own, seen, change, late):
     for axis in range(2):
         R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else LEVER
         sudden = jump(own, steep, axis)
-        rise = (0.5 * HAND / RISE * lever) ** 2
+        rise = (0.5 * LARGEST / RISE * lever) ** 2
         a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
         determinant = a * c - b * b
         of_rising *= determinant * sudden * rise
@@ -161,7 +151,7 @@ def nobody(own, seen, length, late):
     """Log likelihood of an arm that nobody touches."""
     likelihood, determinant = 0.0, 1.0
     for axis in range(2):
-        R, offset = noise(own, own.whole, axis, late), (OFFSET * (1.0 if axis == 0 else LEVER)) ** 2
+        R, offset = noise(own, own.whole, axis, late), (own.offset * (1.0 if axis == 0 else LEVER)) ** 2
         determinant *= 1.0 + length * offset / R
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * (seen.xx[k] - offset / (R + length * offset) * seen.x[k] ** 2) / R
@@ -173,7 +163,7 @@ def anything(seen, length):
     """Log likelihood of what none of the others explains: whatever a hand's wrench can be, in each tick by itself."""
     likelihood = 0.0
     for axis in range(2):
-        V = (0.5 * HAND * (1.0 if axis == 0 else LEVER)) ** 2
+        V = (0.5 * LARGEST * (1.0 if axis == 0 else LEVER)) ** 2
         likelihood -= 1.5 * length * np.log(V)
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * seen.xx[k] / V
@@ -202,7 +192,7 @@ def payload(own, seen, change, kind):
         if axis == 1:
             offset += (CENTRE * weight) ** 2
         if kind == FREED:
-            offset += (OFFSET * lever) ** 2
+            offset += (own.offset * lever) ** 2
         else:
             offset += 4.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
         determinant *= 1.0 + length * offset / R
@@ -233,7 +223,7 @@ def carried(own, seen, change, gone):
     kind, share = gone
     unlikely = 0.0
     for axis in range(2):
-        sudden, off = jump(own, steep, axis), (TOUCH * (1.0 if axis == 0 else LEVER)) ** 2
+        sudden, off = jump(own, steep, axis), (TREMOR * (1.0 if axis == 0 else LEVER)) ** 2
         swings = 0.0
         for k in range(3 * axis, 3 * axis + 3):
             way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)

@@ -9,20 +9,9 @@ import sys
 
 import numpy as np
 
+from pendant.sensor.hand_model import LARGEST, LEVER, TREMOR
 from sim.compiled.kernel import kernel
-from sim.flange.wrench_hypotheses import (
-    BEFORE,
-    HAND,
-    LATE,
-    LEVER,
-    LN_OFTEN,
-    LN_RARE,
-    SHORTEST,
-    STRAY,
-    TOUCH,
-    least,
-    noise,
-)
+from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, SHORTEST, STRAY, least, noise
 
 NOTHING = -math.log(sys.float_info.epsilon)
 """Of two logs of likelihoods that are so far apart the smaller one adds nothing [nats]."""
@@ -75,9 +64,9 @@ def ahead(own, x, before, steep):
             if way >= 2:
                 V += 9.0 * steep[axis]
             if way >= 4:
-                V += (TOUCH * lever) ** 2
+                V += (TREMOR * lever) ** 2
             if way == 6:
-                V = (0.5 * HAND * lever) ** 2
+                V = (0.5 * LARGEST * lever) ** 2
             square = 0.0
             for k in range(3 * axis, 3 * axis + 3):
                 square += (x[k] - before[k]) ** 2
@@ -96,7 +85,7 @@ def sudden(own, seen, change):
     length, before = change
     square, size, determinant = 0.0, 0.0, 1.0
     for axis in range(2):
-        R, V = noise(own, own.whole, axis, LATE), (0.5 * HAND * (1.0 if axis == 0 else LEVER)) ** 2
+        R, V = noise(own, own.whole, axis, LATE), (0.5 * LARGEST * (1.0 if axis == 0 else LEVER)) ** 2
         determinant *= 1.0 + length * V / R
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - length * before[k]

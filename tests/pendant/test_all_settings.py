@@ -89,6 +89,7 @@ EXPECTED = {
     "unexplained.payload": (True, None, None, "", "FD-19", True),
     "unexplained.speed": (0.02, 0.005, 0.25, "m/s", "FD-19", True),
     "unexplained.time": (0.3, 0.02, 2.0, "s", "FD-19", True),
+    "unexplained.distance": (0.015, 0.002, 0.1, "m", "FD-19", True),
     "unexplained.force": (1.0, 0.5, 20.0, "N", "FD-19", True),
     "walls.on": (True, None, None, "", "FD-24", True),
     "walls.new_anchors": (True, None, None, "", "VW-3", True),

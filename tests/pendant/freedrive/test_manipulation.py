@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from pendant.all_settings import Settings, apply
-from pendant.freedrive.manipulation import SETTLING, Maintained
+from pendant.freedrive.manipulation import Maintained
+from pendant.sensor.hand_model import TOUCH
 from pendant.tick.estimate import Estimate
 from pendant.tick.limit_engine import Excess
-from pendant.tick.modes import TICK
 from pendant.tick.pose import Wrench
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
@@ -98,7 +98,7 @@ def test_forces_count_from_what_they_were_when_the_period_began() -> None:
 def test_what_counts_of_a_wrench_that_stays_is_what_no_payload_explains(g: list[float]) -> None:
     """The whole change, but for what has stayed of it: of the force along gravity, of the torque across it."""
     force, torque, up, ticks = np.array([9.0, -13.0, 17.0]), np.array([2.0, 5.0, -3.0]), -np.array(g), 100
-    stayed = 1.0 - math.exp(-ticks * TICK / SETTLING)
+    stayed = 1.0 - math.exp(-ticks / TOUCH)
     slow_force, slow_torque = stayed * force, stayed * torque
     expected = {
         "user force": np.linalg.norm(force - (slow_force @ up) * up),

@@ -9,11 +9,12 @@ from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
-from pendant.guided.odds import KNOWN, SUSPECTED, TOUCH, TOUCHES
 from pendant.guided.sensor_bias import SURE
-from pendant.guided.user_force import CARRIED, SWING, UserForce
-from pendant.guided.work import ASKED, LEFT
+from pendant.guided.user_force import ON_A_LINK, SWING, UserForce
+from pendant.guided.work import LEFT
 from pendant.inputs import NOTHING, Button, Inputs
+from pendant.sensor.hand_model import TOUCH
+from pendant.sensor.odds import HALF, KNOWN, SUSPECTED, TOUCHES
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Mode
@@ -28,7 +29,7 @@ ZEROS = (0.0,) * 6
 G = 9.81
 TWO = [0.0, 0.0, 2.0 * G]  # what 2 kg need at rest
 FRICTION = 8.0  # of the elbow [N·m]
-PAYS = ASKED * LEFT * FRICTION  # torque that pays for it [N·m]
+PAYS = HALF * LEFT * FRICTION  # torque that pays for it [N·m]
 
 
 class Free:
@@ -197,7 +198,7 @@ def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     free = Free()
     assert free.until([elbow(5.0, down=6.0)] * 5000) is not None
     assert Free().until([elbow(5.0, down=3.0)] * 5000) is None
-    assert Free().until([elbow(5.0, down=1.01 * CARRIED)] * 5000) is not None
+    assert Free().until([elbow(5.0, down=1.01 * ON_A_LINK)] * 5000) is not None
 
 
 def test_what_a_joint_felt_at_entry_is_no_hand() -> None:

@@ -9,13 +9,13 @@ from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
 from pendant.guided.free_arm import FreeArm
-from pendant.guided.odds import KNOWN, SUSPECTED
 from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
 from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
+from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import ORIGIN

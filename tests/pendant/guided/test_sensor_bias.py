@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from pendant.events.event import Kind
-from pendant.guided.odds import KNOWN
-from pendant.guided.sensor_bias import ANSWER, BEGINS, SLOW, BiasFollower, SensorBias
+from pendant.guided.sensor_bias import BEGINS, BiasFollower, SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.validity import WrenchMean
+from pendant.sensor.hand_model import SLOWEST
+from pendant.sensor.odds import HALF, KNOWN
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.modes import Phase
@@ -27,8 +28,8 @@ TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF 
     ("change", "gone"),
     [
         ((0.1, -0.2, 0.05, 0.01, 0.0, -0.02), (0.1, -0.2, 0.05, 0.01, 0.0, -0.02)),
-        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOW * WINDOW, 0.0, 0.0, 0.0, LEVER * SLOW * WINDOW)),
-        ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOW * WINDOW, 0.0, 0.8 * SLOW * WINDOW, 0.0, 0.0, 0.0)),
+        ((0.0, 10.0, 0.0, 0.0, 0.0, 5.0), (0.0, SLOWEST * WINDOW, 0.0, 0.0, 0.0, LEVER * SLOWEST * WINDOW)),
+        ((-3.0, 0.0, 4.0, 0.0, 0.0, 0.0), (-0.6 * SLOWEST * WINDOW, 0.0, 0.8 * SLOWEST * WINDOW, 0.0, 0.0, 0.0)),
     ],
 )
 def test_so_much_of_a_change_is_drift(change: tuple[float, ...], gone: tuple[float, ...]) -> None:
@@ -235,7 +236,7 @@ def test_a_zero_that_was_left_is_as_one_that_never_began() -> None:
 
 
 @pytest.mark.parametrize("axis", range(3))
-@pytest.mark.parametrize(("answer", "follows"), [(0.99 * ANSWER, True), (1.01 * ANSWER, False), (1.0, False), (-1.0, True)])
+@pytest.mark.parametrize(("answer", "follows"), [(0.99 * HALF, True), (1.01 * HALF, False), (1.0, False), (-1.0, True)])
 @pytest.mark.parametrize(("size", "asked"), [(0.99 * HAND, False), (1.01 * HAND, True), (3.0, True)])
 def test_what_the_joints_feel_as_well_is_no_drift(size: float, asked: bool, answer: float, follows: bool, axis: int) -> None:
     drift = BiasFollower(SENSOR)

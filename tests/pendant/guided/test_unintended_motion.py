@@ -7,10 +7,11 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import AWAY, UNFELT, UnintendedMotion
-from pendant.guided.user_force import CARRIED, UserForce
-from pendant.guided.work import ASKED, LEFT
+from pendant.guided.unintended_motion import UnintendedMotion
+from pendant.guided.user_force import ON_A_LINK, UserForce
+from pendant.guided.work import LEFT
 from pendant.limits.parameters import reference
+from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of
@@ -18,10 +19,10 @@ from tests.pendant.estimates import MOVES, SENSOR, estimate
 
 ZEROS = (0.0,) * 6
 FRICTION = 8.0  # of the elbow while it turns [N·m]
-PAYS = ASKED * LEFT * FRICTION  # torque there that pays for its friction [N·m]
+PAYS = HALF * LEFT * FRICTION  # torque there that pays for its friction [N·m]
 HERE = [0.0, 0.1, 0.2]
 WAYS = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.0, 0.8)]
-MOVING = Settings().unexplained.speed
+MOVING, AWAY = Settings().unexplained.speed, Settings().unexplained.distance
 STEP = 0.0001  # in a tick that creeps [m]
 
 
@@ -69,19 +70,19 @@ LEAST_CREPT = round(AWAY / STEP)  # ticks that are just allowed
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize(("share", "stopped"), [(0.99, False), (1.01, True), (30.0, True)])
-@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
+@pytest.mark.parametrize("sensor", [True, False])
 def test_an_arm_that_nobody_touches_goes_so_far(
-    sensor: bool, most: float, share: float, stopped: bool, way: tuple[float, float, float]
+    sensor: bool, share: float, stopped: bool, way: tuple[float, float, float]
 ) -> None:
     bench = Bench(sensor)
     assert bench.see(at(0.0, 0.1)) is None
-    told = bench.see(at(share * most, 0.1, way))
-    assert told == ({"distance": pytest.approx(1000.0 * share * most), "time": 2 * TICK, "limit": MOVING} if stopped else None)
+    told = bench.see(at(share * AWAY, 0.1, way))
+    assert told == ({"distance": pytest.approx(1000.0 * share * AWAY), "time": 2 * TICK, "limit": MOVING} if stopped else None)
 
 
-@pytest.mark.parametrize(("sensor", "most"), [(True, AWAY), (False, UNFELT)])
-def test_at_the_limit_it_may_be(sensor: bool, most: float) -> None:
-    assert Bench(sensor).until([at(0.0, 0.1), at(most, 0.1)]) is None
+@pytest.mark.parametrize("sensor", [True, False])
+def test_at_the_limit_it_may_be(sensor: bool) -> None:
+    assert Bench(sensor).until([at(0.0, 0.1), at(AWAY, 0.1)]) is None
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.005, 0.019])
@@ -95,9 +96,9 @@ def test_however_slowly_with_the_sensor(speed: float) -> None:
 def test_without_it_a_light_hand_is_not_felt_and_the_way_begins_with_the_motion() -> None:
     bench = Bench(sensor=False)
     assert bench.until(creep(1000)) is None
-    assert bench.until([at(0.1, 0.1), at(0.1 + 0.99 * UNFELT, 0.1)]) is None
-    assert bench.until([at(0.2, 0.019), at(0.3, 0.1), at(0.3 + 0.99 * UNFELT, 0.1)]) is None
-    assert bench.see(at(0.3 + 1.01 * UNFELT, 0.1)) is not None
+    assert bench.until([at(0.1, 0.1), at(0.1 + 0.99 * AWAY, 0.1)]) is None
+    assert bench.until([at(0.2, 0.019), at(0.3, 0.1), at(0.3 + 0.99 * AWAY, 0.1)]) is None
+    assert bench.see(at(0.3 + 1.01 * AWAY, 0.1)) is not None
 
 
 def test_with_it_what_it_crept_before_it_moved_counts() -> None:
@@ -118,7 +119,7 @@ def test_an_arm_that_a_hand_or_a_wall_has_let_go_while_it_moved_has_its_time_alo
         bench.held(at(0.0, 0.1))
     assert bench.until([at(0.0, 0.1), at(0.5, 0.1)]) is None
     bench.see(at(0.6, 0.0))
-    assert bench.until([at(0.6, 0.1), at(0.6 + 0.99 * UNFELT, 0.1)]) is None
+    assert bench.until([at(0.6, 0.1), at(0.6 + 0.99 * AWAY, 0.1)]) is None
     assert bench.see(at(0.6 + 1.01 * AWAY, 0.1)) is not None
 
 
@@ -151,7 +152,7 @@ def test_the_work_counts_from_where_the_arm_rested() -> None:
 
 def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
     bench = Bench()
-    bench.hand.usual = (0.0, 0.0, -CARRIED)
+    bench.hand.usual = (0.0, 0.0, -ON_A_LINK)
     told = (bench.alone.step(value, bench.hand, use_wrench=True, driven=False) for value in creep(400, turns=1.0, felt=5.0))
     assert any(values is not None for values in told)
 
@@ -173,7 +174,7 @@ def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
     assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
 
 
-@pytest.mark.parametrize(("sensor", "carried"), [(False, 0.0), (True, CARRIED)])
+@pytest.mark.parametrize(("sensor", "carried"), [(False, 0.0), (True, ON_A_LINK)])
 def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(sensor: bool, carried: float) -> None:
     bench = Bench(sensor)
     bench.held(at(0.0, 0.1))
@@ -309,7 +310,7 @@ def test_who_leads_it_slowly_is_known_from_where_it_rested(felt: float, led: boo
     assert not bench.alone.led, "a wall drives it"
 
 
-@pytest.mark.parametrize("carried", [0.0, CARRIED])
+@pytest.mark.parametrize("carried", [0.0, ON_A_LINK])
 def test_half_of_the_way_that_nobody_pays_for_is_doubtful(carried: float) -> None:
     """The doubt stays while the arm rests there, for the way would go on; a hand that is felt ends it."""
     bench = Bench()
@@ -364,7 +365,7 @@ def test_who_pays_late_or_no_more_has_half_of_the_way_without_help() -> None:
 def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> None:
     bench = Bench()
     bench.held(at(0.0, 0.1))
-    bench.hand.usual = (CARRIED, 0.0, 0.0)
+    bench.hand.usual = (ON_A_LINK, 0.0, 0.0)
     for _ in range(ticks):
         bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=True, driven=False)
     assert bench.alone.doubtful is (ticks > 75)

@@ -5,15 +5,16 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import AWAY, HALF, UNFELT, UnintendedMotion
-from pendant.guided.user_force import CARRIED, UserForce
+from pendant.guided.unintended_motion import UnintendedMotion
+from pendant.guided.user_force import ON_A_LINK, UserForce
 from pendant.limits.parameters import reference
+from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Vector
 from tests.pendant.estimates import SENSOR
-from tests.pendant.guided.test_unintended_motion import PAYS, Bench, at, creep
+from tests.pendant.guided.test_unintended_motion import AWAY, PAYS, Bench, at, creep
 
 ALLOWED = ticks(Settings().unexplained.time)
 
@@ -43,7 +44,7 @@ def test_in_the_first_tick_already_the_arm_may_be_too_far() -> None:
     assert Bench().see(at(0.99 * AWAY, 0.0)) is None
 
 
-@pytest.mark.parametrize(("usual", "led"), [(0.99 * (CARRIED + 2.0), True), (1.01 * (CARRIED + 2.0), False)])
+@pytest.mark.parametrize(("usual", "led"), [(0.99 * (ON_A_LINK + 2.0), True), (1.01 * (ON_A_LINK + 2.0), False)])
 @pytest.mark.parametrize("axis", range(3))
 def test_what_hangs_at_the_flange_is_known_beyond_what_may_be_drift(axis: int, usual: float, led: bool) -> None:
     """4 N, and 2 N that may be the sensor's: up to there a hand on a link leads the arm."""
@@ -72,14 +73,14 @@ def test_a_light_hand_at_the_flange_pays_for_a_way_from_rest(share: float, stopp
 
 @pytest.mark.parametrize(("sensor", "begins"), [(True, 0.0), (False, 0.008)])
 def test_the_way_is_told_from_rest_and_without_the_sensor_from_where_it_moved(sensor: bool, begins: float) -> None:
-    """It creeps to 8 mm, moves on there, and is at 20 mm in the next tick."""
+    """It creeps to 8 mm, moves on there, and is at 30 mm in the next tick."""
     bench = Bench(sensor)
     assert bench.until([at(0.004, 0.01), at(0.008, 0.1)]) is None
-    told = bench.see(at(0.02, 0.1))
+    told = bench.see(at(0.03, 0.1))
     assert told is not None
-    assert told["distance"] == pytest.approx(1000.0 * (0.02 - begins))
+    assert told["distance"] == pytest.approx(1000.0 * (0.03 - begins))
     assert told["time"] == pytest.approx(2 * TICK)
-    assert 0.02 - begins > (AWAY if sensor else UNFELT)
+    assert 0.03 - begins > AWAY
 
 
 @pytest.mark.parametrize(("way", "stopped"), [(AWAY, True), (1.001 * AWAY, False)])

@@ -5,17 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from pendant.guided.user_force import (
-    CARRIED,
-    DOUBT,
-    FELT_BY_JOINTS,
-    JOINTS_SWING,
-    LED_SETTLING,
-    ON_A_LINK,
-    SETTLING,
-    SWING,
-    UserForce,
-)
+from pendant.guided.user_force import FELT_BY_JOINTS, JOINTS_SWING, ON_A_LINK, SWING, UserForce
+from pendant.sensor.hand_model import KEEPS, STEADY
+from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
@@ -60,7 +52,7 @@ def test_a_change_along_gravity_becomes_payload_like() -> None:
     hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
     down = estimate(force=[0.0, 0.0, -20.0])
     assert after(hand, 0.1, down)[2] < -15.0
-    after(hand, SETTLING - 0.1, down)
+    after(hand, KEEPS - 0.1, down)
     assert hand.payload[2] == pytest.approx(-20.0 * (1.0 - math.exp(-1.0)), rel=1e-3)
     assert after(hand, 12.0, down) == pytest.approx((0.0, 0.0, 0.0), abs=0.05)
 
@@ -70,8 +62,8 @@ def test_while_the_arm_is_led_that_takes_longer() -> None:
     slow, led = UserForce(estimate(), ZEROS, SENSOR.offset_force), UserForce(estimate(), ZEROS, SENSOR.offset_force)
     after(slow, 2.0, estimate(speed=MOVES, **down))  # type: ignore[arg-type]
     after(led, 2.0, estimate(speed=1.01 * MOVES, **down))  # type: ignore[arg-type]
-    assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / SETTLING)), rel=1e-3)
-    assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / LED_SETTLING)), rel=1e-3)
+    assert slow.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / KEEPS)), rel=1e-3)
+    assert led.payload[2] == pytest.approx(-2.0 * (1.0 - math.exp(-2.0 / STEADY)), rel=1e-3)
 
 
 def test_without_a_sensor_the_joints_tell_from_a_size_on() -> None:
@@ -93,9 +85,9 @@ def test_a_push_on_a_link_is_felt_by_the_joints_alone() -> None:
     [
         (1.001 * ON_A_LINK, 0.0, "joints"),
         (0.999 * ON_A_LINK, 0.0, "sensor"),
-        (1.001 * ON_A_LINK, 0.999 * CARRIED, "joints"),
-        (1.001 * ON_A_LINK, CARRIED, "sensor"),
-        (1.001 * FELT_BY_JOINTS, CARRIED, "joints"),
+        (1.001 * ON_A_LINK, 0.999 * ON_A_LINK, "joints"),
+        (1.001 * ON_A_LINK, ON_A_LINK, "sensor"),
+        (1.001 * FELT_BY_JOINTS, ON_A_LINK, "joints"),
     ],
 )
 def test_a_gentle_push_on_a_link_counts_while_the_sensor_feels_nothing(felt: float, force: float, user: str) -> None:
@@ -155,7 +147,7 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
         now.F_joints = first.F_joints + joints_feel
         change = sensor_feels + 0.2 * unit()
         now.F_user[:3] = change + payload * up + now.R_BF @ offset
-        settle = share(SETTLING if tick % 3 else LED_SETTLING)
+        settle = share(KEEPS if tick % 3 else STEADY)
         slow_joints += settle * (joints_feel @ up - slow_joints)
         by_joints += share(JOINTS_SWING) * (joints_feel - slow_joints * up - by_joints)
         size, user, gone = np.linalg.norm(by_joints), by_joints, slow_joints
@@ -163,14 +155,14 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
         if use_wrench:
             slow += settle * (change @ up - slow)
             by_sensor += share(SWING) * (change - slow * up - by_sensor)
-            counts = counts or (size >= ON_A_LINK and np.linalg.norm(change) < CARRIED)
+            counts = counts or (size >= ON_A_LINK and np.linalg.norm(change) < ON_A_LINK)
             if not counts or np.linalg.norm(by_sensor) >= FELT_BY_JOINTS:
                 user, counts = by_sensor, True
             gone = residual + slow
             change_seen = change
         else:
             change_seen = np.zeros(3)
-        counts = counts and np.linalg.norm(user) >= DOUBT * abs(payload)
+        counts = counts and np.linalg.norm(user) >= HALF * abs(payload)
         hand.step(now, use_wrench, MOVES)
         assert hand.user == pytest.approx(user if counts else np.zeros(3))
         assert hand.change == pytest.approx(change_seen)
@@ -180,10 +172,10 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
 @pytest.mark.parametrize(
     ("felt", "force", "before", "user"),
     [
-        (FELT_BY_JOINTS, CARRIED, 0.0, "joints"),
+        (FELT_BY_JOINTS, ON_A_LINK, 0.0, "joints"),
         (ON_A_LINK, 0.0, 0.0, "joints"),
         (2.0 * FELT_BY_JOINTS, FELT_BY_JOINTS / share(SWING), 0.0, "sensor"),
-        (0.0, DOUBT * 20.0 / share(SWING), SENSOR.offset_force + 20.0, "sensor"),
+        (0.0, HALF * 20.0 / share(SWING), SENSOR.offset_force + 20.0, "sensor"),
     ],
 )
 def test_a_force_counts_from_its_limit_on(felt: float, force: float, before: float, user: str) -> None:

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from pendant.guided.work import ASKED, LEFT, Work
+from pendant.guided.work import LEFT, Work
+from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import Vector
@@ -14,7 +15,7 @@ from tests.pendant.estimates import estimate
 BEFORE = (0.0, -8.0, 0.0, 0.0, 0.0, 0.0)
 FRICTION = (0.0, 10.0, 0.0, 2.0, 0.0, 0.0)
 SPEED = 0.2  # of shoulder and wrist 1 [rad/s]
-PAYS = ASKED * LEFT * (FRICTION[1] + FRICTION[3])  # [N·m] on either, as both turn alike
+PAYS = HALF * LEFT * (FRICTION[1] + FRICTION[3])  # [N·m] on either, as both turn alike
 
 
 def moving(shoulder: float = 0.0, wrist: float = 0.0, way: float = 1.0, energy: float = 0.0, speed: float = SPEED) -> Estimate:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import WINDOW
-from pendant.sensor.payload_known import STEADY, STOOD, PayloadKnown
+from pendant.sensor.payload_known import STILL, STOOD, PayloadKnown
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
@@ -205,7 +205,7 @@ def test_a_hand_is_waited_for_to_let_go() -> None:
     assert arm.stand(1).sure, "nothing was given up"
 
 
-@pytest.mark.parametrize(("windows", "kept"), [(STEADY - 1, True), (STEADY, False)])
+@pytest.mark.parametrize(("windows", "kept"), [(STILL - 1, True), (STILL, False)])
 def test_what_contradicts_for_five_seconds_is_the_sensor(windows: int, kept: bool) -> None:
     arm = Arm().stand().turn(60.0).stand().turn(60.0)
     stepped = BIAS + across(3.0)
@@ -214,13 +214,13 @@ def test_what_contradicts_for_five_seconds_is_the_sensor(windows: int, kept: boo
     arm.bias = BIAS
     assert arm.sure is kept
     arm.bias = stepped
-    assert arm.stand(STEADY + STOOD).turn(60.0).mass == pytest.approx(0.0, abs=0.05)
+    assert arm.stand(STILL + STOOD).turn(60.0).mass == pytest.approx(0.0, abs=0.05)
 
 
 def test_contradictions_are_counted_over_several_postures() -> None:
     arm = Arm().stand().turn(60.0).stand().turn(60.0)
     arm.bias = BIAS + across(3.0)
-    arm.stand(STEADY // 2).turn(60.0).stand(STEADY // 2)
+    arm.stand(STILL // 2).turn(60.0).stand(STILL // 2)
     arm.bias = BIAS
     assert not arm.sure
 

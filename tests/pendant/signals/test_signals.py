@@ -270,7 +270,7 @@ def test_too_short_a_confirmation_is_none_and_a_push_must_let_go() -> None:
 PULLS = {
     "push": ({"force": 20.0}, {"force": 4.0}, {"force": 2.0}),
     "twist": ({"torque": 4.0}, {"torque": 0.8}, {"torque": 0.5}),
-    "joints": ({"tau_ext": 9.0, "wrench_valid": False}, {"tau_ext": 2.5, "wrench_valid": False}, {"wrench_valid": False}),
+    "joints": ({"tau_ext": 9.0, "wrench_valid": False}, {"tau_ext": 3.5, "wrench_valid": False}, {"wrench_valid": False}),
 }
 """Of a source: a pull, one that is no signal but still felt, and a hand that is off."""
 

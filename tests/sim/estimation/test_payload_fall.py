@@ -15,8 +15,9 @@ from sim.arm.scenario import Load, Scenario
 from sim.estimation.payload_fall import PayloadFall
 from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
-from sim.flange.external_wrench import LONGEST, ExternalWrench
+from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
+from sim.flange.wrench_hypotheses import LONGEST
 from sim.plant.changes import DropPayload, SensorFault
 from sim.plant.touch import Pull, Push
 from sim.rigid_body.dynamics import Dynamics

@@ -9,14 +9,15 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.guided.odds import KNOWN, SUSPECTED
+from pendant.sensor.hand_model import LARGEST, LEVER, RISE, TREMOR
+from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
 from sim.flange import wrench_hypotheses as bank
-from sim.flange.external_wrench import KEPT, LONGEST, ExternalWrench
+from sim.flange.external_wrench import KEPT, ExternalWrench
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.wrench_hypotheses import BEFORE, FREED, LATE, LEVER, LN_OFTEN, LN_RARE, LOST, MORE, SHORTEST, STRAY
+from sim.flange.wrench_hypotheses import BEFORE, FREED, LATE, LN_OFTEN, LN_RARE, LONGEST, LOST, MORE, SHORTEST, STRAY
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ TOOL = Body(0.5, np.array([0.0, 0.0, 0.03]), np.eye(3) * 0.0005)
 UP = np.array([0.0, 0.0, GRAVITY])
 NO_BIAS = (0.0,) * 6
 NOT_MOVED = np.zeros(3)
+OFFSET = math.hypot(0.3, 0.15 / math.sqrt(50.0))  # of the bias, beside what it is taken for [N]: walk, and the mean of a window
 FREE_MASS = sum(UR5E.masses.mass[2:]) + TOOL.mass + PAYLOAD.mass  # [kg] forearm, wrists and load
 WEIGHT = PAYLOAD.mass * GRAVITY
 NEEDS = np.concatenate([PAYLOAD.mass * UP, np.cross(PAYLOAD.com, PAYLOAD.mass * UP)])
@@ -336,11 +338,11 @@ def goes_on(x: Array, tick: int) -> float:
     for extra in range(3):
         for late in (0.0, LATE):
             variances = [
-                1.25 * of_noise(k, 0, late) + 9.0 * steep[k] * (extra > 0) + (bank.TOUCH * (1.0, LEVER)[k]) ** 2 * (extra > 1)
+                1.25 * of_noise(k, 0, late) + 9.0 * steep[k] * (extra > 0) + (TREMOR * (1.0, LEVER)[k]) ** 2 * (extra > 1)
                 for k in range(2)
             ]
             ways.append(dense(x[tick], x0, np.diag(np.repeat(variances, 3))) - LN_OFTEN)
-    wide = [(0.5 * bank.HAND * lever) ** 2 for lever in (1.0, LEVER)]
+    wide = [(0.5 * LARGEST * lever) ** 2 for lever in (1.0, LEVER)]
     return float(np.logaddexp.reduce([*ways, dense(x[tick], x0, np.diag(np.repeat(wide, 3))) - LN_RARE]))
 
 
@@ -350,7 +352,7 @@ def of_window(x: Array, p: Array, felt: Array, attitudes: list[Array]) -> tuple[
     quiet = -3.0 - 1.5 * sum(math.log(of_noise(axis, 0, 0.0)) for axis in range(2))
     # No change, one in the newest tick, and one in the tick before it, which may be anything.
     early = [sum(ahead[tick] for tick in range(BEFORE, KEPT - n)) + quiet for n in (1, 2)]
-    wide = np.repeat([(0.5 * bank.HAND) ** 2, (0.5 * bank.HAND * LEVER) ** 2], 3)
+    wide = np.repeat([(0.5 * LARGEST) ** 2, (0.5 * LARGEST * LEVER) ** 2], 3)
     early[1] += dense(attitudes[-1] @ x[-1], 0.0, np.diag(wide))
     other, lost, stepped = [sum(ahead.values()) + math.log(LONGEST + 1.0), *early], [-math.inf], [-math.inf]
     for length in range(SHORTEST, LONGEST + 1):
@@ -395,21 +397,21 @@ def of_change(
     for k in range(6):
         axis, lever = k // 3, (1.0, LEVER)[k // 3]
         loaded, swings, empty = of_noise(axis, 0, 0.0), of_noise(axis, 0, LATE), of_noise(axis, 1, 0.0)
-        jumps.append((bank.TOUCH * lever) ** 2 + 9.0 * steep[axis] + swings / BEFORE)
-        wide = (0.5 * bank.HAND * lever) ** 2
+        jumps.append((TREMOR * lever) ** 2 + 9.0 * steep[axis] + swings / BEFORE)
+        wide = (0.5 * LARGEST * lever) ** 2
         for late, variance in ((0.0, loaded), (LATE, swings)):
             touched = variance * eye + jumps[k] * ones
-            outer = (0.5 * bank.HAND / bank.RISE * lever) ** 2 * np.outer(rise, rise)
+            outer = (0.5 * LARGEST / RISE * lever) ** 2 * np.outer(rise, rise)
             hands["rising", late] += dense(after[:, k], x0[k], touched + outer)
             hands["steady", late] += dense(after[:, k], x0[k], touched)
-            hands["nobody", late] += dense(after[:, k], 0.0, variance * eye + (bank.OFFSET * lever) ** 2 * ones)
+            hands["nobody", late] += dense(after[:, k], 0.0, variance * eye + (OFFSET * lever) ** 2 * ones)
         anything += dense(after[:, k], 0.0, wide * eye)
         steps[k * length : (k + 1) * length, k * length : (k + 1) * length] = swings * eye + wide * ones
         for kind in (LOST, FREED, MORE):
             left = swings if kind == MORE else empty
             credit[kind] += 0.0 if kind == MORE else 0.5 * length * math.log(loaded / left)
             offset = (bank.GAIN * WEIGHT * lever) ** 2 + ((bank.CENTRE * WEIGHT) ** 2 if axis else 0.0)
-            offset += (bank.OFFSET * lever) ** 2 if kind == FREED else 4.0 * steep[axis] + swings / BEFORE
+            offset += (OFFSET * lever) ** 2 if kind == FREED else 4.0 * steep[axis] + swings / BEFORE
             parts[kind].append(after[:, k] - (0.0 if kind == FREED else x0[k]))
             covariances[kind].append(left * eye + offset * ones)
     off = (after - x0).T.ravel()
@@ -432,7 +434,7 @@ def of_change(
         swings = share * (np.diff(needs, axis=0) - (needs[-1] - needs[0]) / (length - 1.0))
         line = share * (np.diff(lines, axis=0) - (lines[-1] - lines[0]) / (length - 1.0))  # a turn makes no force along it
         off = [
-            2.0 * ((bank.TOUCH * (1.0, LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
+            2.0 * ((TREMOR * (1.0, LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
             for axis, late in ((0, LATE), (1, LATE), (0, 0.0))
         ]
         unlikely = np.sum(way / np.array(jumps)) + np.sum(line**2) * (1.0 / off[2] - 1.0 / off[0])
