@@ -27,7 +27,7 @@ from pendant.robot.joint_sensors import JointSensors
 from pendant.robot.requests import Calls
 from pendant.robot.robot_mode import Robot
 from pendant.robot.safety_inputs import SafetyInputs
-from pendant.sensor.sensor_spec import SensorSpec
+from pendant.sensor.sensor_spec import USUAL, SensorSpec
 from pendant.settings.schema import ticks
 from pendant.settings_lock import change, locked
 from pendant.signals.enabling_device import EnablingDevice
@@ -67,7 +67,7 @@ class Supervisor:
         frames: Mapping[str, Pose] | None = None,
         ranges: tuple[float, ...] | None = None,
         equipment: Equipment | None = None,
-        sensor: SensorSpec | None = None,
+        sensor: SensorSpec = USUAL,
         shape: ArmShape | None = None,
     ) -> None:
         """
@@ -80,7 +80,7 @@ class Supervisor:
             frames: poses X_BR of what they lie in, apart from the base and the arm's own parts.
             ranges: largest angle of each joint either way [rad]; None: joints turn without end.
             equipment: what is at the flange, and the tools to choose from; None: nothing.
-            sensor: what is known of the flange force/torque sensor; None: that of a UR5e.
+            sensor: what is known of the flange force/torque sensor.
             shape: of the arm; None: nothing is known of it, and the payload wizard turns no wrist by itself.
         """
         self.settings = settings
@@ -93,11 +93,11 @@ class Supervisor:
         self._mean = WrenchMean()
         self._sensors = JointSensors()
         self._sequencer = Sequencer()
-        self._monitor = ContactMonitor()
         self._contacts: tuple[Contact, ...] = ()  # of this tick
         rated = rated or (100.0,) * n_joints
         self.containment = Containment(borders, frames or {})
-        sensor, zones = sensor or SensorSpec(), JointZones(rated, ranges or (math.inf,) * n_joints)
+        zones = JointZones(rated, ranges or (math.inf,) * n_joints)
+        self._monitor = ContactMonitor(sensor)
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)

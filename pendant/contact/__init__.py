@@ -1,1 +1,1 @@
-"""Changes in contact."""
+"""Changes in contact. Uses sensor/."""

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from pendant.contact.settings import BufferStatistic, ContactUse
+from pendant.sensor.sensor_spec import USUAL, SensorSpec
 from pendant.tick.modes import Mode
 
 LIGHTEST = 0.3
@@ -51,7 +52,16 @@ def scale_of(use: ContactUse, mode: Mode, speed: float) -> float:
     return scale * use.free_drive_factor if mode is Mode.FREE_DRIVE else scale
 
 
-def limits(use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, speed: float, lever: float = 0.0) -> ContactLimits:
+def limits(
+    use: ContactUse,
+    mode: Mode,
+    *,
+    mass: float,
+    effective_mass: float,
+    speed: float,
+    lever: float = 0.0,
+    sensor: SensorSpec = USUAL,
+) -> ContactLimits:
     """The thresholds of one source now.
 
     Args:
@@ -61,10 +71,12 @@ def limits(use: ContactUse, mode: Mode, *, mass: float, effective_mass: float, s
         effective_mass: of the arm behind the part [kg].
         speed: of the tool centre point [m/s].
         lever: of the carried mass: the angular acceleration's noise counts with it [m].
+        sensor: has the noise where the settings have none.
     """
     scale = scale_of(use, mode, speed)
     # Of the three axes of a turning, each point feels two.
-    noise_f, noise_a = use.force_noise, (use.acceleration_noise**2 + 2.0 / 3.0 * (use.turn_noise * lever) ** 2) ** 0.5
+    noise_f, straight = use.force_noise or sensor.noise_force, use.acceleration_noise or sensor.noise_acceleration
+    noise_a = (straight**2 + 2.0 / 3.0 * (use.turn_noise * lever) ** 2) ** 0.5
     slow_force = use.slow_force + use.slow_payload * mass
     pair = 2.0**0.5  # standard deviation of a difference of two samples, over one sample's
     noisy = use.noise_limit * pair

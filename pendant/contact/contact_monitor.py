@@ -11,6 +11,7 @@ from pendant.contact.detector import Detector, Finding
 from pendant.contact.history import SIZE, SUMMED
 from pendant.contact.link_contact import LINKS, LinkChange, LinkWatch
 from pendant.contact.settings import ContactUse
+from pendant.sensor.sensor_spec import USUAL, SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
 from pendant.tick.pose import flat, turned
@@ -51,9 +52,10 @@ class ContactMonitor:
     """
 
     # The last samples of all sources and poses: more than all the rest of a state, and the same again after as many equal ticks.
-    NOT_STATE = ("detectors", "links", "_poses", "_kept", "_limits", "_keys")
+    NOT_STATE = ("detectors", "links", "_poses", "_kept", "_limits", "_keys", "_sensor")
 
-    def __init__(self) -> None:
+    def __init__(self, sensor: SensorSpec = USUAL) -> None:
+        self._sensor = sensor
         self.detectors = tuple(Detector() for _ in AT_TOOL)
         self.links = LinkWatch()
         self._limits: list[ContactLimits | None] = [None] * len(AT_TOOL)
@@ -122,8 +124,8 @@ class ContactMonitor:
         key = (use, mode, signal.mass, signal.lever, signal.effective_mass, speed if use.speed_share else 0.0)
         limit = self._limits[index]
         if limit is None or key != self._keys[index]:
-            mass, effective = signal.mass, signal.effective_mass
-            limit = limits(use, mode, mass=mass, effective_mass=effective, speed=speed, lever=signal.lever)
+            mass, effective, sensor = signal.mass, signal.effective_mass, self._sensor
+            limit = limits(use, mode, mass=mass, effective_mass=effective, speed=speed, lever=signal.lever, sensor=sensor)
             self._keys[index], self._limits[index] = key, limit
         return limit
 

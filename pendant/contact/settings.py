@@ -62,12 +62,13 @@ class ContactUse(Section, frozen=True, forbid_unknown_fields=True, kw_only=True)
     angle: Annotated[
         float, _number(0.0, 0.95, "", "CD-0", text="directions are opposite when minus their cosine is beyond this")
     ] = 0.3
-    force_noise: Annotated[float, _number(0.02, 2.0, "N", "CD-0", text="standard deviation of the flange force, each axis")] = (
-        0.15
-    )
+    force_noise: Annotated[
+        float, _number(0.0, 2.0, "N", "CD-0", text="standard deviation of the flange force, each axis; 0: of the arm's file")
+    ] = 0.0
     acceleration_noise: Annotated[
-        float, _number(0.01, 2.0, "m/s²", "CD-0", text="standard deviation of the acceleration, each axis")
-    ] = 0.1
+        float,
+        _number(0.0, 2.0, "m/s²", "CD-0", text="standard deviation of the acceleration, each axis; 0: of the arm's file"),
+    ] = 0.0
     turn_noise: Annotated[
         float, _number(0.0, 20.0, "rad/s²", "CD-0", text="standard deviation of the angular acceleration, each axis")
     ] = 1.2

@@ -17,3 +17,7 @@ class SensorSpec(NamedTuple):
     warm_up: float = 600.0  # time constant with which the drift dies away [s]
     walk_force: float = 0.3  # standard deviation of the bias' wandering when it is warm [N]
     walk_time: float = 1800.0  # time constant of that [s]
+
+
+USUAL = SensorSpec()
+"""That of a UR5e."""

@@ -4,6 +4,7 @@ import msgspec
 import pytest
 
 from pendant.contact.contact_limits import limits
+from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.modes import Mode
 from tests.pendant.contacts import USE
 
@@ -33,6 +34,17 @@ def test_thresholds_follow_sensitivity_speed_and_mode() -> None:
         for name in ("acceleration_sq", "clear_sq", "clear_acceleration_sq", "ratio_acceleration_sq"):
             assert getattr(other, name) == pytest.approx(factor**2 * getattr(base, name)), name
     assert base.noise_force_sq == pytest.approx((3.0 * PAIR * 0.15) ** 2)
+
+
+def test_noise_is_that_of_the_arms_file_unless_a_setting_says_another() -> None:
+    sensor = SensorSpec(noise_force=0.45, noise_acceleration=0.2)
+    file, both = (
+        limits(use, Mode.RUN, mass=2.0, effective_mass=2.0, speed=0.0, sensor=sensor)
+        for use in (USE, msgspec.structs.replace(USE, force_noise=0.3, acceleration_noise=0.05))
+    )
+    assert (file.force_variance, file.acceleration_variance) == (pytest.approx(0.45**2), pytest.approx(0.2**2))
+    assert (both.force_variance, both.acceleration_variance) == (pytest.approx(0.3**2), pytest.approx(0.05**2))
+    assert file.noise_force_sq == pytest.approx((3.0 * PAIR * 0.45) ** 2)
 
 
 def test_a_load_off_the_sensor_makes_its_acceleration_noisy() -> None:
