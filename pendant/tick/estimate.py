@@ -71,7 +71,7 @@ class Estimate:
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
     current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]
-    energy: float = 0.0  # kinetic, of links and rotors [J]
+    energy: float = 0.0  # kinetic, of links and rotors; in free-drive only [J]
     lost_odds: float = -math.inf  # log of the odds that the payload is gone, not a hand that changed; in free-drive only [nats]
     lost_share: float = 0.0  # of the payload that is gone then
     step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]

@@ -88,6 +88,7 @@ class Estimator:
         self.fall = PayloadFall(arm, dynamics, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
+        self._free = False  # free-drive was on in the last tick
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
@@ -140,9 +141,6 @@ class Estimator:
         moving = self._estimate_torques(sample, use, learn)
         self._observe(sample, learn and moving)
         self.forces.update(sample, self.q, q, self.transmission.external)
-        free, bias = bias is not None, bias if sample.wrench_valid else None
-        self.wrench.update(bias, accelerations=sample.acceleration_valid)
-        self.answer.update(bias is not None)
         known, valid = self._known, sample.joints_valid
         if known is None:
             self._known = known = self._all(sample)
@@ -155,11 +153,20 @@ class Estimator:
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
-        known.energy = self._energy(rigid.energy)
+        if bias is not None or self._free:
+            self._free = bias is not None
+            self._ask_whose(known, bias if sample.wrench_valid else None)
+        return known
+
+    def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
+        """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
+        self.wrench.update(bias, accelerations=known.acceleration_valid)
+        self.answer.update(bias is not None)
+        known.energy = self._energy(self._dynamics.recursion.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
         known.step_odds, known.step_force = self.answer.odds, self.answer.size
-        known.payload_fell = self.fall.update(self.q, q, self.transmission, free=free, sensed=bias is not None)
-        return known
+        sensed = bias is not None
+        known.payload_fell = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
 
     def _energy(self, links: Array) -> float:
         """Kinetic energy of the `links` (1,) and of the rotors [J]."""

@@ -43,17 +43,17 @@ def estimator() -> Estimator:
     return Estimator(UR5E, calibration.nominal(UR5E), dynamics, np.array(PROBE.tcp))
 
 
-def follow(angle, ticks: int = 400):
+def follow(angle, ticks: int = 400, bias=None):
     device = estimator()
     for k in range(ticks):
         q = angle(0.002 * k)
-        result = device.update(sample(q, q), 0, "")
+        result = device.update(sample(q, q), 0, "", bias=bias)
     return result
 
 
-def test_the_kinetic_energy_is_that_of_links_and_rotors() -> None:
+def test_the_kinetic_energy_in_free_drive_is_that_of_links_and_rotors() -> None:
     speed = np.array([0.1, -0.5, 1.0, -2.0, 3.0, 0.3])
-    result = follow(lambda t: BENT + speed * t)
+    result = follow(lambda t: BENT + speed * t, bias=(0.0,) * 6)
     inertia = estimator()._dynamics.mass(result.q) + np.diag(UR5E.motors.rotor_inertia)
     assert result.energy == pytest.approx(0.5 * speed @ inertia @ speed, rel=1e-6)
 
