@@ -23,6 +23,7 @@ from sim.simulation import Simulation
 LONG = apply(SETTINGS, {"free_drive.period": 10.0})
 PACE = 0.25  # [m/s] of the hand that guides
 HANDS = 10  # touches in one run
+LIGHTEST = 0.3  # [kg] that a drop ought to be noticed of
 
 
 class Drop(NamedTuple):
@@ -41,6 +42,7 @@ class Fall(NamedTuple):
     delay: float  # to STOP [ms], infinite without
     rise: float  # against gravity, beyond what the same speed needs to stop [mm]
     ended: bool  # out of free-drive in the end
+    noticed: bool  # as a payload that fell
 
 
 class Touched(NamedTuple):
@@ -84,15 +86,18 @@ def measure_drop(drop: Drop) -> Fall:
         now = flange(device)
         speed, before = (now - before) * 0.5, now
     start, delay, highest, mode = before, float("inf"), 0.0, Mode.FREE_DRIVE
+    noticed = False
     for tick in range(1500):
         # the hand that guided lets go with the drop: it has nothing to hold on to
-        mode = device.tick(Wishes(IDLE.inputs, (), (DropPayload(),) if tick == 0 else ())).mode
+        decision = device.tick(Wishes(IDLE.inputs, (), (DropPayload(),) if tick == 0 else ()))
+        mode = decision.mode
+        noticed = noticed or any(event.kind is Kind.STOPPED_PAYLOAD for event in decision.events)
         highest = max(highest, float((flange(device) - start) @ up))
         if mode is Mode.STOP and delay == float("inf"):
             delay = 2.0 * (tick + 1)
     own = max(float(speed @ up), 0.0)
     stopping = 1000.0 * own * 0.06  # [mm] what a stop from that speed takes anyway: 15 mm from 250 mm/s
-    return Fall(drop, entered, float(np.linalg.norm(speed)), delay, highest - stopping, mode is not Mode.FREE_DRIVE)
+    return Fall(drop, entered, float(np.linalg.norm(speed)), delay, highest - stopping, mode is not Mode.FREE_DRIVE, noticed)
 
 
 def measure_hands(case: Case) -> Touched:
@@ -137,6 +142,14 @@ def measure(report: Report) -> None:
         mass = float(rng.uniform(2.0, heaviest(arm)) if k % 3 else rng.uniform(0.5, 2.0))
         drops.append(Drop(case._replace(true=mass, configured=mass), bool(k % 2)))
     falls = [fall for fall in spread(measure_drop, drops) if fall.entered]
+    if senses(arm):
+        lightest = [Drop(case._replace(true=LIGHTEST, configured=LIGHTEST), bool(k % 2)) for k, case in enumerate(cases)]
+        found = [fall for fall in spread(measure_drop, lightest) if fall.entered]
+        for how, guided in (("at rest", False), ("guided", True)):
+            some = [fall for fall in found if fall.drop.guided is guided]
+            report.share(f"drops of {LIGHTEST:g} kg, {how}: noticed", sum(fall.noticed for fall in some), len(some))
+        rise = max(fall.rise for fall in found)
+        report.row(f"drops of {LIGHTEST:g} kg: rise beyond stopping", rise, "mm", at_most=20.0, n=len(found))
     heavy = [fall for fall in falls if fall.drop.case.true >= 2.0]
     light = [fall for fall in falls if fall.drop.case.true < 2.0]
     n = len(heavy)

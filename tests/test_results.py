@@ -12,7 +12,7 @@ import pytest
 
 from benchmarks.common import Options, Report, bound, code_digest
 from tests.test_benchmarks import BENCHES
-from tools import results
+from tools import reliability, results
 
 NEW, OLD = "0123456789ab", "ba9876543210"
 
@@ -229,3 +229,20 @@ def test_the_committed_page_is_of_one_code() -> None:
     page = (results.PAGES / "README.md").read_text()
     assert all(f"Code `{digest}`" in page for digest in digests)
     assert len(digests) <= 1
+
+
+def test_how_often_what_is_told_is_true_is_a_curve_over_all_bases(tmp_path: Path) -> None:
+    rows = ("a fall is told with 90 to 99 %: it is one", "a fall is told with 99 to 100 %: it is one")
+    bench(tmp_path, "observer", 1000, (rows[0], 0.5, "", None, 4), (rows[1], 1.0, "", None, 30))
+    bench(tmp_path, "observer", 2000, (rows[0], "no case", "", None, 0), (rows[1], 0.9, "", None, 10))
+    bench(tmp_path, "observer", 3000, (rows[1], 0.1, "", None, 10), digest=OLD)
+    documents = [document for document in results.read(tmp_path) if document["digest"] == NEW]
+    assert reliability.points(documents) == {
+        "fall": [reliability.Point(0.9, 0.99, 0.5, 4), reliability.Point(0.99, 1.0, pytest.approx(0.975), 40)]
+    }
+    assert make(tmp_path, tmp_path / "pages", "--digest", NEW) == 0
+    assert (tmp_path / "pages" / reliability.NAME).stat().st_size > 1000
+    assert f"]({reliability.NAME})" in (tmp_path / "pages" / "README.md").read_text()
+    bench(tmp_path / "hold", "hold", 1000, ("drift", 0.1, "mm", 0.2, 9))
+    assert make(tmp_path / "hold", tmp_path / "none", "--digest", NEW) == 0
+    assert not (tmp_path / "none" / reliability.NAME).exists()

@@ -12,6 +12,7 @@ from typing import Any
 from benchmarks.arms import USUAL
 from benchmarks.common import NO_CASE, bound, code_digest, shown
 from tools.missed import Miss, Unreadable, followed, history, line, remember
+from tools.reliability import NAME, draw, points
 
 ROOT = Path(__file__).parent.parent
 PAGES = ROOT / "docs" / "results"
@@ -117,6 +118,14 @@ def page(documents: list[Document], digest: str) -> str:
             "|---|---|---:|---|---:|---:|---:|---|",
         ]
         lines += [*map(line, table), ""]
+    if points(documents):
+        lines += [
+            "## Reliability",
+            "",
+            "Of what bench `observer` was told so surely, so much was true; bars are 95 % bounds.",
+            "",
+        ]
+        lines += [f"![Share that is true over the probability that was told]({NAME})", ""]
     if missing:
         lines += ["## Not measured with this code", "", ", ".join(missing) + ".", ""]
     return "\n".join(lines)
@@ -220,6 +229,8 @@ def main(arguments: list[str]) -> int:
         return 2
     (values.out / "README.md").write_text(page(documents, digest), encoding="utf-8")
     write_values(documents, digest, values.out / "results.csv")
+    if curves := points([document for document in documents if document["digest"] == digest]):
+        draw(curves, values.out / NAME)
     (values.out / "history.md").write_text(history(known, led_to), encoding="utf-8")
     return 0
 

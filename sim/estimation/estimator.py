@@ -128,8 +128,7 @@ class Estimator:
                 theta[0], q[0] = angles[0], angles[1]
                 self._wanted = None
             if not self._relaxed:
-                self._relaxed = True
-                self._own["rest"] = angles[0] - angles[1]
+                self._relaxed, self._own["rest"] = True, angles[0] - angles[1]
             if answered is not None and self._wanted is not None and answered.q is not self._wanted.q:
                 plan(self._record, tuple(self._wanted), tuple(answered))
             self._wanted = answered
@@ -160,12 +159,12 @@ class Estimator:
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
+        sensed = bias is not None
         self.wrench.update(bias, accelerations=known.acceleration_valid)
-        self.answer.update(bias is not None)
+        self.answer.update(sensed)
         known.energy = self._energy(self._dynamics.recursion.energy)
         known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
         known.step_odds, known.step_force = self.answer.odds, self.answer.size
-        sensed = bias is not None
         known.payload_fell = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
 
     def _energy(self, links: Array) -> float:

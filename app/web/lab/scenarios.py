@@ -29,7 +29,15 @@ TOPICS = {
         *("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison", "checked-current"),
         *("payload-moves-the-arm", "payload-gains-speed", "payload-moves-into-a-wall"),
     ),
-    "Free-drive ends": ("left-alone", "short-press", "too-fast", "sensor-fails", "way-back"),
+    "Free-drive ends": (
+        "left-alone",
+        "short-press",
+        "too-fast",
+        "sensor-fails",
+        "payload-falls",
+        "payload-falls-unseen",
+        "way-back",
+    ),
     "Limits, walls, locked axes": (
         *("soft-limits", "dynamic-limits", "joint-limits", "vertical-speed", "wall-walked-down", "wall-made", "wall-pushes-back"),
         *("wall-ends-free-drive", "axis-locks", "only-the-elbow"),
