@@ -86,7 +86,7 @@ kernels: $(VENV)/dev.stamp
 # All tests that are neither `computing` nor `pushed`.
 paced: $(VENV)/dev.stamp | pictures browser
 	$(BIN)/pytest -q -n $(WORKERS) --dist worksteal $(addprefix --ignore=,tests/e2e $(COMPUTING)) --durations=10
-	$(BIN)/pytest -q -m "not every_size" tests/e2e $(addprefix --ignore=,$(PUSHED))
+	$(BIN)/pytest -q -m "not every_size" tests/e2e $(addprefix --ignore=,$(PUSHED)) --durations=10
 
 # At the lowest priority: what has a clock to keep does not wait for these.
 computing: $(VENV)/dev.stamp

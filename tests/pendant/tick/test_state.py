@@ -104,14 +104,14 @@ def test_what_is_neither_a_value_nor_a_part_is_refused(value: object) -> None:
 
 
 def test_only_what_is_known_is_left_out() -> None:
-    """Buffers of the contact detectors, and what is made of settings alone."""
+    """Buffers of the contact detectors, and what is made of settings and of the arm's file alone."""
     found: dict[str, list[str]] = {}
     for path in Path("pendant").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             for line in node.body if isinstance(node, ast.ClassDef) else []:
                 if isinstance(line, ast.Assign) and ast.unparse(line.targets[0]) == "NOT_STATE":
                     found[node.name] = list(ast.literal_eval(line.value))
-    buffers = ["detectors", "links", "_poses", "_kept", "_limits", "_keys"]
+    buffers = ["detectors", "links", "_poses", "_kept", "_limits", "_keys", "_sensor"]
     assert found == {
         "ContactMonitor": buffers,
         "OperatingSensitivity": ["_given"],

@@ -95,16 +95,15 @@ def test_the_walk_begins_at_zero_and_widens(second: int) -> None:
 
 @pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
 def test_after_a_day_every_axis_is_within_its_bounds(arm: Arm) -> None:
-    largest = axes(*most(filed(arm)))
-    for seed in range(2):
-        drawn = calibration.draw(arm, np.random.default_rng(seed))
-        drift = SensorDrift(filed(arm), drawn, source(seed))
-        device = Sensors(arm, drawn, np.random.default_rng(seed), drift)
-        for minute in range(24 * 60):
-            device.rest(30_000 * minute, 60, 0.002)
-            assert (np.abs(device.wrench_offset) <= largest + 1e-9).all()
-        walk = 3.0 * axes(filed(arm).walk_force, filed(arm).walk_torque)
-        assert (np.abs(device.wrench_offset - drawn.wrench_warm) <= walk + 1e-9).all(), "and about its warm zero"
+    largest, seed = axes(*most(filed(arm))), sum(arm.name.encode())
+    drawn = calibration.draw(arm, np.random.default_rng(seed))
+    drift = SensorDrift(filed(arm), drawn, source(seed))
+    device = Sensors(arm, drawn, np.random.default_rng(seed), drift)
+    for minute in range(24 * 60):
+        device.rest(30_000 * minute, 60, 0.002)
+        assert (np.abs(device.wrench_offset) <= largest + 1e-9).all()
+    walk = 3.0 * axes(filed(arm).walk_force, filed(arm).walk_torque)
+    assert (np.abs(device.wrench_offset - drawn.wrench_warm) <= walk + 1e-9).all(), "and about its warm zero"
 
 
 def test_the_bounds_are_reached_where_the_walk_is_all() -> None:
