@@ -20,9 +20,11 @@ INSTALL := -m pip --disable-pip-version-check install --quiet --no-compile
 PIP := $(BIN)/python $(INSTALL)
 # One more than two cores have: a third of the time, tests wait for a clock.
 WORKERS ?= 3
-# Tests that only compute: without a clock, a client or a browser. The longest come first, so that no worker is left with one.
-COMPUTING := tests/app/runs/test_claim_mutants.py tests/pendant tests/app/session \
+# Tests that only compute: without a clock, a client or a browser.
+COMPUTING := tests/pendant tests/app/session \
 	$(addprefix tests/sim/,arm compiled control estimation flange motion plant rigid_body sensing)
+# Plugins that do something at each of ten thousand tests, and nothing for these.
+SPARE := -p no:cov -p no:cacheprovider
 # Measured within half a millimetre of what a hand does in a real browser: alone on the machine.
 PUSHED := tests/e2e/test_push.py
 SEED ?= 1000
@@ -85,12 +87,12 @@ kernels: $(VENV)/dev.stamp
 
 # All tests that are neither `computing` nor `pushed`.
 paced: $(VENV)/dev.stamp | pictures browser
-	$(BIN)/pytest -q -n $(WORKERS) --dist worksteal $(addprefix --ignore=,tests/e2e $(COMPUTING)) --durations=10
+	$(BIN)/pytest -q -n $(WORKERS) --dist worksteal $(SPARE) $(addprefix --ignore=,tests/e2e $(COMPUTING)) --durations=10
 	$(BIN)/pytest -q -m "not every_size" tests/e2e $(addprefix --ignore=,$(PUSHED)) --durations=10
 
 # At the lowest priority: what has a clock to keep does not wait for these.
 computing: $(VENV)/dev.stamp
-	nice -n 19 $(BIN)/pytest -q -n 2 --dist worksteal $(COMPUTING) --durations=10
+	nice -n 19 $(BIN)/pytest -q -n 2 --dist worksteal $(SPARE) -p no:rerunfailures $(COMPUTING) --durations=10
 
 pushed: $(VENV)/dev.stamp | browser
 	$(BIN)/pytest -q -m "not every_size" $(PUSHED)
