@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks import arms
-from benchmarks.common import Report, main, spread
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange, smallest_singular
 from pendant.all_settings import Settings, apply
 from pendant.event_table import TABLE, render
@@ -204,8 +204,8 @@ def score_unguarded(report: Report, grid: str, results: list[Result]) -> None:
     """What an arm does that nobody checks and nothing holds."""
     heavy = [r.whole for r in results if abs(r.case.true - r.case.configured) >= 2.0]
     what = f"{grid}, wrong by 2 kg or more: way in the first second"
-    report.row(f"{what}, median", float(np.median(heavy)), "mm", n=len(heavy))
-    report.row(f"{what}, largest", max(heavy), "mm", n=len(heavy))
+    report.row(f"{what}, median", float(np.median(heavy)) if heavy else NO_CASE, "mm", n=len(heavy))
+    report.row(f"{what}, largest", max(heavy, default=NO_CASE), "mm", n=len(heavy))
 
 
 def score(report: Report, grid: str, results: list[Result]) -> None:
