@@ -122,7 +122,7 @@ def page(documents: list[Document], digest: str) -> str:
         lines += [
             "## Reliability",
             "",
-            "Of what bench `observer` was told so surely, so much was true; bars are 95 % bounds.",
+            "How much of what bench `observer` was told is true; bars are 95 % bounds.",
             "",
         ]
         lines += [f"![Share that is true over the probability that was told]({NAME})", ""]
