@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from app.log.playback import pull_at
 from app.log.reader import Log
-from app.pull_colours import PULL_COLOURS
 from app.report.drawing import INK, empty_axes, svg_of
+from app.report.pull_colours import PULL_COLOURS
 from app.report.summary import SLOW, Span, Summary
 from pendant.guided.pull import SHARE_WORDS, PullCauses
 from pendant.limits.parameters import PARAMETERS

@@ -1,6 +1,7 @@
 """What is taken for a hand's force: the numbers that tell it from a payload's weight and from a sensor's drift (FD-3, FD-19).
 
-Rules and hypotheses of whose force it is know a hand by these alone; benches `guided`, `use`, `drop` and `drift` hold them.
+Rules and hypotheses of whose force it is know a hand by these, and by the setting `unexplained.force`; benches `guided`, `use`,
+`drop` and `drift` hold them.
 """
 
 from pendant.settings.schema import ticks
@@ -14,7 +15,7 @@ RISE = 5.0
 TREMOR = 0.5
 """What it is off a straight line from tick to tick, and off a constant force within some windows, about [N]."""
 
-LEVER = 0.1
+GRIP_LEVER = 0.1
 """Lever of a hand's force about the flange [m]: its torques are so many times its forces."""
 
 SLOWEST = 3.0

@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 import viser
 
-from app.pull_colours import PULL_COLOURS
+from app.report.pull_colours import PULL_COLOURS
 from app.web.running import Running
 from app.web.widgets.chart import Array, Curve, Layer, chart, stack
 from app.web.widgets.html import Html

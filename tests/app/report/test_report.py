@@ -15,10 +15,10 @@ from app.files.checked import BadInput, convert
 from app.log.events_file import EventLine
 from app.log.layout import PULL, WORDS
 from app.log.reader import Log, read
-from app.pull_colours import PULL_COLOURS
 from app.report.charts import COLUMNS, POINTS, PULL_CAPTION, charts, pulls, thinned
 from app.report.files import write_report
 from app.report.page import page
+from app.report.pull_colours import PULL_COLOURS
 from app.report.regions import regions
 from app.report.summary import NOT_A_VALIDATION, Summary, spans, summarise
 from app.runs.runner import record

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.sensor.hand_model import LARGEST, LEVER, RISE, TREMOR
+from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, TREMOR
 from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
@@ -338,11 +338,11 @@ def goes_on(x: Array, tick: int) -> float:
     for extra in range(3):
         for late in (0.0, LATE):
             variances = [
-                1.25 * of_noise(k, 0, late) + 9.0 * steep[k] * (extra > 0) + (TREMOR * (1.0, LEVER)[k]) ** 2 * (extra > 1)
+                1.25 * of_noise(k, 0, late) + 9.0 * steep[k] * (extra > 0) + (TREMOR * (1.0, GRIP_LEVER)[k]) ** 2 * (extra > 1)
                 for k in range(2)
             ]
             ways.append(dense(x[tick], x0, np.diag(np.repeat(variances, 3))) - LN_OFTEN)
-    wide = [(0.5 * LARGEST * lever) ** 2 for lever in (1.0, LEVER)]
+    wide = [(0.5 * LARGEST * lever) ** 2 for lever in (1.0, GRIP_LEVER)]
     return float(np.logaddexp.reduce([*ways, dense(x[tick], x0, np.diag(np.repeat(wide, 3))) - LN_RARE]))
 
 
@@ -352,7 +352,7 @@ def of_window(x: Array, p: Array, felt: Array, attitudes: list[Array]) -> tuple[
     quiet = -3.0 - 1.5 * sum(math.log(of_noise(axis, 0, 0.0)) for axis in range(2))
     # No change, one in the newest tick, and one in the tick before it, which may be anything.
     early = [sum(ahead[tick] for tick in range(BEFORE, KEPT - n)) + quiet for n in (1, 2)]
-    wide = np.repeat([(0.5 * LARGEST) ** 2, (0.5 * LARGEST * LEVER) ** 2], 3)
+    wide = np.repeat([(0.5 * LARGEST) ** 2, (0.5 * LARGEST * GRIP_LEVER) ** 2], 3)
     early[1] += dense(attitudes[-1] @ x[-1], 0.0, np.diag(wide))
     other, lost, stepped = [sum(ahead.values()) + math.log(LONGEST + 1.0), *early], [-math.inf], [-math.inf]
     for length in range(SHORTEST, LONGEST + 1):
@@ -395,7 +395,7 @@ def of_change(
     parts: dict[int, list[Array]] = {kind: [] for kind in (LOST, FREED, MORE)}
     covariances: dict[int, list[Array]] = {kind: [] for kind in (LOST, FREED, MORE)}
     for k in range(6):
-        axis, lever = k // 3, (1.0, LEVER)[k // 3]
+        axis, lever = k // 3, (1.0, GRIP_LEVER)[k // 3]
         loaded, swings, empty = of_noise(axis, 0, 0.0), of_noise(axis, 0, LATE), of_noise(axis, 1, 0.0)
         jumps.append((TREMOR * lever) ** 2 + 9.0 * steep[axis] + swings / BEFORE)
         wide = (0.5 * LARGEST * lever) ** 2
@@ -434,7 +434,7 @@ def of_change(
         swings = share * (np.diff(needs, axis=0) - (needs[-1] - needs[0]) / (length - 1.0))
         line = share * (np.diff(lines, axis=0) - (lines[-1] - lines[0]) / (length - 1.0))  # a turn makes no force along it
         off = [
-            2.0 * ((TREMOR * (1.0, LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
+            2.0 * ((TREMOR * (1.0, GRIP_LEVER)[axis]) ** 2 + of_noise(axis, 0, late))
             for axis, late in ((0, LATE), (1, LATE), (0, 0.0))
         ]
         unlikely = np.sum(way / np.array(jumps)) + np.sum(line**2) * (1.0 / off[2] - 1.0 / off[0])

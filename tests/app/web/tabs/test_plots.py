@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.pull_colours import PULL_COLOURS
+from app.report.pull_colours import PULL_COLOURS
 from app.web.server import Served
 from app.web.tabs.contact_log import FADE
 from app.web.tabs.plots import KEPT, View
