@@ -15,7 +15,10 @@ from sim.plant.touch import ZERO, Pull, Touch, Triple
 Array = NDArray[np.float64]
 
 STIFFNESS = 800.0  # of a virtual hand [N/m]
-DAMPING = 40.0  # of a virtual hand [N·s/m]
+DAMPING = 40.0
+"""Of a virtual hand, at most [N·s/m]. On a part so light that this would turn its speed round within a tick, it is what takes the
+speed away in one: a hand drives nothing that it damps."""
+
 RESPONSE = 0.03
 """Time constant with which a virtual hand goes to where it is wanted [s]. A page tells it 20 times a second; without that each
 time would be a step of force, which no arm of flesh can do and a falling payload does."""
@@ -46,7 +49,8 @@ class Hands:
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, parts: Mapping[str, int]) -> None:
-        self._parts = parts
+        self._parts, self._mujoco = parts, (model, data)
+        self._jacobian, self._freed = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         self._roots: list[int] = model.body_rootid.tolist()
         self._bodies = (data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
         self._applied = data.xfrc_applied
@@ -73,7 +77,7 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                held = (_floats(touch.point), self._reach(touch, body, went), float(touch.cap))
+                held = (_floats(touch.point), self._reach(touch, body, went), float(touch.cap), self._damping(touch, body))
                 point, force = _pull(bodies, self._roots[body], body, held)
                 torque = ZERO
             else:
@@ -90,6 +94,13 @@ class Hands:
         a, b, c = pull.target
         self._goes[hold] = goes = _floats((x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z)))
         return goes
+
+    def _damping(self, pull: Pull, body: int) -> float:
+        """Of the hand that pulls [N·s/m]."""
+        place = np.array(_at(self._bodies, body, _floats(pull.point)))
+        mujoco.mj_jac(*self._mujoco, self._jacobian, None, place, body)
+        mujoco.mj_solveM(*self._mujoco, self._freed, self._jacobian)
+        return _stable(self._jacobian, self._freed)
 
     def velocity(self, body: int, point: Array) -> Array:
         """True linear velocity (3,) in W of a point (3,) in W of a body [m/s]."""
@@ -145,18 +156,37 @@ def _push(bodies, body, point, wrench):
 
 
 @kernel
+def _stable(jacobian, freed):
+    """Largest damping that turns no speed round in a tick, `DAMPING` at most.
+
+    Of a point with the jacobian J (3, nv), a force f changes the velocity by J M^-1 J' f dt in a tick; `freed` is J M^-1. No
+    direction is lighter than the largest sum of a row.
+    """
+    lightest = 0.0
+    for i in range(3):
+        row = 0.0
+        for j in range(3):
+            part = 0.0
+            for k in range(jacobian.shape[1]):
+                part += jacobian[i, k] * freed[j, k]
+            row += abs(part)
+        lightest = max(lightest, row)
+    return min(DAMPING, 1.0 / (TICK * lightest)) if lightest > 0.0 else DAMPING
+
+
+@kernel
 def _pull(bodies, root, body, held):
     """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder.
 
-    `held`: point of the body (3,), where it shall be (3,), largest force.
+    `held`: point of the body (3,), where it shall be (3,), largest force, damping.
     """
     bodies = Bodies(*bodies)
-    hold, target, cap = held
+    hold, target, cap, damping = held
     point = _push(bodies, body, hold, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     vx, vy, vz = _velocity(bodies, root, body, point)
-    fx = STIFFNESS * (target[0] - point[0]) - DAMPING * vx
-    fy = STIFFNESS * (target[1] - point[1]) - DAMPING * vy
-    fz = STIFFNESS * (target[2] - point[2]) - DAMPING * vz
+    fx = STIFFNESS * (target[0] - point[0]) - damping * vx
+    fy = STIFFNESS * (target[1] - point[1]) - damping * vy
+    fz = STIFFNESS * (target[2] - point[2]) - damping * vz
     size = np.sqrt(fx * fx + fy * fy + fz * fz)
     share = cap / size if size > cap else 1.0
     fx, fy, fz = fx * share, fy * share, fz * share
