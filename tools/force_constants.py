@@ -25,6 +25,7 @@ MODULES = (
     "pendant/signals/joint_push.py",
     "sim/estimation/payload_fall.py",
     "sim/flange/external_wrench.py",
+    "sim/flange/fall_answer.py",
     "sim/flange/step_answer.py",
     "sim/flange/wrench_hypotheses.py",
     "sim/flange/wrench_steps.py",

@@ -25,6 +25,7 @@ from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import PayloadFall
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
+from sim.flange.fall_answer import FallAnswer
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.step_answer import StepAnswer
 from sim.motion.moves import Reference
@@ -79,16 +80,16 @@ class Estimator:
         self._smooth_bending = 1.0 - math.exp(-2.0 * math.pi * BENDING_BANDWIDTH * TICK)
         self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
         self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
-        self._started = False
+        self._started, self._free = False, False  # `_free`: free-drive was on in the last tick
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(arm, self.forces)
-        self.answer = StepAnswer(arm.n, self.forces, self.wrench)
+        self.step = StepAnswer(arm.n, self.forces, self.wrench)
+        self.change = FallAnswer(self.wrench)
         self.fall = PayloadFall(arm, dynamics, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
-        self._free = False  # free-drive was on in the last tick
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
@@ -137,8 +138,7 @@ class Estimator:
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        moving = self._estimate_torques(sample, use, learn)
-        self._observe(sample, learn and moving)
+        self._observe(sample, self._estimate_torques(sample, use, learn) and learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid
         if known is None:
@@ -159,12 +159,12 @@ class Estimator:
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
-        sensed = bias is not None
         self.wrench.update(bias, accelerations=known.acceleration_valid)
-        self.answer.update(sensed)
+        self.step.update(sensed := bias is not None)
+        self.change.update(bias)
         known.energy = self._energy(self._dynamics.recursion.energy)
-        known.lost_odds, known.lost_share = self.wrench.lost, self.wrench.share
-        known.step_odds, known.step_force = self.answer.odds, self.answer.size
+        known.lost_odds, known.lost_share = self.change.odds, self.change.share
+        known.step_odds, known.step_force = self.step.odds, self.step.size
         known.payload_fell = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
 
     def _energy(self, links: Array) -> float:

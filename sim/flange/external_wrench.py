@@ -30,13 +30,12 @@ from sim.flange.wrench_hypotheses import (
     Seen,
     anything,
     hand,
-    jump,
     nobody,
     noise,
     payload,
     spread,
 )
-from sim.flange.wrench_steps import ahead, both, quiet, recent, sudden, unanswered
+from sim.flange.wrench_steps import ahead, both, jumps, quiet, recent, sudden, unanswered
 from sim.sensing.sensor_drift import sensor_spec
 
 LN_ONSETS = math.log(LONGEST + 1.0)
@@ -91,6 +90,7 @@ class ExternalWrench:
             count="i8",
             lost=(),
             share=(),
+            lost_age="i8",  # ticks since that change
             stepped=(),
             step=(),
             jump=(6,),  # the same as a wrench, axes of B
@@ -181,27 +181,18 @@ def _update(wrenches, known, bias, accelerations) -> None:
     own.count = min(own.count + 1, KEPT)
     own.lost = own.stepped = -np.inf
     own.share = 0.0
-    if own.count == KEPT and _jumped(own, here):
+    if own.count == KEPT and jumps(own, here):
         _weigh(own, here, bias)
 
 
 @kernel
-def _jumped(own, here) -> bool:
-    """The wrench may have changed by more than a hand's does within a tick: else no odds are more than about even."""
-    mean = own.sums[0]
-    mean[:] = 0.0
-    for length in range(1, LONGEST + 1):
-        first = (here - length) % KEPT
-        moved = 0.0
-        for axis in range(2):
-            square = 0.0
-            for k in range(3 * axis, 3 * axis + 3):
-                mean[k] += own.x[(first + 1) % KEPT, k]
-                square += (mean[k] / length - own.before[first, k]) ** 2
-            moved += 0.5 * square / jump(own, own.steep[first], axis)
-        if length >= SHORTEST and moved >= 0.5:
-            return True
-    return False
+def in_base(own, place, bias, out) -> None:
+    """Writes x without the bias and p of a tick, by its place in the rings, axes of B."""
+    x, p = out
+    for k in range(6):
+        x[k] = own.x[place, k] - bias[k]
+    turn_both(own.R[place], x, x)
+    turn_both(own.R[place], own.p[place], p)
 
 
 @kernel
@@ -209,10 +200,7 @@ def _add(own, seen, length, bias) -> None:
     """One tick more has been seen since the change, the earliest of `length`."""
     place = (own.next - length) % KEPT
     turned_x, turned_p = own.sums[10], own.sums[11]
-    for k in range(6):
-        turned_x[k] = own.x[place, k] - bias[k]
-    turn_both(own.R[place], turned_x, turned_x)
-    turn_both(own.R[place], own.p[place], turned_p)
+    in_base(own, place, bias, (turned_x, turned_p))
     for k in range(6):
         x, p = turned_x[k], turned_p[k]
         seen.x[k] += x
@@ -275,6 +263,6 @@ def _weigh(own, here, bias) -> None:
                 likelihood += known - LN_RARE if kind == MORE else known
                 lost, other = both(lost, likelihood), both(other, likelihood - carried)
                 if likelihood > gone:
-                    gone, own.share = likelihood, share
+                    gone, own.share, own.lost_age = likelihood, share, length
     own.lost = lost - both(other, stepped)
     own.stepped = stepped - both(other, lost)

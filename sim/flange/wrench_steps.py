@@ -11,7 +11,7 @@ import numpy as np
 
 from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, TREMOR
 from sim.compiled.kernel import kernel
-from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, SHORTEST, STRAY, least, noise
+from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, LONGEST, SHORTEST, STRAY, jump, least, noise
 
 NOTHING = -math.log(sys.float_info.epsilon)
 """Of two logs of likelihoods that are so far apart the smaller one adds nothing [nats]."""
@@ -120,3 +120,22 @@ def unanswered(own, first, size):
     still = noise_each * (1.0 / SHORTEST + 1.0 / BEFORE) + 9.0 * rise
     moved = still + (size / own.moves) ** 2
     return 0.5 * square * (1.0 / moved - 1.0 / still) + 1.5 * np.log(moved / still)
+
+
+@kernel
+def jumps(own, here) -> bool:
+    """The wrench may have changed by more than a hand's does within a tick: else no odds are more than about even."""
+    mean, kept = own.sums[0], own.x.shape[0]
+    mean[:] = 0.0
+    for length in range(1, LONGEST + 1):
+        first = (here - length) % kept
+        moved = 0.0
+        for axis in range(2):
+            square = 0.0
+            for k in range(3 * axis, 3 * axis + 3):
+                mean[k] += own.x[(first + 1) % kept, k]
+                square += (mean[k] / length - own.before[first, k]) ** 2
+            moved += 0.5 * square / jump(own, own.steep[first], axis)
+        if length >= SHORTEST and moved >= 0.5:
+            return True
+    return False
