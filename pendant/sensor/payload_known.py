@@ -76,7 +76,7 @@ class _Belief(NamedTuple):
 class PayloadKnown:
     """One window of an arm that stands after the other."""
 
-    __slots__ = ("_a", "_before", "_contrary", "_nothing", "_now", "_sensor", "_touched", "_windows")
+    __slots__ = ("_a", "_before", "_contrary", "_nothing", "_now", "_passed", "_sensor", "_touched", "_windows")
 
     def __init__(self, sensor: SensorSpec) -> None:
         self._sensor = sensor
@@ -93,6 +93,7 @@ class PayloadKnown:
         self._a = self._nothing.a  # specific force in this posture
         self._contrary = 0  # windows that contradicted what is known since one agreed with it
         self._touched, self._windows = False, 0
+        self._passed = 0  # windows since one was learned from
 
     def move(self) -> None:
         """The arm moves: what is felt next is another posture's."""
@@ -118,7 +119,10 @@ class PayloadKnown:
         """
         if self._touched:
             return
-        seen = self._seen(estimate, force)
+        self._passed += 1
+        if self._windows >= STOOD and self._passed < STOOD:  # of a posture that is known well one window in so many is enough
+            return
+        seen, self._passed = self._seen(estimate, force), 0
         if seen is not None:
             self._now, self._contrary, self._windows = seen, 0, self._windows + 1
             self._a = _specific(estimate)
@@ -144,12 +148,15 @@ class PayloadKnown:
         sensor, now = self._sensor, self._now
         passed = 0.0 if now.tick is None else (tick - now.tick) * TICK
         cools = math.exp(-passed / sensor.warm_up)
-        F = np.eye(SIZE)
-        F[BIAS, RATE], F[RATE, RATE] = np.eye(3) * sensor.warm_up * (1.0 - cools), np.eye(3) * cools
-        P = F @ now.P @ F.T
-        P[BIAS, BIAS] += np.eye(3) * sensor.walk_force**2 * (1.0 - math.exp(-2.0 * passed / sensor.walk_time))
-        P[RATE, RATE] += np.eye(3) * sensor.drift_force**2 / 3.0 * (1.0 - cools * cools)
-        return now._replace(tick=tick, x=F @ now.x, P=P)
+        went = sensor.warm_up * (1.0 - cools)
+        x, P = now.x.copy(), now.P.copy()
+        for of in (x, P, P.T):  # F x, F P, and F P F'
+            of[BIAS] += went * of[RATE]
+            of[RATE] *= cools
+        variances = P.ravel()[:: SIZE + 1]
+        variances[BIAS] += sensor.walk_force**2 * (1.0 - math.exp(-2.0 * passed / sensor.walk_time))
+        variances[RATE] += sensor.drift_force**2 / 3.0 * (1.0 - cools * cools)
+        return now._replace(tick=tick, x=x, P=P)
 
     def _own(self, estimate: Estimate) -> Array:
         """Variance (3,) of what is a posture's own, axes of F [N²]."""
@@ -171,16 +178,16 @@ class PayloadKnown:
 
     def _corrected(self, belief: _Belief, estimate: Estimate, force: Vector) -> tuple[_Belief, float]:
         """A Kalman filter's step, and how far the force is from what was believed, as a chi-square."""
-        sensor, P = self._sensor, belief.P
+        sensor, x, P, a = self._sensor, belief.x, belief.P, _specific(estimate)
         noise = math.hypot(sensor.noise_force, sensor.noise_acceleration * estimate.load_mass)
-        H = np.zeros((3, SIZE))
-        H[:, BIAS] = H[:, OWN] = np.eye(3)
-        H[:, MASS] = _specific(estimate)
-        HP, off = H @ P, -np.array(force) - H @ belief.x
-        S = HP @ H.T + (noise * noise / WINDOW + UNSTEADY * UNSTEADY) * np.eye(3)
-        K = np.linalg.solve(S, HP).T
-        P = P - K @ HP
-        return belief._replace(x=belief.x + K @ off, P=0.5 * (P + P.T)), float(off @ np.linalg.solve(S, off))
+        off = -np.array(force) - x[BIAS] - x[OWN] - x[MASS] * a
+        HP = P[BIAS] + P[OWN] + a[:, None] * P[MASS]
+        S = HP[:, BIAS] + HP[:, OWN] + HP[:, MASS, None] * a
+        S.ravel()[:: len(S) + 1] += noise * noise / WINDOW + UNSTEADY * UNSTEADY
+        certain = np.linalg.inv(S)
+        K = certain @ HP  # transposed
+        P = P - K.T @ HP
+        return belief._replace(x=x + off @ K, P=0.5 * (P + P.T)), float(off @ certain @ off)
 
 
 def _specific(estimate: Estimate) -> Array:
