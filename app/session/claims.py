@@ -99,6 +99,7 @@ _EMBODIMENTS = {
     "FD-9 motion": "without a force sensor: a wrong payload that moves the arm is refused by its motion alone",
     "FD-12b vertical": "speed along gravity limited more than across it",
     "FD-19 falls": "a payload that falls off ends free-drive at once",
+    "FD-19 light": "a light payload's fall that a hand hides in letting go is known by what follows",
     "FD-19 joints": "without a force sensor the joints tell that a payload fell",
     "VW-6 inside": "free-drive is kept only while the part is inside the shape, as shipped",
     "VW-6 payload": "without a force sensor: a wrong payload that moves the arm into a wall is refused by it",
