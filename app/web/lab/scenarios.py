@@ -35,6 +35,7 @@ TOPICS = {
         "too-fast",
         "sensor-fails",
         "payload-falls",
+        "payload-falls-light",
         "payload-falls-unseen",
         "way-back",
     ),
