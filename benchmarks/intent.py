@@ -20,6 +20,7 @@ from pendant.events.event import Event, Kind
 from pendant.events.event_row import Effect
 from pendant.inputs import Command, Inputs
 from pendant.program.steps import JointMove, Program
+from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 from sim.plant.touch import ZERO, Push
@@ -87,6 +88,7 @@ class Count(NamedTuple):
     entered: int
     way: float  # of the flange in a check, at most [mm]
     kinds: tuple[str, ...]  # of what refused
+    waits: tuple[float, ...] = ()  # from the end of a push until the arm was free [s]
 
 
 def base_axes(device: Simulation) -> np.ndarray:
@@ -211,10 +213,11 @@ def measure_bumps(arm: Arm, rng: np.random.Generator) -> Count:
 
 
 def measure_pushes(arm: Arm, rng: np.random.Generator) -> Count:
-    """Pushes as a user means them, then hands off."""
+    """Pushes as a user means them, then hands off, for as long as the arm may take to come to rest and to be checked."""
     device = simulation(arm.case, FORCE)
     on_time = entered = 0
     kinds: list[str] = []
+    waits: list[float] = []
     for _ in range(arm.touches):
         force = rng.uniform(1.2, 3.0) * THRESHOLD * direction(device, rng, 0.0, 20.0)
         length = rng.uniform(1.2, 2.0) * PERIOD + 0.1
@@ -222,10 +225,12 @@ def measure_pushes(arm: Arm, rng: np.random.Generator) -> Count:
         x, y, z = force.tolist()
         touching = Touching("push", "flange", (x, y, z), ZERO, length, tremor, 0.0, False)
         done = False
-        for tick in range(round(500 * length) + 900):
+        for tick in range(ticks(length + FORCE.let_go.within + FORCE.sequence.period)):
             push = touching.at(0.002 * tick)
             decision = device.tick(Wishes(IDLE.inputs, () if push is None else (push,), ()))
             for event in decision.events:
+                if event.kind is Kind.ENTERED and not done:
+                    waits.append(0.002 * tick - length)
                 # The push passes the threshold while it comes, within 0.1 s.
                 on_time += event.kind is Kind.LET_GO_ASKED and tick * 0.002 <= PERIOD + 0.1 + 0.05
                 done = done or event.kind is Kind.ENTERED
@@ -233,7 +238,7 @@ def measure_pushes(arm: Arm, rng: np.random.Generator) -> Count:
                 kinds += [event.kind.value] if event.kind is Kind.ACTIVATION_CANCELLED else []
         entered += done
         leave(device)
-    return Count(arm.touches, (), on_time, entered, 0.0, tuple(kinds))
+    return Count(arm.touches, (), on_time, entered, 0.0, tuple(kinds), tuple(waits))
 
 
 def arms(report: Report, what: str, count: int, per_arm: int) -> list[Arm]:
@@ -271,6 +276,10 @@ def measure(report: Report) -> None:
     on_time, entered = sum(r.on_time for r in results), sum(r.entered for r in results)
     report.share("pushes: taken within 50 ms of the period's end", on_time, pushes, at_least=0.995)
     report.share("pushes, then hands off: entered", entered, pushes, at_least=0.99)
+    waits = [wait for result in results for wait in result.waits]
+    if waits:
+        report.row("pushes, then hands off: free after, 95th percentile", float(np.percentile(waits, 95)), "s", n=len(waits))
+        report.row("pushes, then hands off: free after, longest", max(waits), "s", n=len(waits))
     failures = Counter(kind for result in results for kind in result.kinds)
     report.notes.append("pushes refused or cut short: " + (", ".join(f"{k} {n}" for k, n in failures.items()) or "none"))
 
