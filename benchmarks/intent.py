@@ -88,7 +88,7 @@ class Count(NamedTuple):
     entered: int
     way: float  # of the flange in a check, at most [mm]
     kinds: tuple[str, ...]  # of what refused
-    waits: tuple[float, ...] = ()  # from the end of a push until the arm was free [s]
+    wait: float = 0.0  # from the end of a push until the arm was free, at most [s]
 
 
 def base_axes(device: Simulation) -> np.ndarray:
@@ -167,10 +167,8 @@ def start(device: Simulation, rng: np.random.Generator) -> None:
 def measure_arm(arm: Arm) -> Count:
     """All touches of one arm."""
     rng = np.random.default_rng([arm.case.seed, arm.case.number, 17])
-    if arm.what == "bumps in the check":
-        return measure_bumps(arm, rng)
-    if arm.what == "pushes":
-        return measure_pushes(arm, rng)
+    if not arm.what.startswith("must not"):
+        return (measure_pushes if arm.what == "pushes" else measure_bumps)(arm, rng)
     alone = arm.what.endswith("force alone")
     device = simulation(arm.case, FORCE if alone else SHAKEN)
     wrong: list[str] = []
@@ -215,30 +213,27 @@ def measure_bumps(arm: Arm, rng: np.random.Generator) -> Count:
 def measure_pushes(arm: Arm, rng: np.random.Generator) -> Count:
     """Pushes as a user means them, then hands off, for as long as the arm may take to come to rest and to be checked."""
     device = simulation(arm.case, FORCE)
-    on_time = entered = 0
+    on_time, entered, wait = 0, 0, 0.0
     kinds: list[str] = []
-    waits: list[float] = []
     for _ in range(arm.touches):
         force = rng.uniform(1.2, 3.0) * THRESHOLD * direction(device, rng, 0.0, 20.0)
         length = rng.uniform(1.2, 2.0) * PERIOD + 0.1
         tremor = (0.1 * math.sqrt(2.0), rng.uniform(6.0, 12.0))
-        x, y, z = force.tolist()
-        touching = Touching("push", "flange", (x, y, z), ZERO, length, tremor, 0.0, False)
+        touching = Touching("push", "flange", tuple(force.tolist()), ZERO, length, tremor, 0.0, False)
         done = False
         for tick in range(ticks(length + FORCE.let_go.within + FORCE.sequence.period)):
             push = touching.at(0.002 * tick)
             decision = device.tick(Wishes(IDLE.inputs, () if push is None else (push,), ()))
             for event in decision.events:
-                if event.kind is Kind.ENTERED and not done:
-                    waits.append(0.002 * tick - length)
                 # The push passes the threshold while it comes, within 0.1 s.
                 on_time += event.kind is Kind.LET_GO_ASKED and tick * 0.002 <= PERIOD + 0.1 + 0.05
-                done = done or event.kind is Kind.ENTERED
-                kinds += [event.kind.value] if TABLE[event.kind].effect is Effect.NO_ENTRY else []
-                kinds += [event.kind.value] if event.kind is Kind.ACTIVATION_CANCELLED else []
+                if event.kind is Kind.ENTERED:
+                    done, wait = True, max(wait, 0.002 * tick - length)
+                failed = TABLE[event.kind].effect is Effect.NO_ENTRY or event.kind is Kind.ACTIVATION_CANCELLED
+                kinds += [event.kind.value] if failed else []
         entered += done
         leave(device)
-    return Count(arm.touches, (), on_time, entered, 0.0, tuple(kinds), tuple(waits))
+    return Count(arm.touches, (), on_time, entered, 0.0, tuple(kinds), wait)
 
 
 def arms(report: Report, what: str, count: int, per_arm: int) -> list[Arm]:
@@ -272,16 +267,12 @@ def measure(report: Report) -> None:
     if not felt:
         return
     results = spread(measure_arm, arms(report, "pushes", 1000 if full else 40, 8))
-    pushes = sum(result.touches for result in results)
-    on_time, entered = sum(r.on_time for r in results), sum(r.entered for r in results)
+    pushes, on_time, entered = (sum(count) for count in zip(*((r.touches, r.on_time, r.entered) for r in results), strict=True))
     report.share("pushes: taken within 50 ms of the period's end", on_time, pushes, at_least=0.995)
     report.share("pushes, then hands off: entered", entered, pushes, at_least=0.99)
-    waits = [wait for result in results for wait in result.waits]
-    if waits:
-        report.row("pushes, then hands off: free after, 95th percentile", float(np.percentile(waits, 95)), "s", n=len(waits))
-        report.row("pushes, then hands off: free after, longest", max(waits), "s", n=len(waits))
-    failures = Counter(kind for result in results for kind in result.kinds)
-    report.notes.append("pushes refused or cut short: " + (", ".join(f"{k} {n}" for k, n in failures.items()) or "none"))
+    report.row("pushes, then hands off: free after, longest", max(r.wait for r in results), "s", n=entered)
+    failures = ", ".join(f"{k} {n}" for k, n in Counter(kind for result in results for kind in result.kinds).items())
+    report.notes.append(f"pushes refused or cut short: {failures or 'none'}")
 
 
 if __name__ == "__main__":
