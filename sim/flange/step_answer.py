@@ -1,8 +1,9 @@
 """Whether the joints feel what a suspected step of the flange sensor tells (FD-19).
 
-A step of the sensor is first known by its onset (`sim.flange.wrench_steps`), from 20 ms that may not be enough. The joints
-answer later: first the arm swings on its springs. From then on they feel a force at the flange, and not a step of its
-sensor. With the sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
+A step of the sensor is first known by its onset (`sim.flange.wrench_steps`), from 20 ms that may not be enough: one of 5 N may
+seem a hand's, where a heavy load makes noise. So the joints are asked unless a hand is as sure as a step has to be. They answer
+later: first the arm swings on its springs. From then on they feel a force at the flange, and not a step of its sensor. With the
+sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
 
     d = J' w - tau_ext
 
@@ -68,7 +69,7 @@ class StepAnswer:
             step=(n,),  # t
             next="i8",
             count="i8",
-            since="i8",  # ticks since the onset; 0: nothing is suspected
+            since="i8",  # ticks since the onset; 0: no step is looked at
             onset=(),  # odds by it
             odds=(),
             size=(),  # of the step [N]
@@ -111,18 +112,18 @@ def _update(answers, forces, wrenches, model) -> None:
     own.next, own.count = (here + 1) % KEPT, min(own.count + 1, KEPT)
     if own.since:
         own.since += 1
-    if wrench.stepped >= -SUSPECTED and own.since <= LONGEST and (own.since == 0 or wrench.stepped > own.onset):
+    if wrench.stepped >= -KNOWN and own.since <= LONGEST and (own.since == 0 or wrench.stepped > own.onset):
         _begin(own, wrench, model[0], (here - wrench.age) % KEPT)
     own.odds = wrench.stepped
     if own.since:
         own.odds = own.onset + (_answered(own) if own.since > ANSWER else 0.0)
-        if own.odds < -SUSPECTED:
+        if own.since > ANSWER and own.odds < -SUSPECTED:
             own.since = 0
 
 
 @kernel
 def _begin(own, wrench, rigid, before) -> None:
-    """A step is suspected; `before` is the place of the tick before it."""
+    """A step may have come; `before` is the place of the tick before it."""
     own.onset, own.since, own.size = wrench.stepped, wrench.age, wrench.step
     for i in range(own.step.size):
         own.step[i] = 0.0

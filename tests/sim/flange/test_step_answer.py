@@ -95,8 +95,8 @@ def test_it_goes_on_until_the_joints_decide() -> None:
     assert [joints.tick(before) for _ in range(60)][-1] == -math.inf
 
 
-@pytest.mark.parametrize(("onset", "suspected"), [(-SUSPECTED, True), (-SUSPECTED - 1e-6, False)])
-def test_it_begins_where_a_hand_is_not_much_likelier(onset: float, suspected: bool) -> None:
+@pytest.mark.parametrize(("onset", "suspected"), [(-KNOWN, True), (-KNOWN - 1e-6, False)])
+def test_it_begins_unless_a_hand_is_sure(onset: float, suspected: bool) -> None:
     joints = Joints(onset)
     told = joints.course(1.0)
     assert told[1] == onset
