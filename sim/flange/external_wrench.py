@@ -14,7 +14,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
 from sim.compiled.kernel import kernel
-from sim.compiled.record import record
+from sim.compiled.record import Number, record
 from sim.flange.flange_forces import FlangeForces, about_flange, needed, turn_both
 from sim.flange.wrench_hypotheses import (
     BEFORE,
@@ -53,6 +53,10 @@ class ExternalWrench:
         share: of the payload that is gone then.
         stepped: log of the odds that the sensor stepped, against all else: the same.
     """
+
+    lost = Number()
+    share = Number()
+    stepped = Number()
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
         """
@@ -107,21 +111,6 @@ class ExternalWrench:
         own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
         own["turning"] = math.sqrt(own["jitter"] * forces.passed)
         own["lost"] = own["stepped"] = -math.inf
-
-    @property
-    def lost(self) -> float:
-        """As the class says."""
-        return float(self._own["lost"])
-
-    @property
-    def share(self) -> float:
-        """As the class says."""
-        return float(self._own["share"])
-
-    @property
-    def stepped(self) -> float:
-        """As the class says."""
-        return float(self._own["stepped"])
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""

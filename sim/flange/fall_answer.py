@@ -18,12 +18,12 @@ import math
 
 import numpy as np
 
-from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, TREMOR
+from pendant.sensor.hand_model import LARGEST, TREMOR
 from pendant.sensor.odds import HALF, KNOWN, SUSPECTED
 from sim.compiled.kernel import kernel
-from sim.compiled.record import record
+from sim.compiled.record import Number, record
 from sim.flange.external_wrench import ExternalWrench, in_base
-from sim.flange.wrench_hypotheses import LATE, LONGEST, RARE, noise
+from sim.flange.wrench_hypotheses import LATE, LONGEST, RARE, lever_of, noise
 from sim.flange.wrench_steps import both
 
 LN_HALF = math.log(HALF)
@@ -38,6 +38,9 @@ class FallAnswer:
             is likelier.
         share: of the payload that is gone then.
     """
+
+    odds = Number()
+    share = Number()
 
     def __init__(self, wrench: ExternalWrench) -> None:
         """
@@ -57,16 +60,6 @@ class FallAnswer:
         )
         self._own = self._record[0]
         self._own["odds"] = -math.inf
-
-    @property
-    def odds(self) -> float:
-        """As the class says."""
-        return float(self._own["odds"])
-
-    @property
-    def share(self) -> float:
-        """As the class says."""
-        return float(self._own["share"])
 
     def update(self, bias: tuple[float, ...] | None) -> None:
         """One tick; the flange sensor's bias (6,), axes of F [N, N·m]; None: it is not used."""
@@ -119,7 +112,7 @@ def _goes_on(own, wrench):
     """Log of how much likelier the last mean is if the payload changed, than if a hand did."""
     payload = hand = comes = goes = 0.0
     for axis in range(2):
-        lever = 1.0 if axis == 0 else GRIP_LEVER
+        lever = lever_of(axis)
         R = 2.0 * noise(wrench, wrench.whole, axis, LATE) / LONGEST
         tremor, anything = R + (TREMOR * lever) ** 2, R + (0.5 * LARGEST * lever) ** 2
         fallen = held = 0.0

@@ -24,7 +24,7 @@ from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
-from sim.compiled.record import record
+from sim.compiled.record import Number, record
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.wrench_hypotheses import LONGEST
@@ -51,6 +51,9 @@ class StepAnswer:
         size: of that step [N].
     """
 
+    odds = Number()
+    size = Number()
+
     def __init__(self, n: int, forces: FlangeForces, wrench: ExternalWrench) -> None:
         """
         Args:
@@ -76,16 +79,6 @@ class StepAnswer:
         )
         self._own = self._record[0]
         self._own["odds"] = -math.inf
-
-    @property
-    def odds(self) -> float:
-        """As the class says."""
-        return float(self._own["odds"])
-
-    @property
-    def size(self) -> float:
-        """As the class says."""
-        return float(self._own["size"])
 
     def update(self, used: bool) -> None:
         """One tick; whether the flange sensor is used in it."""

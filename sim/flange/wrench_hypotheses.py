@@ -94,6 +94,12 @@ class Seen(NamedTuple):
 
 
 @kernel
+def lever_of(axis):
+    """What makes a hand's torques of its forces: 1 for a force itself (axis 0)."""
+    return 1.0 if axis == 0 else GRIP_LEVER
+
+
+@kernel
 def noise(own, load, axis, late):
     """Variance of x in a tick, beside a `load`: of sensor, accelerometer and gyro, and the share of a turn that comes `late`."""
     turns = own.turning**2 + (late * own.fastest) ** 2
@@ -109,7 +115,7 @@ def spread(own, late):
 @kernel
 def jump(own, steep, axis):
     """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
-    return (TREMOR * (1.0 if axis == 0 else GRIP_LEVER)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
+    return (TREMOR * lever_of(axis)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
 
 
 @kernel
@@ -122,7 +128,7 @@ def hand(own, seen, change, late):
     rising = steady = 0.0
     of_rising = of_steady = 1.0  # determinants
     for axis in range(2):
-        R, lever = noise(own, own.whole, axis, late), 1.0 if axis == 0 else GRIP_LEVER
+        R, lever = noise(own, own.whole, axis, late), lever_of(axis)
         sudden = jump(own, steep, axis)
         rise = (0.5 * LARGEST / RISE * lever) ** 2
         a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
@@ -151,7 +157,7 @@ def nobody(own, seen, length, late):
     """Log likelihood of an arm that nobody touches."""
     likelihood, determinant = 0.0, 1.0
     for axis in range(2):
-        R, offset = noise(own, own.whole, axis, late), (own.offset * (1.0 if axis == 0 else GRIP_LEVER)) ** 2
+        R, offset = noise(own, own.whole, axis, late), (own.offset * lever_of(axis)) ** 2
         determinant *= 1.0 + length * offset / R
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * (seen.xx[k] - offset / (R + length * offset) * seen.x[k] ** 2) / R
@@ -163,7 +169,7 @@ def anything(seen, length):
     """Log likelihood of what none of the others explains: whatever a hand's wrench can be, in each tick by itself."""
     likelihood = 0.0
     for axis in range(2):
-        V = (0.5 * LARGEST * (1.0 if axis == 0 else GRIP_LEVER)) ** 2
+        V = (0.5 * LARGEST * lever_of(axis)) ** 2
         likelihood -= 1.5 * length * np.log(V)
         for k in range(3 * axis, 3 * axis + 3):
             likelihood -= 0.5 * seen.xx[k] / V
@@ -187,7 +193,7 @@ def payload(own, seen, change, kind):
         # What the accelerometer adds to x and to p cancels where the payload is gone, with a hand as well. So a payload has to
         # fit within the noise of what is left at the flange, and that this noise is small says nothing. One that stays swings on.
         loaded = noise(own, own.whole, axis, LATE if kind == MORE else 0.0)
-        R, lever = loaded if kind == MORE else noise(own, own.rest, axis, 0.0), 1.0 if axis == 0 else GRIP_LEVER
+        R, lever = loaded if kind == MORE else noise(own, own.rest, axis, 0.0), lever_of(axis)
         offset = (GAIN * weight * lever) ** 2
         if axis == 1:
             offset += (CENTRE * weight) ** 2
@@ -223,7 +229,7 @@ def carried(own, seen, change, gone):
     kind, share = gone
     unlikely = 0.0
     for axis in range(2):
-        sudden, off = jump(own, steep, axis), (TREMOR * (1.0 if axis == 0 else GRIP_LEVER)) ** 2
+        sudden, off = jump(own, steep, axis), (TREMOR * lever_of(axis)) ** 2
         swings = 0.0
         for k in range(3 * axis, 3 * axis + 3):
             way = share * seen.p[k] / length - (before[k] if kind == FREED else 0.0)

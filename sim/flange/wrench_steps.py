@@ -9,9 +9,9 @@ import sys
 
 import numpy as np
 
-from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, TREMOR
+from pendant.sensor.hand_model import LARGEST, TREMOR
 from sim.compiled.kernel import kernel
-from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, LONGEST, SHORTEST, STRAY, jump, least, noise
+from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, LONGEST, SHORTEST, STRAY, jump, least, lever_of, noise
 
 NOTHING = -math.log(sys.float_info.epsilon)
 """Of two logs of likelihoods that are so far apart the smaller one adds nothing [nats]."""
@@ -59,7 +59,7 @@ def ahead(own, x, before, steep):
     for way in range(7):
         likelihood, determinant = -LN_OFTEN if way < 6 else -LN_RARE, 1.0
         for axis in range(2):
-            lever = 1.0 if axis == 0 else GRIP_LEVER
+            lever = lever_of(axis)
             V = noise(own, own.whole, axis, LATE if way % 2 else 0.0) * (1.0 + 1.0 / BEFORE)
             if way >= 2:
                 V += 9.0 * steep[axis]
@@ -85,7 +85,7 @@ def sudden(own, seen, change):
     length, before = change
     square, size, determinant = 0.0, 0.0, 1.0
     for axis in range(2):
-        R, V = noise(own, own.whole, axis, LATE), (0.5 * LARGEST * (1.0 if axis == 0 else GRIP_LEVER)) ** 2
+        R, V = noise(own, own.whole, axis, LATE), (0.5 * LARGEST * lever_of(axis)) ** 2
         determinant *= 1.0 + length * V / R
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - length * before[k]
