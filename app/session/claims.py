@@ -101,6 +101,7 @@ _EMBODIMENTS = {
     "FD-19 falls": "a payload that falls off ends free-drive at once",
     "FD-19 light": "a light payload's fall that a hand hides in letting go is known by what follows",
     "FD-19 joints": "without a force sensor the joints tell that a payload fell",
+    "FD-19 led": "without a force sensor the joints tell a hand that leads from an arm that goes on alone",
     "VW-6 inside": "free-drive is kept only while the part is inside the shape, as shipped",
     "VW-6 payload": "without a force sensor: a wrong payload that moves the arm into a wall is refused by it",
     "VW-7 push": "a wall pushes back, the harder the nearer, at rest, too",

@@ -14,7 +14,7 @@ from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
 from pendant.limits.soft_limits import Damping
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.pose import ORIGIN, Vector, norm
 from pendant.walls.barrier import Consequence
 from pendant.walls.containment import NOBODY, Containment, caught, facts
@@ -137,8 +137,10 @@ class FreeArm:
 
     def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
         """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""
-        hand, used = self._hand, self._bias.used
+        if not self._bias.used:
+            return PullCauses(HandFelt.FLANGE if estimate.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
+        hand = self._hand
         vx, vy, vz = estimate.v_F.tolist()[:3]
         led = self._operation.led and norm((vx, vy, vz)) >= moves  # at rest the noise of the speed pays for itself
-        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=led, use_wrench=used)
-        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds) if used else PullCauses(who)
+        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=led)
+        return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds)

@@ -81,8 +81,8 @@ SHARE_WORDS = ("Nobody", "A hand", "A hand on a link", "Payload changed", "Senso
 """Of the fields of `CauseShares`; the first ones are those of `HandFelt`."""
 
 
-def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool, use_wrench: bool) -> HandFelt:
-    """Where a hand is felt in a tick.
+def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool) -> HandFelt:
+    """Where a hand is felt in a tick, with the flange sensor.
 
     Args:
         force: the user's [N].
@@ -90,11 +90,10 @@ def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool,
         usual: the mean of the force there lately, its size [N].
         least: so large is a hand's force [N].
         led: somebody pays for the motion.
-        use_wrench: the flange sensor is used.
     """
     if not led and norm(force) < least:
         return HandFelt.NOBODY
-    return HandFelt.LINK if use_wrench and sensed < least and usual < least else HandFelt.FLANGE
+    return HandFelt.LINK if sensed < least and usual < least else HandFelt.FLANGE
 
 
 class PullWatch:

@@ -10,7 +10,7 @@ from pendant.guided.work import Work
 from pendant.limits.parameters import EntryValues
 from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, norm
 
@@ -49,7 +49,8 @@ class UnintendedMotion:
         led: somebody pays for the motion.
         doubtful: half of what is allowed has gone by: nothing helps the motion on, so that who leads it pushes, and else it ends.
 
-    A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`).
+    A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`). Without
+    the flange sensor a hand is what the joints feel and neither their errors nor a fall of the payload explain.
     """
 
     __slots__ = (
@@ -104,11 +105,13 @@ class UnintendedMotion:
         """
         x, y, z = hand.user
         least = self._on.force + slack.force
-        caused = driven or x * x + y * y + z * z >= least * least
+        caused = driven or (x * x + y * y + z * z >= least * least if use_wrench else estimate.joints_feel is JointsFeel.HAND)
         # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
         usual = norm(hand.usual)
-        by_link = use_wrench and usual < ON_A_LINK + slack.force
-        wrench = (_beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)) if by_link else NO_WRENCH
+        by_link = not use_wrench or usual < ON_A_LINK + slack.force
+        wrench = NO_WRENCH
+        if use_wrench and by_link:
+            wrench = _beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench, by_link=by_link)
@@ -131,7 +134,7 @@ class UnintendedMotion:
             if self._ticks == 0:
                 stretch.begin(estimate)
             self._ticks += 1
-            stretch.work.step(estimate, *wrench)
+            stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
         if caused:
             self._at_rest = False
             self.led = moves and by_link and stretch.work.settled
@@ -140,31 +143,45 @@ class UnintendedMotion:
         if not (moves or self._at_rest):
             self._at_rest, self._helped = True, 0.0
             whole.begin(estimate)
-        far = False
-        if self._at_rest:
-            whole.work.step(estimate, *wrench)
-            length = whole.length(estimate) if use_wrench else stretch.length(estimate) if moves else 0.0
-            paid = by_link and whole.work.paid
-            away = self._on.distance
-            most = max(away, self._helped + HALF * away) if use_wrench else away  # without it nothing helps a light hand
-            if length > most and not paid:
-                return whole if use_wrench else stretch
-            self._at_rest = not (paid and length > away)
-            far = use_wrench and not paid and length > HALF * away
-            if not far:
-                self._helped = length
-            self.led = paid and whole.work.settled
+        too_long, far = self._since_rest(estimate, wrench, by_link) if use_wrench else self._unfelt(estimate, moves)
+        if too_long is not None:
+            return too_long
         if moves:
             self.led = by_link and stretch.work.settled
         if self.led or not moves:
             self._ticks, self.doubtful = 0, False
         elif self._lasts(HALF, by_link):
-            self.doubtful = use_wrench
+            self.doubtful = True
         self.doubtful = self.doubtful or far
         self._doubted = self._doubted + 1 if self.doubtful else 0
         # Without help an arm that nobody leads may come to rest first.
         waits = by_link and self._doubted < HALF * self._allowed
         return stretch if moves and not (self.led or waits) and self._lasts(1.0, by_link) else None
+
+    def _since_rest(self, estimate: Estimate, wrench: tuple[Vector, Vector], by_link: bool) -> tuple[Way | None, bool]:
+        """The way of an arm that was at rest, if it is too long, and whether it is more than half of what is allowed."""
+        whole, away = self._whole, self._on.distance
+        if not self._at_rest:
+            return None, False
+        whole.work.step(estimate, *wrench)
+        length = whole.length(estimate)
+        paid = by_link and whole.work.paid
+        if length > max(away, self._helped + HALF * away) and not paid:
+            return whole, False
+        self._at_rest = not (paid and length > away)
+        far = not paid and length > HALF * away
+        if not far:
+            self._helped = length
+        self.led = paid and whole.work.settled
+        return None, far
+
+    def _unfelt(self, estimate: Estimate, moves: bool) -> tuple[Way | None, bool]:
+        """The same without the flange sensor, since the arm moves: of one that was at rest, or whose payload may have fallen."""
+        self.led = False
+        if not (moves and (self._at_rest or estimate.joints_feel is JointsFeel.FALL)):
+            return None, False
+        length, away = self._stretch.length(estimate), self._on.distance
+        return (self._stretch if length > away else None), length > HALF * away
 
     def _lasts(self, share: float, by_link: bool) -> bool:
         """Nobody has led the arm for this share of the time that it has."""

@@ -49,14 +49,17 @@ class Work:
         self._rubbed = 0.0  # what is asked for of the friction [J]
         self.unpaid = 0.0
 
-    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN) -> None:
-        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m]."""
+    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN, *, counts: bool = True) -> None:
+        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m].
+
+        What the joints feel pays only where it `counts`: else it may be their own error.
+        """
         done = rubbed = 0.0
         felt = zip(estimate.qd.tolist(), estimate.tau_ext.tolist(), self._before, estimate.friction.tolist(), strict=True)
         for speed, now, before, friction in felt:
             done += (now - before) * speed
             rubbed += friction * speed
-        done *= TICK
+        done *= TICK * counts
         rubbed *= HALF * LEFT * TICK
         self._ticks += 1
         self._slower = self._energy - estimate.energy

@@ -3,6 +3,7 @@
 import math
 from copy import copy
 from dataclasses import dataclass, field, fields
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,14 @@ def _nowhere() -> Array:
 
 GRAVITY = 9.81
 """[m/s²]"""
+
+
+class JointsFeel(IntEnum):
+    """What explains the change of the external torques since free-drive began."""
+
+    NOTHING = 0  # it is within what the joints may err by
+    FALL = 1  # a payload that fell, to within that
+    HAND = 2  # neither
 
 
 @dataclass(slots=True)
@@ -77,6 +86,7 @@ class Estimate:
     step_odds: float = -math.inf  # log of the odds that the flange sensor stepped, the same way [nats]
     step_force: float = 0.0  # size of the step then [N]
     payload_fell: bool = False  # as the joints tell, in free-drive without a valid flange sensor
+    joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":

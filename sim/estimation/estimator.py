@@ -144,8 +144,7 @@ class Estimator:
         if known is None:
             self._known = known = self._all(sample)
         known.tick = self.tick
-        known.joints_valid, known.wrench_valid = valid, sample.wrench_valid
-        known.acceleration_valid = sample.acceleration_valid
+        known.joints_valid, known.wrench_valid, known.acceleration_valid = valid, sample.wrench_valid, sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
         known.move_done, known.move_refused = move_done, move_refused
@@ -165,7 +164,8 @@ class Estimator:
         known.energy = self._energy(self._dynamics.recursion.energy)
         known.lost_odds, known.lost_share = self.change.odds, self.change.share
         known.step_odds, known.step_force = self.step.odds, self.step.size
-        known.payload_fell = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
+        felt = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
+        known.payload_fell, known.joints_feel = felt
 
     def _energy(self, links: Array) -> float:
         """Kinetic energy of the `links` (1,) and of the rotors [J]."""

@@ -1,5 +1,6 @@
 """Decisions and snapshots to feed to time lines and watches, without a simulation."""
 
+from enum import EnumType
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,8 @@ def happened(kind: Kind, tick: int, **values: float | str) -> Decision:
 def estimate(**changed: Any) -> Estimate:
     values: dict[str, Any] = {}
     for name, hint in Estimate.__annotations__.items():
-        values[name] = 0 if hint in (int, float) else True if hint is bool else np.zeros(6) if "ndarray" in str(hint) else hint()
+        blank = next(iter(hint)) if isinstance(hint, EnumType) else np.zeros(6) if "ndarray" in str(hint) else hint()
+        values[name] = True if hint is bool else blank
     return Estimate(**{**values, **changed})
 
 

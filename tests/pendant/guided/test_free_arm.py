@@ -16,7 +16,7 @@ from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import Nearness
 from pendant.limits.validity import JOINTS_SENSED, Stillness, WrenchMean
 from pendant.sensor.odds import KNOWN, SUSPECTED
-from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import ORIGIN
 from pendant.walls.containment import Containment
@@ -248,6 +248,15 @@ def test_what_pulls_is_told_with_the_odds_of_a_sensor_that_is_used(sensor: bool)
     value.lost_odds, value.lost_share, value.step_odds = KNOWN, 0.9, -3.0
     free.see(value)
     assert free.arm.pull == (PullCauses(HandFelt.NOBODY, KNOWN, 0.9, -3.0) if sensor else PullCauses(HandFelt.NOBODY))
+
+
+@pytest.mark.parametrize("feels", JointsFeel)
+def test_without_the_sensor_a_hand_is_told_where_only_a_hand_explains_what_the_joints_feel(feels: JointsFeel) -> None:
+    """FD-19: whatever force that makes."""
+    free, value = Free(sensor=False), estimate(felt=40.0)
+    value.joints_feel = feels
+    free.during(50, value)
+    assert free.arm.pull == PullCauses(HandFelt.FLANGE if feels is JointsFeel.HAND else HandFelt.NOBODY)
 
 
 def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:

@@ -12,7 +12,7 @@ from pendant.guided.user_force import ON_A_LINK, UserForce
 from pendant.guided.work import LEFT
 from pendant.limits.parameters import reference
 from pendant.sensor.odds import HALF
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of
 from tests.pendant.estimates import MOVES, SENSOR, estimate
@@ -54,8 +54,9 @@ class Bench:
         return next((told for value in values if (told := self.see(value)) is not None), None)
 
     def held(self, value: Estimate) -> None:
-        """A hand at the flange for one tick, which the force tells as it is."""
-        self.hand.user = (0.0, 0.0, 40.0)
+        """A hand at the flange for one tick, which the force, or what the joints feel, tells as it is."""
+        self.hand.user = (0.0, 0.0, 40.0) if self.sensor else (0.0, 0.0, 0.0)
+        value.joints_feel = JointsFeel.NOTHING if self.sensor else JointsFeel.HAND
         assert self.alone.step(value, self.hand, use_wrench=self.sensor, driven=False) is None
         self.hand.user = (0.0, 0.0, 0.0)
 
@@ -174,12 +175,11 @@ def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
     assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
 
 
-@pytest.mark.parametrize(("sensor", "carried"), [(False, 0.0), (True, ON_A_LINK)])
-def test_without_the_sensor_or_with_what_hangs_there_no_work_excuses_a_motion(sensor: bool, carried: float) -> None:
-    bench = Bench(sensor)
+def test_with_what_hangs_there_no_work_excuses_a_motion() -> None:
+    bench = Bench()
     bench.held(at(0.0, 0.1))
-    bench.hand.usual = (carried, 0.0, 0.0)
-    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=sensor, driven=False) for _ in range(151)]
+    bench.hand.usual = (ON_A_LINK, 0.0, 0.0)
+    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=True, driven=False) for _ in range(151)]
     assert told[:150] == [None] * 150
     assert told[150] is not None
 
@@ -216,10 +216,65 @@ def test_a_hand_at_the_flange_ends_a_doubt() -> None:
     assert not bench.alone.doubtful
 
 
-def test_without_the_sensor_nothing_is_doubtful_it_is_stopped() -> None:
+def unseen(feels: JointsFeel, way: float = 0.0, speed: float = 0.1, felt: float = 9.0) -> Estimate:
+    """What an arm without a flange sensor tells; the joints feel torques that would pay for its motion."""
+    value = at(way, speed, turns=1.0, felt=felt)
+    value.joints_feel = feels
+    return value
+
+
+def test_without_the_sensor_a_hand_is_what_neither_errors_nor_a_fall_explain() -> None:
+    """However far, and for however long; it leads the arm where its torques pay for the motion."""
     bench = Bench(sensor=False)
-    bench.held(at(0.0, 0.1))
-    assert bench.until(at(0.0, 0.1, turns=1.0) for _ in range(150)) is None
+    assert bench.until(unseen(JointsFeel.HAND, 0.001 * tick) for tick in range(2000)) is None
+    assert (bench.alone.led, bench.alone.doubtful) == (True, False)
+    bench.see(unseen(JointsFeel.HAND, 2.0, felt=-9.0))
+    assert not bench.alone.led
+    bench.hand.user = (0.0, 0.0, 40.0)
+    told = [bench.alone.step(unseen(JointsFeel.NOTHING, 2.0), bench.hand, use_wrench=False, driven=False) for _ in range(151)]
+    assert told[:150] == [None] * 150
+    assert told[150] is not None, "a force that the joints may err by is none"
+
+
+@pytest.mark.parametrize("feels", [JointsFeel.NOTHING, JointsFeel.FALL])
+def test_without_the_sensor_no_work_excuses_a_motion_that_errors_or_a_fall_explain(feels: JointsFeel) -> None:
+    """Half of the time is doubtful; whether anybody leads an arm that stands is not known either."""
+    bench = Bench(sensor=False)
+    bench.held(unseen(JointsFeel.HAND))
+    for tick in range(1, 152):
+        told = bench.see(unseen(feels))
+        assert (bench.alone.led, bench.alone.doubtful, told is None) == (False, tick > 75, tick <= 150)
+    bench = Bench(sensor=False)
+    bench.held(unseen(JointsFeel.HAND))
+    assert bench.alone.led
+    bench.see(unseen(feels, speed=0.0))
+    assert not bench.alone.led
+
+
+@pytest.mark.parametrize(("feels", "far"), [(JointsFeel.NOTHING, False), (JointsFeel.FALL, True)])
+@pytest.mark.parametrize("share", [0.49, 0.51, 0.99, 1.01])
+def test_a_payload_that_may_have_fallen_off_a_guided_arm_has_a_way_and_not_a_time(
+    share: float, feels: JointsFeel, far: bool
+) -> None:
+    """Half of it is doubtful."""
+    bench = Bench(sensor=False)
+    bench.held(unseen(JointsFeel.HAND))
+    assert bench.see(unseen(feels)) is None
+    told = bench.see(unseen(feels, share * AWAY))
+    assert told == (
+        {"distance": pytest.approx(1000.0 * share * AWAY), "time": 2 * TICK, "limit": MOVING} if far and share > 1.0 else None
+    )
+    assert bench.alone.doubtful is (far and 0.5 < share < 1.0)
+
+
+def test_half_of_the_way_from_rest_is_doubtful_without_the_sensor_too() -> None:
+    bench = Bench(sensor=False)
+    bench.see(at(0.0, 0.1))
+    bench.see(at(0.49 * AWAY, 0.1))
+    assert not bench.alone.doubtful
+    bench.see(at(0.51 * AWAY, 0.1))
+    assert bench.alone.doubtful
+    bench.held(at(0.51 * AWAY, 0.1))
     assert not bench.alone.doubtful
 
 

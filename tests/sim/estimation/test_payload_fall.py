@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from pendant.events.event import Kind
+from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import Mode
 from sim.arm.chain import Body, chain
 from sim.arm.scenario import Load, Scenario
@@ -21,7 +22,7 @@ from sim.flange.wrench_hypotheses import LONGEST
 from sim.plant.changes import DropPayload, SensorFault
 from sim.plant.touch import Pull, Push
 from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.calibration import STIFFNESS
+from sim.sensing.calibration import STIFFNESS, ripple_torque
 from tests.sim.arms import UR5E
 from tests.sim.bench import CENTRE, LONG, NOTHING, Bench
 
@@ -30,6 +31,7 @@ N = UR5E.n
 PAYLOAD = Body(3.0, np.array([0.01, -0.02, 0.08]), np.eye(3) * 0.004)
 BENT = np.array([0.3, -1.2, 1.5, -0.8, -1.2, 0.7])
 MOTION = np.array([[0.0] * N, [0.1, -0.3, 0.2, 0.5, -0.4, 0.2], [0.5, 1.0, -0.8, 0.4, 0.3, -0.2]])
+RIPPLE = ripple_torque(UR5E.transmissions)
 SETTLED = 100
 """Ticks after which the delay of the torques is over."""
 
@@ -62,7 +64,8 @@ class Joints:
 
     def tick(self, external: Array, *, free: bool = True, sensed: bool = False) -> bool:
         transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external))
-        return self.fall.update(BENT, self.motion, transmission, free=free, sensed=sensed)
+        fell, self.feels = self.fall.update(BENT, self.motion, transmission, free=free, sensed=sensed)
+        return fell
 
     def course(self, external: Array, before: Array | float = 0.0, ticks: int = SETTLED) -> list[bool]:
         """The joints feel `before`, and then `external` beyond it."""
@@ -100,6 +103,54 @@ def test_the_change_is_told_as_well_as_the_gears_stiffness_is_known(share: float
 def test_a_push_on_one_link_is_no_fall(joint: int) -> None:
     joints = Joints()
     assert not any(joints.course(40.0 * np.eye(N)[joint]))
+
+
+@pytest.mark.parametrize("joint", range(N))
+@pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.NOTHING), (1.01, JointsFeel.HAND), (-1.01, JointsFeel.HAND)])
+def test_within_the_ripple_of_each_encoder_it_is_nobody_and_beyond_it_of_one_a_hand(
+    joint: int, share: float, feels: JointsFeel
+) -> None:
+    joints = Joints(Body(0.0, np.zeros(3), np.zeros((3, 3))))
+    joints.course(share * np.diag(RIPPLE)[joint])
+    assert joints.feels is feels
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.NOTHING), (1.01, JointsFeel.HAND)])
+def test_of_what_a_gear_bears_more_or_less_than_at_entry_its_stiffness_hides_a_share(
+    share: float, feels: JointsFeel, way: float
+) -> None:
+    joints = Joints(Body(0.0, np.zeros(3), np.zeros((3, 3))))
+    joints.tick(np.zeros(N))
+    joints.model = joints.model + way * 10.0
+    joints.course(share * (RIPPLE + 10.0 * STIFFNESS))
+    assert joints.feels is feels
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.FALL), (1.01, JointsFeel.HAND)])
+@pytest.mark.parametrize("joint", [1, 2])
+def test_what_a_fallen_payload_explains_to_within_that_may_be_its_fall(
+    joint: int, share: float, feels: JointsFeel, way: float
+) -> None:
+    joints = Joints()
+    off = way * share * (RIPPLE + STIFFNESS * np.abs(joints.lost)) * np.eye(N)[joint]
+    joints.course(joints.lost + off)
+    assert joints.feels is feels
+    for _ in range(SETTLED):
+        joints.tick(np.zeros(N))
+    assert joints.feels is JointsFeel.NOTHING
+
+
+def test_outside_free_drive_and_while_the_flange_sensor_tells_nothing_is_felt() -> None:
+    joints = Joints()
+    for sensed in (True, False):
+        joints.tick(np.zeros(N), sensed=sensed)
+        for _ in range(SETTLED):
+            joints.tick(40.0 * np.ones(N), sensed=sensed)
+        assert joints.feels is (JointsFeel.NOTHING if sensed else JointsFeel.HAND)
+    joints.tick(40.0 * np.ones(N), free=False)
+    assert joints.feels is JointsFeel.NOTHING
 
 
 def test_a_payload_lighter_than_the_ripple_of_the_encoders_says_nothing() -> None:
