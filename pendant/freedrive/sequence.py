@@ -2,8 +2,6 @@
 
 import math
 
-from msgspec.structs import replace
-
 from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
@@ -106,11 +104,11 @@ class Sequence:
         """Check every parameter in a tick in which nothing is missing; those beyond their limits."""
         parts = split(around.mean.mean(), self._up) if self._wrench else None
         shares = self._shares(around.estimate, parts)
-        view = Observed(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares)
-        if parts is not None and self._payload is not None:
+        payload = self._payload
+        if parts is not None and payload is not None:
             # What the force has changed by since the start, a payload may have as well.
-            mass = self._payload.mass + mass_error(parts.payload_force - self._force)
-            view = replace(view, payload=PayloadError(mass, self._payload.margin))
+            payload = PayloadError(payload.mass + mass_error(parts.payload_force - self._force), payload.margin)
+        view = Observed(around.estimate, self._since, parts, self._joints, self._scale, self._share, shares, payload=payload)
         beyond = self._monitor.step(view)
         if self._against is None:
             return beyond
