@@ -176,12 +176,16 @@ class UnintendedMotion:
         return None, far
 
     def _unfelt(self, estimate: Estimate, moves: bool) -> tuple[Way | None, bool]:
-        """The same without the flange sensor, since the arm moves: of one that was at rest, or whose payload may have fallen."""
+        """The same without the flange sensor, since the arm moves: of one that was at rest, or whose payload may have fallen.
+
+        A fall would be helped on as a hand is, so that it is doubtful at once.
+        """
         self.led = False
-        if not (moves and (self._at_rest or estimate.joints_feel is JointsFeel.FALL)):
-            return None, False
+        fallen = estimate.joints_feel is JointsFeel.FALL
+        if not (moves and (self._at_rest or fallen)):
+            return None, fallen
         length, away = self._stretch.length(estimate), self._on.distance
-        return (self._stretch if length > away else None), length > HALF * away
+        return (self._stretch if length > away else None), fallen or length > HALF * away
 
     def _lasts(self, share: float, by_link: bool) -> bool:
         """Nobody has led the arm for this share of the time that it has."""
