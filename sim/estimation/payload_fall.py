@@ -15,6 +15,7 @@ more than the ripple of its encoder, and by the share that its stiffness is not 
 
     |error| <= ripple + STIFFNESS |model - model at entry|.
 
+Where the motor tells it, without the deflection, an error is larger than RARELY standard deviations once in a thousand times.
 A change within that in every joint is nobody's. One that is J' p within that, and within STIFFNESS |J' p|, may be a fall. Neither
 explains the torques of a hand.
 """
@@ -24,6 +25,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pendant.sensor.odds import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
@@ -96,7 +98,7 @@ class PayloadFall:
         if not self._blind:
             self._blind = True
             own["borne"] = model - external
-        moved = (*self._dynamics.specific_force(q, motion[1], motion[2]), model, external)
+        moved = (*self._dynamics.specific_force(q, motion[1], motion[2]), model, external, transmission.by_motor)
         fell, feels = _update(self._record, self._model, self._wrench.record, moved)
         return fell, JointsFeel(feels)
 
@@ -104,7 +106,7 @@ class PayloadFall:
 @kernel
 def _update(memory, rigid, wrenches, moved) -> tuple[bool, int]:
     own, payload, R, jacobian, v_F = memory[0], wrenches[0], rigid[0].R, rigid[0].jacobian, rigid[0].v_F
-    force, turn, model, external = moved
+    force, turn, model, external, by_motor = moved
     gyro, wrench = np.empty(3), np.empty(6)
     for k in range(3):
         gyro[k] = R[0, k] * v_F[3] + R[1, k] * v_F[4] + R[2, k] * v_F[5]
@@ -113,7 +115,7 @@ def _update(memory, rigid, wrenches, moved) -> tuple[bool, int]:
     change = left = 0.0
     nothing = falls = True
     for i in range(external.size):
-        wrong = own.ripple[i] + STIFFNESS * abs(model[i] - own.entry[i])
+        wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(model[i] - own.entry[i])
         felt = model[i] - delayed(own.borne, own.lag, model[i] - external[i], i) - own.before[i]
         change += felt * felt
         lost = 0.0

@@ -63,6 +63,7 @@ class TransmissionTorque:
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
         external_deviation: standard deviation of `external` at rest (n,): errors of the deflection and of the model's masses.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
+        by_motor: standard deviation of the motor's way (n,) where `external` is told by that, 0 where the deflection tells it.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
         contact: some joint feels a contact.
@@ -93,6 +94,7 @@ class TransmissionTorque:
             deviation=(n,),
             external=(n,),
             external_deviation=(n,),
+            by_motor=(n,),
             model=(n,),  # standard deviation of the rigid model where nothing is touched
         )
         own = self.record[0]
@@ -100,7 +102,7 @@ class TransmissionTorque:
         own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
-        self.external_deviation = own["external_deviation"]
+        self.external_deviation, self.by_motor = own["external_deviation"], own["by_motor"]
         self.forget()
         self.contact = False
         self._quiet = SETTLE_TICKS
@@ -171,7 +173,7 @@ def _compare(own, rubbing, use) -> bool:
         rubs = friction_deviation[i] ** 2 + stiction[i] ** 2
         deviations[2, i] = np.sqrt((MOTOR_CONSTANT * ways[2, i]) ** 2 + rubs + floor**2)
         other = 1 if use[1, i] else 2
-        external[i] = 0.0
+        external[i], own.by_motor[i] = 0.0, 0.0 if other == 1 else deviations[2, i]
         if not use[0, i] or not (use[1, i] or use[2, i]):
             continue
         external[i] = dynamics - ways[other, i]

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from pendant.events.event import Kind
+from pendant.sensor.odds import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import Mode
 from sim.arm.chain import Body, chain
@@ -43,7 +44,7 @@ class Joints:
 
     def __init__(self, payload: Body = PAYLOAD, motion: Array = MOTION) -> None:
         rigid = chain(UR5E)
-        self.motion, self.model = motion, np.full(N, 20.0)
+        self.motion, self.model, self.by_motor = motion, np.full(N, 20.0), np.zeros(N)
         self.lost = self.needs(payload, motion)
         dynamics = Dynamics(rigid, rigid.links, payload, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
         dynamics.recursion.run(BENT, motion, np.zeros(3))
@@ -63,7 +64,7 @@ class Joints:
         return torques[0] - torques[1]
 
     def tick(self, external: Array, *, free: bool = True, sensed: bool = False) -> bool:
-        transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external))
+        transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external, by_motor=self.by_motor))
         fell, self.feels = self.fall.update(BENT, self.motion, transmission, free=free, sensed=sensed)
         return fell
 
@@ -124,6 +125,15 @@ def test_of_what_a_gear_bears_more_or_less_than_at_entry_its_stiffness_hides_a_s
     joints.tick(np.zeros(N))
     joints.model = joints.model + way * 10.0
     joints.course(share * (RIPPLE + 10.0 * STIFFNESS))
+    assert joints.feels is feels
+
+
+@pytest.mark.parametrize("joint", range(N))
+@pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.NOTHING), (1.01, JointsFeel.HAND)])
+def test_a_joint_whose_motor_tells_its_torque_is_believed_as_far_as_that_is(joint: int, share: float, feels: JointsFeel) -> None:
+    joints = Joints(Body(0.0, np.zeros(3), np.zeros((3, 3))))
+    joints.by_motor[joint] = 4.0
+    joints.course(share * RARELY * joints.by_motor)
     assert joints.feels is feels
 
 

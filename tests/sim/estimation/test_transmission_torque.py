@@ -60,6 +60,14 @@ def test_each_way_alone_is_all_there_is() -> None:
         np.testing.assert_allclose(Gears().tick(1.0, 2.0, 3.0, use=only(way)).fused, value)
 
 
+def test_the_joints_whose_motor_tells_the_external_torque_have_its_deviation() -> None:
+    use = ALL.copy()
+    use[1, 2] = False
+    module = Gears().tick(5.0, 3.0, 4.0, friction_deviation=0.5, use=use)
+    assert module.by_motor[2] == module.deviations[2, 2] > 0.5
+    assert (np.delete(module.by_motor, 2) == 0.0).all()
+
+
 def test_without_any_way_the_last_torque_stands() -> None:
     gears = Gears()
     last = gears.tick(4.0, 4.0, 4.0).fused.copy()
