@@ -2,8 +2,9 @@
 
 A step of the sensor is first known by its onset (`sim.flange.wrench_steps`), from 20 ms that may not be enough: one of 5 N may
 seem a hand's, where a heavy load makes noise. So the joints are asked unless a hand is as sure as a step has to be. They answer
-later: first the arm swings on its springs. From then on they feel a force at the flange, and not a step of its sensor. With the
-sensor's wrench w, the flange's Jacobian J and the external torques tau_ext of the joints, the torques
+later: first the arm swings on its springs. From then on they feel a force at the flange, and not a step of its sensor; they are
+heard for as long as that took, and averaged, for the arm swings on. With the sensor's wrench w, the flange's Jacobian J and the
+external torques tau_ext of the joints, the torques
 
     d = J' w - tau_ext
 
@@ -34,7 +35,10 @@ ANSWER = ticks(JOINTS_SWING)
 """Ticks after which the joints have answered: the arm has swung on its springs."""
 
 LATELY = TICK / JOINTS_SWING
-"""Weight of a tick in what d was lately, and in how steady; what it is now has five times as much."""
+"""Weight of a tick in what d was lately, and in how steady."""
+
+BRIEF = 0.2 * ANSWER
+"""Ticks over which d is averaged until the joints have answered; then over all of the answer, for the arm still swings."""
 
 KEPT = LONGEST + 2
 """Ticks for which it is known what was lately: the onset of a step is so old at most."""
@@ -100,7 +104,7 @@ def _update(answers, forces, wrenches, model) -> None:
         off = felt.apart[i] - own.lately[i]
         own.lately[i] += LATELY * off
         own.unrest[i] += LATELY * (off * off - own.unrest[i])
-        own.now[i] += 5.0 * LATELY * (felt.apart[i] - own.now[i])
+        own.now[i] += max(1.0 / (BRIEF + max(own.since - ANSWER, 0)), LATELY) * (felt.apart[i] - own.now[i])
         own.means[here, i], own.variances[here, i] = own.lately[i], own.unrest[i]
     own.next, own.count = (here + 1) % KEPT, min(own.count + 1, KEPT)
     if own.since:
@@ -110,7 +114,7 @@ def _update(answers, forces, wrenches, model) -> None:
     own.odds = wrench.stepped
     if own.since:
         own.odds = own.onset + (_answered(own) if own.since > ANSWER else 0.0)
-        if own.since > ANSWER and own.odds < -SUSPECTED:
+        if own.since > 2 * ANSWER and own.odds < -SUSPECTED:
             own.since = 0
 
 

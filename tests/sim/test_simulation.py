@@ -252,6 +252,7 @@ def test_a_snapshot_never_changes_afterwards() -> None:
             "lost_odds",
             "lost_share",
             "step_odds",
+            "step_force",
             "payload_fell",
             "joints_feel",
         }

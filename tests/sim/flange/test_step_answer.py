@@ -75,9 +75,24 @@ def test_what_the_joints_do_not_feel_is_the_sensors(seed: int) -> None:
 @pytest.mark.parametrize("share", [0.0, 0.2, -0.2])
 def test_what_they_feel_is_a_force(share: float, seed: int) -> None:
     """Within what is known of the gears' stiffness."""
-    told = Joints(seed=seed).course(share)
-    assert told[ANSWER + 1] < -SUSPECTED
-    assert told[ANSWER + 2 :] == [-math.inf] * (98 - ANSWER), "then nothing is suspected any more"
+    told = Joints(seed=seed).course(share, 3 * ANSWER)
+    answered, over = told[ANSWER + 1 : 2 * ANSWER + 2], told[2 * ANSWER + 2 :]
+    assert -math.inf < max(answered) < -SUSPECTED, "they are heard for as long as they took"
+    assert over == [-math.inf] * (ANSWER - 2), "then nothing is suspected any more"
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+@pytest.mark.parametrize("turn", [0.0, 0.5, 1.0, 1.5])
+def test_an_arm_that_swings_about_its_answer_is_heard_out(share: float, turn: float) -> None:
+    """By as much as the step makes, in 50 ms, wherever the swing begins."""
+    joints, before = Joints(onset=-4.0), np.full(UR5E.n, 2.0)
+    joints.quiet(before)
+    told = [
+        joints.tick(before + (share + math.sin(math.pi * (tick / 12.5 + turn))) * joints.torques, 2 if tick == 2 else 0)
+        for tick in range(1, 2 * ANSWER)
+    ]
+    assert (told[-1] > SUSPECTED) is (share == 1.0)
+    assert (told[-1] < -SUSPECTED) is (share == 0.0)
 
 
 def test_what_neither_explains_is_no_evidence() -> None:
@@ -92,7 +107,7 @@ def test_it_goes_on_until_the_joints_decide() -> None:
     told = joints.course(20.0, ticks=100, after=None)
     assert told[-1] == pytest.approx(joints.onset, abs=1e-6)
     before = np.full(UR5E.n, 2.0)
-    assert [joints.tick(before) for _ in range(60)][-1] == -math.inf
+    assert [joints.tick(before) for _ in range(500)][-1] == -math.inf
 
 
 @pytest.mark.parametrize(("onset", "suspected"), [(-KNOWN, True), (-KNOWN - 1e-6, False)])
