@@ -1,5 +1,6 @@
 """What the product ships: arms and tools by name, and the meshes that go with them. A path in place of a name reads that file."""
 
+import os
 from functools import lru_cache
 from pathlib import Path
 
@@ -81,11 +82,12 @@ def _names(folder: str) -> list[str]:
 
 
 def _path(name_or_path: str | Path, folder: str, what: str, where: str) -> Path:
-    """A shipped name wins over a file of that name; what looks like a path is one."""
+    """A shipped name wins over a file of that name; what looks like a path is one, but for that of a folder."""
     text = str(name_or_path)
     if text in _names(folder):
         return ASSETS / folder / f"{text}.yaml"
     path = Path(name_or_path)
-    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
+    folder_there = os.path.isdir(path)  # noqa: PTH112 - a path's own method raises where a name is too long
+    if (path.suffix in (".yaml", ".yml") or len(path.parts) > 1) and not folder_there:
         return path
     raise BadInput(where, what, text, f"expected one of {', '.join(_names(folder))}, or the path of a YAML file")

@@ -37,6 +37,7 @@ TOPICS = {
         "payload-falls",
         "payload-falls-light",
         "payload-falls-unseen",
+        "guided-unseen",
         "way-back",
     ),
     "Limits, walls, locked axes": (
