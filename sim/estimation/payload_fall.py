@@ -16,8 +16,8 @@ more than the ripple of its encoder, and by the share that its stiffness is not 
     |error| <= ripple + STIFFNESS |model - model at entry|.
 
 Where the motor tells it, without the deflection, an error is larger than RARELY standard deviations once in a thousand times.
-A change within that in every joint is nobody's. One that is J' p within that, and within STIFFNESS |J' p|, may be a fall. Neither
-explains the torques of a hand.
+Three cases follow. Where the change of every joint is within its error, nothing is felt. Where it differs from J' p by no more
+than its error and STIFFNESS |J' p|, the payload may have fallen. Else a hand is there.
 """
 
 import math
