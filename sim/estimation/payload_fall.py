@@ -17,7 +17,8 @@ more than the ripple of its encoder, and by the share that its stiffness is not 
 
 Where the motor tells it, without the deflection, an error is larger than RARELY standard deviations once in a thousand times.
 Three cases follow. Where the change of every joint is within its error, nothing is felt. Where it differs from J' p by no more
-than its error and STIFFNESS |J' p|, the payload may have fallen. Else a hand is there.
+than its error and STIFFNESS |J' p|, the payload may have fallen, unless all of J' p is within the errors, too: a payload that no
+joint would miss does not move an arm that its friction holds. Else a hand is there.
 """
 
 import math
@@ -113,7 +114,7 @@ def _update(memory, rigid, wrenches, moved) -> tuple[bool, int]:
     needed((payload.mass, payload.com, payload.inertia), (force, gyro, turn), wrench)
     turn_both(R, wrench, wrench)
     change = left = 0.0
-    nothing = falls = True
+    nothing = falls = unmissed = True
     for i in range(external.size):
         wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(model[i] - own.entry[i])
         felt = model[i] - delayed(own.borne, own.lag, model[i] - external[i], i) - own.before[i]
@@ -124,5 +125,6 @@ def _update(memory, rigid, wrenches, moved) -> tuple[bool, int]:
         left += (felt - lost) * (felt - lost)
         nothing = nothing and abs(felt) <= wrong
         falls = falls and abs(felt - lost) <= wrong + STIFFNESS * abs(lost)
+        unmissed = unmissed and abs(lost) <= wrong
     own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
-    return own.lasts >= LONGEST, NOTHING if nothing else FALL if falls else HAND
+    return own.lasts >= LONGEST, NOTHING if nothing else FALL if falls and not unmissed else HAND

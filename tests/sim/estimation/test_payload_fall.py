@@ -152,6 +152,16 @@ def test_what_a_fallen_payload_explains_to_within_that_may_be_its_fall(
     assert joints.feels is JointsFeel.NOTHING
 
 
+@pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.HAND), (1.01, JointsFeel.FALL)])
+def test_a_payload_that_no_joint_would_miss_explains_nothing(share: float, feels: JointsFeel) -> None:
+    whole = Joints(motion=0.0 * MOTION).lost
+    mass = share * PAYLOAD.mass / float(np.max(np.abs(whole) / RIPPLE))
+    joints = Joints(Body(mass, PAYLOAD.com, np.zeros((3, 3))), 0.0 * MOTION)
+    felt = np.where(np.abs(joints.lost) == np.max(np.abs(joints.lost)), joints.lost + 0.5 * np.sign(joints.lost) * RIPPLE, 0.0)
+    joints.course(felt)
+    assert joints.feels is feels
+
+
 def test_outside_free_drive_and_while_the_flange_sensor_tells_nothing_is_felt() -> None:
     joints = Joints()
     for sensed in (True, False):
