@@ -143,7 +143,7 @@ def shown(value: float | str | None) -> str:
 def main(name: str, measure: Callable[[Report], None]) -> None:
     """Run one bench from the command line."""
     parser = argparse.ArgumentParser(prog=f"python -m benchmarks.{name}", description=sys.modules["__main__"].__doc__)
-    parser.add_argument("--full", action="store_true", help="the full size, up to 30 minutes")
+    parser.add_argument("--full", action="store_true", help="the full size, up to two hours")
     parser.add_argument("--seed", type=int, default=BASES[0], help="seed base")
     parser.add_argument("--out", type=Path, default=Path("out/bench"), help="folder of the JSON file")
     if name in arms.BENCHES:

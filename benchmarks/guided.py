@@ -199,13 +199,13 @@ def leads(report: Report, minutes: float) -> list[Lead]:
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    results = spread(measure_lead, leads(report, 303.0 if report.options.full else 20.0))
+    results = spread(measure_lead, leads(report, 1510.0 if report.options.full else 20.0))
     led = [result for result in results if result.entered]
     minutes = sum(result.led for result in led)
     ends = [result for result in led if result.end]
     report.share("free-drives, entered", len(led), len(results))
     report.row("guided", minutes, "min", n=len(led))
-    report.row("involuntary ends in 300 guided minutes", 300.0 * len(ends) / minutes, "", at_most=1.0, n=len(led))
+    report.share("guided minutes in which free-drive ends although a hand leads", len(ends), round(minutes), at_most=1.0 / 500.0)
     for style in STYLES:
         some = [result for result in led if result.lead.style == style]
         report.share(f"{style}: involuntary ends", sum(bool(result.end) for result in some), len(some))
