@@ -9,8 +9,7 @@ import numpy as np
 
 from benchmarks.arms import heaviest, senses
 from benchmarks.common import Report, main, spread
-from benchmarks.drop import enter
-from benchmarks.hold import IDLE, MOUNTINGS, flange
+from benchmarks.hold import IDLE, MOUNTINGS, enter, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from pendant.all_settings import apply
 from pendant.event_table import TABLE

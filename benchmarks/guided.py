@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from benchmarks.arms import heaviest
 from benchmarks.common import Report, main, spread
-from benchmarks.drop import enter
-from benchmarks.hold import IDLE, MOUNTINGS
+from benchmarks.hold import IDLE, MOUNTINGS, enter
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from pendant.event_table import TABLE
 from pendant.events.event import Kind

@@ -15,7 +15,7 @@ from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
-from sim.plant.touch import Pull, Push
+from sim.plant.touch import Pull, Push, Touch
 from sim.simulation import Simulation
 
 ARMS = ("ur3e", "ur5e", "ur10e", "ur16e")
@@ -59,6 +59,14 @@ def flange(simulation: Simulation) -> np.ndarray:
     return 1000.0 * plant.data.xpos[plant.model.body("flange").id]
 
 
+def enter(device: Simulation, touches: tuple[Touch, ...] = ()) -> bool:
+    """Hold the button until free-drive is on, then let go, with hands on the arm."""
+    for _ in range(1000):
+        if device.tick(Wishes(HOLD.inputs, touches, ())).mode is Mode.FREE_DRIVE:
+            return device.tick(Wishes(RELEASE.inputs, touches, ())).mode is Mode.FREE_DRIVE
+    return False
+
+
 def travel(simulation: Simulation, seconds: float, start: np.ndarray) -> float:
     """Largest distance of the flange from `start` while nobody does anything [mm]."""
     worst = 0.0
@@ -84,14 +92,6 @@ def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
         if np.linalg.svd(jacobian, compute_uv=False)[-1] > smallest_singular(arm):
             return q.tolist(), redrawn
         redrawn += 1
-
-
-def enter(simulation: Simulation) -> bool:
-    """Hold the button until free-drive is on, then let go."""
-    settings = simulation.settings
-    for _ in range(round(500 * (settings.activation.period + settings.sequence.period)) + 20):
-        simulation.tick(HOLD)
-    return simulation.tick(RELEASE).mode is Mode.FREE_DRIVE
 
 
 def easiest(simulation: Simulation) -> np.ndarray:

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.common import Report, main, spread
-from benchmarks.drop import enter
 from benchmarks.guided import grip
-from benchmarks.hold import IDLE, MOUNTINGS, flange
+from benchmarks.hold import IDLE, MOUNTINGS, enter, flange
 from benchmarks.payload import Case, draw, simulation
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs

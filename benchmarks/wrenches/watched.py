@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.drop import LONG, PACE, enter
-from benchmarks.hold import IDLE, flange
+from benchmarks.drop import LONG, PACE
+from benchmarks.hold import IDLE, enter, flange
 from benchmarks.payload import Case, simulation
 from benchmarks.use import free_way
 from pendant.all_settings import Settings, apply
