@@ -79,7 +79,7 @@ class UnintendedMotion:
         self._doubted = 0  # ticks of the doubt
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
-        self._whole = Way(since)  # since it has been at rest
+        self._whole = Way(since)  # since it has been at rest; without the flange sensor, since the payload may have fallen
         self._helped = 0.0  # so much of it was not doubtful [m]
         self.led = self.doubtful = False
 
@@ -135,6 +135,8 @@ class UnintendedMotion:
                 stretch.begin(estimate)
             self._ticks += 1
             stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
+        if not use_wrench and estimate.joints_feel is not JointsFeel.FALL:
+            whole.begin(estimate)
         if caused:
             self._at_rest = False
             self.led = moves and by_link and stretch.work.settled
@@ -142,7 +144,8 @@ class UnintendedMotion:
             return None
         if not (moves or self._at_rest):
             self._at_rest, self._helped = True, 0.0
-            whole.begin(estimate)
+            if use_wrench:
+                whole.begin(estimate)
         too_long, far = self._since_rest(estimate, wrench, by_link) if use_wrench else self._unfelt(estimate, moves)
         if too_long is not None:
             return too_long
@@ -176,16 +179,18 @@ class UnintendedMotion:
         return None, far
 
     def _unfelt(self, estimate: Estimate, moves: bool) -> tuple[Way | None, bool]:
-        """The same without the flange sensor, since the arm moves: of one that was at rest, or whose payload may have fallen.
+        """The same without the flange sensor: since the payload may have fallen, however slowly; else of an arm that was at rest,
+        since it moves.
 
         A fall would be helped on as a hand is, so that it is doubtful at once.
         """
         self.led = False
         fallen = estimate.joints_feel is JointsFeel.FALL
-        if not (moves and (self._at_rest or fallen)):
-            return None, fallen
-        length, away = self._stretch.length(estimate), self._on.distance
-        return (self._stretch if length > away else None), fallen or length > HALF * away
+        if not (fallen or (moves and self._at_rest)):
+            return None, False
+        way = self._whole if fallen else self._stretch
+        length, away = way.length(estimate), self._on.distance
+        return (way if length > away else None), fallen or length > HALF * away
 
     def _lasts(self, share: float, by_link: bool) -> bool:
         """Nobody has led the arm for this share of the time that it has."""

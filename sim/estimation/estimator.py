@@ -22,7 +22,7 @@ from sim.estimation.joint_tracking import (
     tracking_gains,
 )
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.payload_fall import PayloadFall
+from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.fall_answer import FallAnswer
@@ -87,7 +87,7 @@ class Estimator:
         self.wrench = ExternalWrench(arm, self.forces)
         self.step = StepAnswer(arm.n, self.forces, self.wrench)
         self.change = FallAnswer(self.wrench)
-        self.fall = PayloadFall(arm, dynamics, self.wrench)
+        self.fall = PayloadFall(arm, dynamics.recursion, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
         self._known: Estimate | None = None
         self.tick = 0
@@ -164,8 +164,8 @@ class Estimator:
         known.energy = self._energy(self._dynamics.recursion.energy)
         known.lost_odds, known.lost_share = self.change.odds, self.change.share
         known.step_odds, known.step_force = self.step.odds, self.step.size
-        felt = self.fall.update(self.q, self._q, self.transmission, free=self._free, sensed=sensed)
-        known.payload_fell, known.joints_feel = felt
+        joints = JointTorques(self.momentum, self.transmission, self._deflection)
+        known.payload_fell, known.joints_feel = self.fall.update(self.q, joints, free=self._free, sensed=sensed)
 
     def _energy(self, links: Array) -> float:
         """Kinetic energy of the `links` (1,) and of the rotors [J]."""

@@ -7,8 +7,15 @@ flange's Jacobian J, the joints then feel
 
 A hand makes these torques, too, if it pushes upward as hard as the payload weighs, and harder the faster the arm rises. Gears
 tell torques as well as their stiffness is known; so the payload fell where all but that share of the change is as J' p says, for
-as long as a fall is looked at elsewhere. A swinging link needs a torque that its gear shows at once and its acceleration later:
-what gears bear is delayed as much as accelerations are.
+as long as a fall is looked at elsewhere.
+
+Both sides come from momenta, without accelerations, which would be known too late: an arm that has lost its payload gains 5 mm/s
+in each millisecond. The momentum observer tells the torques, and with the payload's momentum P and angular momentum L about the
+flange origin, which moves with v, and its centre at c from there,
+
+    force = P' - m g,    moment = L' + v x P - c x m g,
+
+with the same lag as the observer's. Encoders' noise alternates, so the mean of some ticks is looked at.
 
 Most of the time what is felt is neither, and the question is who may move the arm. What a joint tells since entry is wrong by no
 more than the ripple of its encoder, and by the share that its stiffness is not known of what its gear bears more or less:
@@ -22,6 +29,7 @@ joint would miss does not move an arm that its friction holds. Else a hand is th
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,99 +40,143 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
-from sim.estimation.transmission_torque import DYNAMICS, TransmissionTorque
+from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver
+from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
-from sim.flange.flange_forces import needed, turn_both
 from sim.flange.wrench_hypotheses import LONGEST
-from sim.rigid_body.dynamics import Dynamics
+from sim.rigid_body.newton_euler import NewtonEuler, cross, turned, turned_back
 from sim.sensing.calibration import STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
 NOTHING, FALL, HAND = (int(each) for each in JointsFeel)  # as kernels know them
 NOT_ASKED = False, JointsFeel.NOTHING
+MEAN = LONGEST // 2  # ticks of which the mean is looked at; for the other half of `LONGEST` it has to be a fall
+
+
+class JointTorques(NamedTuple):
+    """What the joints tell of a tick."""
+
+    momentum: MomentumObserver  # of all contacts, as there is no flange sensor
+    transmission: TransmissionTorque
+    deflection: Array  # torque that it bears as believed (n,) [N·m]
 
 
 class PayloadFall:
     """One tick at a time, in free-drive alone."""
 
-    def __init__(self, arm: Arm, dynamics: Dynamics, wrench: ExternalWrench) -> None:
+    def __init__(self, arm: Arm, rigid: NewtonEuler, wrench: ExternalWrench) -> None:
         """
         Args:
             arm: the numbers of its gears and encoders.
-            dynamics: the controller's rigid model, whose recursion has been run in the tick before `update`.
+            rigid: the controller's rigid model, which has been run with the tick's angles before `update`.
             wrench: knows the payload that may fall.
         """
-        self._dynamics, self._model, self._wrench = dynamics, dynamics.recursion.record, wrench
+        self._rigid, self._wrench = rigid.record, wrench
         self._record = record(
             before=(arm.n,),  # tau_ext at entry [N·m]
             entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
-            borne=(3, arm.n),  # by the gears, delayed
-            lag=(),
             ripple=(arm.n,),  # what the encoder alone may change a torque by [N·m]
             noise=(),  # sum of its squares [N²·m²]
+            gain=(),  # of the momentum observer
+            q=(arm.n,),  # a tick ago [rad]
+            momentum=(6,),  # P and L a tick ago, in B [N·s, N·m·s]
+            needed=(2, 6),  # force and moment behind the first and the second of both filters [N, N·m]
+            latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
+            ticks="i8",  # since both run
             lasts="i8",  # ticks
         )
         own = self._own = self._record[0]
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
-        own["lag"] = 1.0 - math.exp(-2.0 * math.pi * TORQUE_BANDWIDTH * TICK)
+        own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
         self._begun = self._blind = False
 
-    def update(
-        self, q: Array, motion: Array, transmission: TransmissionTorque, *, free: bool, sensed: bool
-    ) -> tuple[bool, JointsFeel]:
+    def update(self, q: Array, joints: JointTorques, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
         """One tick. Returns whether the payload fell, and what explains the torques of this tick.
 
-        Outside free-drive, and while the flange sensor tells that, it did not, and nothing is felt.
+        Outside free-drive, while the flange sensor tells that, and while the observer begins, it did not, and nothing is felt.
 
         Args:
-            q: joint angles (n,) [rad].
-            motion: (3, n), of which rows 1 and 2 count: speed [rad/s] and acceleration [rad/s²].
-            transmission: updated in the same tick.
+            q: joint angles (n,) as measured [rad].
+            joints: of the same tick.
             free: free-drive is on.
             sensed: the flange sensor is valid; once it was not, the joints go on to tell.
         """
         if not free:
             self._begun = False
             return NOT_ASKED
-        own = self._own
+        own, transmission = self._own, joints.transmission
+        model, by_motor = transmission.ways[DYNAMICS], transmission.by_motor
         if not self._begun:
-            self._begun, self._blind, own["lasts"] = True, False, 0
-            own["before"], own["entry"] = transmission.external, transmission.ways[DYNAMICS]
-        if sensed and not self._blind:
+            self._begun, self._blind, own["ticks"] = True, False, 0
+            own["entry"] = model
+            own["before"] = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], joints.deflection)
+        self._blind = self._blind or not sensed
+        if not self._blind or not joints.momentum.ready:
+            own["ticks"] = 0
             return NOT_ASKED
-        model, external = transmission.ways[DYNAMICS], transmission.external
-        if not self._blind:
-            self._blind = True
-            own["borne"] = model - external
-        moved = (*self._dynamics.specific_force(q, motion[1], motion[2]), model, external, transmission.by_motor)
-        fell, feels = _update(self._record, self._model, self._wrench.record, moved)
+        felt = q, model, joints.momentum.residual, by_motor
+        fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
         return fell, JointsFeel(feels)
 
 
 @kernel
-def _update(memory, rigid, wrenches, moved) -> tuple[bool, int]:
-    own, payload, R, jacobian, v_F = memory[0], wrenches[0], rigid[0].R, rigid[0].jacobian, rigid[0].v_F
-    force, turn, model, external, by_motor = moved
-    gyro, wrench = np.empty(3), np.empty(6)
-    for k in range(3):
-        gyro[k] = R[0, k] * v_F[3] + R[1, k] * v_F[4] + R[2, k] * v_F[5]
-    needed((payload.mass, payload.com, payload.inertia), (force, gyro, turn), wrench)
-    turn_both(R, wrench, wrench)
+def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
+    own, jacobian, place = memory[0], model[0].jacobian, memory[0].ticks % MEAN
+    q, bears, external, by_motor = felt
+    _need(own, model[0], wrenches[0], q)
+    if own.ticks == 0:
+        own.latest[:], own.lasts = 0.0, 0
+    own.ticks += 1
     change = left = 0.0
     nothing = falls = unmissed = True
-    for i in range(external.size):
-        wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(model[i] - own.entry[i])
-        felt = model[i] - delayed(own.borne, own.lag, model[i] - external[i], i) - own.before[i]
-        change += felt * felt
-        lost = 0.0
+    for i in range(q.size):
+        wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(bears[i] - own.entry[i])
+        own.latest[place, 0, i], own.latest[place, 1, i] = external[i] - own.before[i], 0.0
         for k in range(6):
-            lost += jacobian[k, i] * wrench[k]
-        left += (felt - lost) * (felt - lost)
-        nothing = nothing and abs(felt) <= wrong
-        falls = falls and abs(felt - lost) <= wrong + STIFFNESS * abs(lost)
+            own.latest[place, 1, i] += jacobian[k, i] * own.needed[1, k]
+        more = lost = 0.0
+        for k in range(MEAN):
+            more += own.latest[k, 0, i] / MEAN
+            lost += own.latest[k, 1, i] / MEAN
+        change += more * more
+        left += (more - lost) * (more - lost)
+        nothing = nothing and abs(more) <= wrong
+        falls = falls and abs(more - lost) <= wrong + STIFFNESS * abs(lost)
         unmissed = unmissed and abs(lost) <= wrong
     own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
-    return own.lasts >= LONGEST, NOTHING if nothing else FALL if falls and not unmissed else HAND
+    return own.lasts >= LONGEST - MEAN, NOTHING if nothing else FALL if falls and not unmissed else HAND
+
+
+@kernel
+def _need(own, rigid, payload, q) -> None:
+    """The wrench that the payload needs at the flange, in B, as late as the momentum observer's torques."""
+    v, w = np.zeros(3), np.zeros(3)
+    if own.ticks > 0:
+        for i in range(q.size):
+            speed = (q[i] - own.q[i]) / TICK
+            for k in range(3):
+                v[k] += rigid.jacobian[k, i] * speed
+                w[k] += rigid.jacobian[3 + k, i] * speed
+    own.q[:] = q
+    m, g, c = payload.mass, rigid.gravity, turned(rigid.R, payload.com)
+    around, lever = cross(w, c), cross(c, v)
+    spin = turned(rigid.R, turned(payload.inertia, turned_back(rigid.R, w)))
+    P = (m * (v[0] + around[0]), m * (v[1] + around[1]), m * (v[2] + around[2]))
+    L = (m * lever[0] + spin[0], m * lever[1] + spin[1], m * lever[2] + spin[2])
+    carried, heavy = cross(v, P), cross(c, g)
+    for k in range(3):
+        _follow(own, k, P[k], -m * g[k])
+        _follow(own, 3 + k, L[k], carried[k] - m * heavy[k])
+
+
+@kernel
+def _follow(own, k, momentum, rest) -> None:
+    """The change of a momentum, and the `rest` of what it takes, through both filters."""
+    if own.ticks < 2:  # before, there is no speed to compare with
+        own.needed[0, k] = own.needed[1, k] = rest
+    else:
+        own.needed[0, k] += own.gain * ((momentum - own.momentum[k]) / TICK + rest - own.needed[0, k])
+        own.needed[1, k] += own.gain * (own.needed[0, k] - own.needed[1, k])
+    own.momentum[k] = momentum

@@ -267,6 +267,23 @@ def test_a_payload_that_may_have_fallen_off_a_guided_arm_has_a_way_and_not_a_tim
     )
 
 
+@pytest.mark.parametrize("led", [True, False])
+@pytest.mark.parametrize("speed", [0.0, 0.019, 0.1])
+def test_the_way_of_a_fall_begins_with_it_and_counts_however_slow_it_is(speed: float, led: bool) -> None:
+    bench = Bench(sensor=False)
+    if led:
+        bench.held(unseen(JointsFeel.HAND, 0.0, 0.1))
+    assert bench.until([unseen(JointsFeel.NOTHING, 0.1, speed), unseen(JointsFeel.FALL, 0.1 + 0.99 * AWAY, speed)]) is None
+    told = bench.see(unseen(JointsFeel.FALL, 0.1 + 1.01 * AWAY, speed))
+    assert told is not None
+    assert told["distance"] == pytest.approx(1010.0 * AWAY)
+    bench = Bench(sensor=False)
+    assert bench.until([unseen(JointsFeel.FALL, 0.0, speed), unseen(JointsFeel.FALL, 0.99 * AWAY, speed)]) is None
+    bench.held(unseen(JointsFeel.HAND, 0.99 * AWAY, 0.1))
+    assert bench.see(unseen(JointsFeel.FALL, 1.98 * AWAY, speed)) is None, "a hand between two falls begins it anew"
+    assert bench.see(unseen(JointsFeel.FALL, 2.0 * AWAY, speed)) is not None
+
+
 def test_half_of_the_way_from_rest_is_doubtful_without_the_sensor_too() -> None:
     bench = Bench(sensor=False)
     bench.see(at(0.0, 0.1))

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from pendant.events.event import Kind
 from pendant.sensor.odds import RARELY
 from pendant.tick.estimate import JointsFeel
-from pendant.tick.modes import Mode
+from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
 from sim.arm.scenario import Load, Scenario
-from sim.estimation.payload_fall import PayloadFall
-from sim.estimation.transmission_torque import TransmissionTorque
+from sim.estimation.momentum_observer import BANDWIDTH
+from sim.estimation.payload_fall import MEAN, JointTorques, PayloadFall
 from sim.exchange.desk import Wishes
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
@@ -31,41 +31,54 @@ Array = NDArray[np.float64]
 N = UR5E.n
 PAYLOAD = Body(3.0, np.array([0.01, -0.02, 0.08]), np.eye(3) * 0.004)
 BENT = np.array([0.3, -1.2, 1.5, -0.8, -1.2, 0.7])
+STILL = np.zeros((3, N))
 MOTION = np.array([[0.0] * N, [0.1, -0.3, 0.2, 0.5, -0.4, 0.2], [0.5, 1.0, -0.8, 0.4, 0.3, -0.2]])
 RIPPLE = ripple_torque(UR5E.transmissions)
 SETTLED = 100
-"""Ticks after which the delay of the torques is over."""
+"""Ticks after which the mean of the last ticks is that of one."""
+LATE = 2.0 / (2.0 * np.pi * BANDWIDTH) + 0.5 * TICK
+"""Of the torques, and of what a payload needs [s]: two filters, and the speed is that between two ticks."""
 
 SENSORLESS = replace(UR5E, sensors=replace(UR5E.sensors, force_torque=None, accelerometer=None, gyro=None))
 
 
 class Joints:
-    """An arm in one motion, whose joints feel what a test wants."""
+    """An arm in one motion, of constant acceleration, whose joints feel what a test wants."""
 
-    def __init__(self, payload: Body = PAYLOAD, motion: Array = MOTION) -> None:
-        rigid = chain(UR5E)
-        self.motion, self.model, self.by_motor = motion, np.full(N, 20.0), np.zeros(N)
-        self.lost = self.needs(payload, motion)
-        dynamics = Dynamics(rigid, rigid.links, payload, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
-        dynamics.recursion.run(BENT, motion, np.zeros(3))
-        wrench = ExternalWrench(UR5E, FlangeForces(dynamics))
+    def __init__(self, payload: Body = PAYLOAD, motion: Array = STILL) -> None:
+        self.payload, self.motion, self.t = payload, motion, 0.0
+        self.model, self.by_motor, self.ready = np.full(N, 20.0), np.zeros(N), True
+        self.arm, self.bare = (self.carrying(load) for load in (payload, Body(0.0, np.zeros(3), np.zeros((3, 3)))))
+        self.lost = self.needed(0.0)
+        wrench = ExternalWrench(UR5E, FlangeForces(self.arm))
         wrench.set_load(payload, payload)
-        self.fall = PayloadFall(UR5E, dynamics, wrench)
+        self.fall = PayloadFall(UR5E, self.arm.recursion, wrench)
 
     @staticmethod
-    def needs(payload: Body, motion: Array) -> Array:
-        """What a payload alone takes of each joint in a motion [N·m], by the rigid model with it and without."""
-        torques: list[Array] = []
-        for load in (payload, Body(0.0, np.zeros(3), np.zeros((3, 3)))):
-            rigid = chain(UR5E)
-            dynamics = Dynamics(rigid, rigid.links, load, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
-            dynamics.recursion.run(BENT, motion, np.zeros(3))
-            torques.append(dynamics.recursion.torque.copy())
-        return torques[0] - torques[1]
+    def carrying(load: Body) -> Dynamics:
+        rigid = chain(UR5E)
+        return Dynamics(rigid, rigid.links, load, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
+
+    def at(self, t: float) -> Array:
+        """The joint angles then."""
+        return BENT + self.motion[1] * t + 0.5 * self.motion[2] * t**2
+
+    def needed(self, t: float) -> Array:
+        """What the payload alone takes of each joint then [N·m], by the rigid model with it and without."""
+        now = np.stack([0.0 * BENT, self.motion[1] + self.motion[2] * t, self.motion[2]])
+        for each in (self.bare, self.arm):  # the last one stays as it is in this tick
+            each.recursion.run(self.at(t), now, np.zeros(3))
+        return self.arm.recursion.torque - self.bare.recursion.torque
 
     def tick(self, external: Array, *, free: bool = True, sensed: bool = False) -> bool:
-        transmission = cast(TransmissionTorque, SimpleNamespace(ways=[self.model], external=external, by_motor=self.by_motor))
-        fell, self.feels = self.fall.update(BENT, self.motion, transmission, free=free, sensed=sensed)
+        self.t += TICK
+        self.needed(self.t)
+        told = SimpleNamespace(
+            momentum=SimpleNamespace(residual=external, ready=self.ready),
+            transmission=SimpleNamespace(ways=[self.model, None, self.model - external], by_motor=self.by_motor),
+            deflection=self.model - external,
+        )
+        fell, self.feels = self.fall.update(self.at(self.t), cast(JointTorques, told), free=free, sensed=sensed)
         return fell
 
     def course(self, external: Array, before: Array | float = 0.0, ticks: int = SETTLED) -> list[bool]:
@@ -75,12 +88,32 @@ class Joints:
         return [self.tick(external + before) for _ in range(ticks)]
 
 
-@pytest.mark.parametrize("motion", [0.0 * MOTION, MOTION])
-def test_what_the_payload_needs_in_its_motion_is_its_fall(motion: Array) -> None:
-    joints = Joints(motion=motion)
+def test_what_the_payload_needs_at_rest_is_its_fall() -> None:
+    joints = Joints()
     told = joints.course(joints.lost)
     assert told[-1]
-    assert told.index(True) >= LONGEST, "as long as a fall is looked at"
+    assert told.index(True) + 1 == LONGEST - MEAN + 4, "4 of 5 ticks of the mean are a fall to within a fifth of it"
+
+
+def test_what_it_needs_in_its_motion_is_known_as_late_as_the_torques() -> None:
+    joints = Joints(motion=MOTION * np.array([[1.0], [1.0], [8.0]]))
+    told = [joints.tick(joints.needed(joints.t - LATE) if k > 5 else np.zeros(N)) for k in range(60)]
+    assert told[-1]
+    memory = joints.fall._own
+    by_momentum = joints.arm.recursion.jacobian.T @ memory["needed"][1]
+    wanted = joints.needed(joints.t - LATE)
+    assert np.abs(by_momentum - wanted).max() < 0.01 * np.abs(wanted).max()
+    joints.motion = STILL
+    assert np.abs(joints.needed(0.0) - wanted).max() > 0.1 * np.abs(wanted).max(), "that is not its weight alone"
+
+
+def test_while_the_observer_begins_nothing_is_felt() -> None:
+    joints = Joints()
+    joints.ready = False
+    assert not any(joints.course(joints.lost))
+    assert joints.feels is JointsFeel.NOTHING
+    joints.ready = True
+    assert [joints.tick(joints.lost) for _ in range(SETTLED)].index(True) >= LONGEST - MEAN
 
 
 def test_what_was_felt_at_entry_is_no_fall() -> None:
@@ -154,9 +187,9 @@ def test_what_a_fallen_payload_explains_to_within_that_may_be_its_fall(
 
 @pytest.mark.parametrize(("share", "feels"), [(0.99, JointsFeel.HAND), (1.01, JointsFeel.FALL)])
 def test_a_payload_that_no_joint_would_miss_explains_nothing(share: float, feels: JointsFeel) -> None:
-    whole = Joints(motion=0.0 * MOTION).lost
+    whole = Joints().lost
     mass = share * PAYLOAD.mass / float(np.max(np.abs(whole) / RIPPLE))
-    joints = Joints(Body(mass, PAYLOAD.com, np.zeros((3, 3))), 0.0 * MOTION)
+    joints = Joints(Body(mass, PAYLOAD.com, np.zeros((3, 3))))
     felt = np.where(np.abs(joints.lost) == np.max(np.abs(joints.lost)), joints.lost + 0.5 * np.sign(joints.lost) * RIPPLE, 0.0)
     joints.course(felt)
     assert joints.feels is feels
