@@ -20,9 +20,12 @@ with the same lag as the observer's. Encoders' noise alternates, so the mean of 
 Most of the time what is felt is neither, and the question is who may move the arm. What a joint tells since entry is wrong by no
 more than the ripple of its encoder, and by the share that its stiffness is not known of what its gear bears more or less:
 
-    |error| <= ripple + STIFFNESS |model - model at entry|.
+    |error| <= ripple + STIFFNESS |model - model at entry| + |J' s|.
 
-Where the motor tells it, without the deflection, an error is larger than RARELY standard deviations once in a thousand times.
+The last term is of a payload that was told wrong and accepted: what it weighs more or less was there at entry, but what it takes
+to be accelerated, s, was not. Its mass is that whose weight explains tau_ext at entry best, and no more than the arm may carry.
+Where the motor tells a torque, without the deflection, an error is larger than RARELY standard deviations once in a thousand.
+
 Three cases follow. Where the change of every joint is within its error, nothing is felt. Where it differs from J' p by no more
 than its error and STIFFNESS |J' p|, the payload may have fallen, unless all of J' p is within the errors, too: a payload that no
 joint would miss does not move an arm that its friction holds. Else a hand is there.
@@ -72,7 +75,7 @@ class PayloadFall:
             rigid: the controller's rigid model, which has been run with the tick's angles before `update`.
             wrench: knows the payload that may fall.
         """
-        self._rigid, self._wrench = rigid.record, wrench
+        self._rigid, self._wrench, self._most = rigid.record, wrench, arm.payload
         self._record = record(
             before=(arm.n,),  # tau_ext at entry [N·m]
             entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
@@ -80,8 +83,10 @@ class PayloadFall:
             noise=(),  # sum of its squares [N²·m²]
             gain=(),  # of the momentum observer
             q=(arm.n,),  # a tick ago [rad]
-            momentum=(6,),  # P and L a tick ago, in B [N·s, N·m·s]
+            untold=(),  # mass that the payload may be wrong by [kg]
+            momentum=(2, 6),  # P and L of the payload a tick ago, and of 1 kg at its centre, in B [N·s, N·m·s]
             needed=(2, 6),  # force and moment behind the first and the second of both filters [N, N·m]
+            swing=(2, 6),  # the same to accelerate 1 kg at its centre
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
             ticks="i8",  # since both run
             lasts="i8",  # ticks
@@ -111,7 +116,9 @@ class PayloadFall:
         if not self._begun:
             self._begun, self._blind, own["ticks"] = True, False, 0
             own["entry"] = model
-            own["before"] = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], joints.deflection)
+            own["before"] = before = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], joints.deflection)
+            weight = _weight(self._rigid, self._wrench.record)
+            own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
         self._blind = self._blind or not sensed
         if not self._blind or not joints.momentum.ready:
             own["ticks"] = 0
@@ -133,9 +140,11 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
     nothing = falls = unmissed = True
     for i in range(q.size):
         wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(bears[i] - own.entry[i])
-        own.latest[place, 0, i], own.latest[place, 1, i] = external[i] - own.before[i], 0.0
+        own.latest[place, 0, i], own.latest[place, 1, i], swings = external[i] - own.before[i], 0.0, 0.0
         for k in range(6):
             own.latest[place, 1, i] += jacobian[k, i] * own.needed[1, k]
+            swings += jacobian[k, i] * own.swing[1, k]
+        wrong += own.untold * abs(swings)
         more = lost = 0.0
         for k in range(MEAN):
             more += own.latest[k, 0, i] / MEAN
@@ -163,20 +172,34 @@ def _need(own, rigid, payload, q) -> None:
     m, g, c = payload.mass, rigid.gravity, turned(rigid.R, payload.com)
     around, lever = cross(w, c), cross(c, v)
     spin = turned(rigid.R, turned(payload.inertia, turned_back(rigid.R, w)))
-    P = (m * (v[0] + around[0]), m * (v[1] + around[1]), m * (v[2] + around[2]))
-    L = (m * lever[0] + spin[0], m * lever[1] + spin[1], m * lever[2] + spin[2])
-    carried, heavy = cross(v, P), cross(c, g)
+    one = (v[0] + around[0], v[1] + around[1], v[2] + around[2])
+    turns, carried, heavy = cross(c, one), cross(v, one), cross(c, g)
     for k in range(3):
-        _follow(own, k, P[k], -m * g[k])
-        _follow(own, 3 + k, L[k], carried[k] - m * heavy[k])
+        _follow(own, (own.momentum[0], own.needed, k), m * one[k], -m * g[k])
+        _follow(own, (own.momentum[0], own.needed, 3 + k), m * lever[k] + spin[k], m * (carried[k] - heavy[k]))
+        _follow(own, (own.momentum[1], own.swing, k), one[k], 0.0)
+        _follow(own, (own.momentum[1], own.swing, 3 + k), turns[k], carried[k])
 
 
 @kernel
-def _follow(own, k, momentum, rest) -> None:
+def _follow(own, change, momentum, rest) -> None:
     """The change of a momentum, and the `rest` of what it takes, through both filters."""
+    before, needed, k = change
     if own.ticks < 2:  # before, there is no speed to compare with
-        own.needed[0, k] = own.needed[1, k] = rest
+        needed[0, k] = needed[1, k] = rest
     else:
-        own.needed[0, k] += own.gain * ((momentum - own.momentum[k]) / TICK + rest - own.needed[0, k])
-        own.needed[1, k] += own.gain * (own.needed[0, k] - own.needed[1, k])
-    own.momentum[k] = momentum
+        needed[0, k] += own.gain * ((momentum - before[k]) / TICK + rest - needed[0, k])
+        needed[1, k] += own.gain * (needed[0, k] - needed[1, k])
+    before[k] = momentum
+
+
+@kernel
+def _weight(model, wrenches) -> Array:
+    """What 1 kg at the payload's centre takes of each joint at rest [N·m]."""
+    rigid = model[0]
+    g, torque = rigid.gravity, np.zeros(rigid.jacobian.shape[1])
+    heavy = cross(turned(rigid.R, wrenches[0].com), g)
+    for i in range(torque.size):
+        for k in range(3):
+            torque[i] -= rigid.jacobian[k, i] * g[k] + rigid.jacobian[3 + k, i] * heavy[k]
+    return torque

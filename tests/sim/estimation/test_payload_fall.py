@@ -107,6 +107,22 @@ def test_what_it_needs_in_its_motion_is_known_as_late_as_the_torques() -> None:
     assert np.abs(joints.needed(0.0) - wanted).max() > 0.1 * np.abs(wanted).max(), "that is not its weight alone"
 
 
+@pytest.mark.parametrize(("known", "feels"), [(True, JointsFeel.NOTHING), (False, JointsFeel.HAND)])
+def test_what_it_takes_to_accelerate_a_payload_that_was_told_wrong_is_no_hand(known: bool, feels: JointsFeel) -> None:
+    """The joints knew of it at entry, by its weight."""
+    falls = STILL + np.array([[0.0], [0.0], [1.0]]) * np.array([1.0, 8.0, -6.0, 3.0, 2.0, 1.0])
+    told, untold = (Body(mass, PAYLOAD.com, np.zeros((3, 3))) for mass in (1.0, 2.0))
+    joints, more = Joints(told, falls), Joints(untold, falls)
+    weight = Joints(untold).lost
+    before = weight if known else 0.0 * weight
+    joints.tick(before)
+    for _ in range(40):
+        swings = more.needed(joints.t - LATE) - weight
+        joints.tick(before + swings)
+    assert (np.abs(swings) > 1.2 * RIPPLE).any()
+    assert joints.feels is feels
+
+
 def test_while_the_observer_begins_nothing_is_felt() -> None:
     joints = Joints()
     joints.ready = False
