@@ -278,7 +278,7 @@ def test_a_payload_that_falls_off_an_arm_that_cannot_feel_its_flange_is_a_stop(p
     (told,) = (event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD)
     assert told.values["mass"] == pytest.approx(-payload)
     bench.run(1.0)
-    assert bench.plant.data.body("flange").xpos[2] - start < 0.06, "[m]; it rose by a metre"
+    assert bench.plant.data.body("flange").xpos[2] - start < 0.02, "[m]; it rose by a metre"
 
 
 @pytest.mark.parametrize("force", [[30.0, 0.0, 0.0], [0.0, 0.0, -30.0], [0.0, 25.0, 15.0], [0.0, 0.0, 90.0]])
