@@ -165,7 +165,7 @@ def measure(report: Report) -> None:
 
 def hands(report: Report) -> list[Case]:
     """Arms to lay hands on."""
-    count = 600 if report.options.full else 24
+    count = 640 if report.options.full else 24
     return draw(report.options.seed + 900, count // 4, "sensor", report.options.arm)[0]
 
 
