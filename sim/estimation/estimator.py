@@ -87,8 +87,9 @@ class Estimator:
         self.wrench = ExternalWrench(arm, self.forces)
         self.step = StepAnswer(arm.n, self.forces, self.wrench)
         self.change = FallAnswer(self.wrench)
-        self.fall = PayloadFall(arm, dynamics.recursion, self.wrench)
         self.momentum = MomentumObserver(arm, dynamics)
+        joints = JointTorques(self.momentum, self.transmission, self._deflection)
+        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.wrench)
         self._known: Estimate | None = None
         self.tick = 0
 
@@ -164,8 +165,7 @@ class Estimator:
         known.energy = self._energy(self._dynamics.recursion.energy)
         known.lost_odds, known.lost_share = self.change.odds, self.change.share
         known.step_odds, known.step_force = self.step.odds, self.step.size
-        joints = JointTorques(self.momentum, self.transmission, self._deflection)
-        known.payload_fell, known.joints_feel = self.fall.update(self.q, joints, free=self._free, sensed=sensed)
+        known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=sensed)
 
     def _energy(self, links: Array) -> float:
         """Kinetic energy of the `links` (1,) and of the rotors [J]."""

@@ -68,14 +68,15 @@ class JointTorques(NamedTuple):
 class PayloadFall:
     """One tick at a time, in free-drive alone."""
 
-    def __init__(self, arm: Arm, rigid: NewtonEuler, wrench: ExternalWrench) -> None:
+    def __init__(self, arm: Arm, rigid: NewtonEuler, joints: JointTorques, wrench: ExternalWrench) -> None:
         """
         Args:
             arm: the numbers of its gears and encoders.
             rigid: the controller's rigid model, which has been run with the tick's angles before `update`.
+            joints: updated in the same tick before.
             wrench: knows the payload that may fall.
         """
-        self._rigid, self._wrench, self._most = rigid.record, wrench, arm.payload
+        self._rigid, self._joints, self._wrench, self._most = rigid.record, joints, wrench, arm.payload
         self._record = record(
             before=(arm.n,),  # tau_ext at entry [N·m]
             entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
@@ -97,33 +98,32 @@ class PayloadFall:
         own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
         self._begun = self._blind = False
 
-    def update(self, q: Array, joints: JointTorques, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
+    def update(self, q: Array, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
         """One tick. Returns whether the payload fell, and what explains the torques of this tick.
 
         Outside free-drive, while the flange sensor tells that, and while the observer begins, it did not, and nothing is felt.
 
         Args:
             q: joint angles (n,) as measured [rad].
-            joints: of the same tick.
             free: free-drive is on.
             sensed: the flange sensor is valid; once it was not, the joints go on to tell.
         """
         if not free:
             self._begun = False
             return NOT_ASKED
-        own, transmission = self._own, joints.transmission
+        own, (momentum, transmission, deflection) = self._own, self._joints
         model, by_motor = transmission.ways[DYNAMICS], transmission.by_motor
         if not self._begun:
             self._begun, self._blind, own["ticks"] = True, False, 0
             own["entry"] = model
-            own["before"] = before = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], joints.deflection)
+            own["before"] = before = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], deflection)
             weight = _weight(self._rigid, self._wrench.record)
             own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
         self._blind = self._blind or not sensed
-        if not self._blind or not joints.momentum.ready:
+        if not self._blind or not momentum.ready:
             own["ticks"] = 0
             return NOT_ASKED
-        felt = q, model, joints.momentum.residual, by_motor
+        felt = q, model, momentum.residual, by_motor
         fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
         return fell, JointsFeel(feels)
 

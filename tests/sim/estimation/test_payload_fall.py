@@ -14,8 +14,9 @@ from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
 from sim.arm.scenario import Load, Scenario
-from sim.estimation.momentum_observer import BANDWIDTH
+from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver
 from sim.estimation.payload_fall import MEAN, JointTorques, PayloadFall
+from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
@@ -52,7 +53,12 @@ class Joints:
         self.lost = self.needed(0.0)
         wrench = ExternalWrench(UR5E, FlangeForces(self.arm))
         wrench.set_load(payload, payload)
-        self.fall = PayloadFall(UR5E, self.arm.recursion, wrench)
+        self.felt = JointTorques(
+            cast(MomentumObserver, SimpleNamespace()),
+            cast(TransmissionTorque, SimpleNamespace(by_motor=self.by_motor)),
+            np.zeros(N),
+        )
+        self.fall = PayloadFall(UR5E, self.arm.recursion, self.felt, wrench)
 
     @staticmethod
     def carrying(load: Body) -> Dynamics:
@@ -73,12 +79,11 @@ class Joints:
     def tick(self, external: Array, *, free: bool = True, sensed: bool = False) -> bool:
         self.t += TICK
         self.needed(self.t)
-        told = SimpleNamespace(
-            momentum=SimpleNamespace(residual=external, ready=self.ready),
-            transmission=SimpleNamespace(ways=[self.model, None, self.model - external], by_motor=self.by_motor),
-            deflection=self.model - external,
-        )
-        fell, self.feels = self.fall.update(self.at(self.t), cast(JointTorques, told), free=free, sensed=sensed)
+        momentum, transmission, deflection = self.felt
+        momentum.residual, momentum.__dict__["ready"] = external, self.ready
+        deflection[:] = self.model - external
+        transmission.ways = np.stack([self.model, deflection, deflection])
+        fell, self.feels = self.fall.update(self.at(self.t), free=free, sensed=sensed)
         return fell
 
     def course(self, external: Array, before: Array | float = 0.0, ticks: int = SETTLED) -> list[bool]:
