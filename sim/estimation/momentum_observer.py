@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 BANDWIDTH = 40.0
 """Of the observer and of the filter behind it [Hz]: above the swing of an arm on its gears (10 to 25 Hz), and so low that the
 output encoder's noise, which is differentiated twice, makes a newton metre of it at the most."""
+GAIN = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
 READY = 25
 """Ticks after which the observer has forgotten how it began: a dozen of its time constants."""
 FLOOR = 0.004
@@ -74,7 +75,6 @@ class MomentumObserver:
         n, body = arm.n, dynamics.bare
         self.record = record(
             bare=(13,),  # last link without load: mass, centre, inertia about it
-            gain=(),
             output_share=(),  # of friction
             floor=(n,),
             count="i8",  # ticks in a row, at most `READY`
@@ -90,7 +90,6 @@ class MomentumObserver:
         )
         own = self._own = self.record[0]
         self.residual, self.doubt, self.errors = own["residual"], own["doubt"], TorqueErrors(arm)
-        own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
         own["bare"] = np.concatenate([[body.mass], body.com, body.inertia.ravel()])
         own["output_share"] = arm.frictions.output_share
         own["floor"] = FLOOR * np.array(arm.limits.torque)
@@ -151,10 +150,8 @@ def _update(records, model, driven, state) -> None:
             own.first[0, i], own.residual[i], own.first[1, i], own.borne[i] = 0.0, 0.0, load, load
         else:
             # The speed is that of half a tick ago: between this and the last one lies the drive of a tick ago.
-            own.first[0, i] += own.gain * ((p[i] - own.p[i]) / TICK - own.drive[i] - own.first[0, i])
-            own.residual[i] += own.gain * (own.first[0, i] - own.residual[i])
-            own.first[1, i] += own.gain * (own.load[i] - own.first[1, i])
-            own.borne[i] += own.gain * (own.first[1, i] - own.borne[i])
+            follow(own.first[0], own.residual, (p[i] - own.p[i]) / TICK - own.drive[i], i)
+            follow(own.first[1], own.borne, own.load[i], i)
         own.p[i], own.drive[i], own.load[i] = p[i], drive[i], load
         _doubt(own, driven, by_deflection, i)
     look(errors, rigid, own.borne, (driven.q, driven.use[1], with_sensor))
@@ -167,6 +164,13 @@ def _update(records, model, driven, state) -> None:
     if learns and own.quiet == SETTLE_TICKS:
         learn(errors, own.residual, own.doubt, driven.use[1])
     own.count = min(own.count + 1, READY)
+
+
+@kernel
+def follow(first, second, now, i) -> None:
+    """A value through the observer and the filter behind it: `second[i]` is as late as the torques."""
+    first[i] += GAIN * (now - first[i])
+    second[i] += GAIN * (first[i] - second[i])
 
 
 @kernel

@@ -31,7 +31,6 @@ than its error and STIFFNESS |J' p|, the payload may have fallen, unless all of 
 joint would miss does not move an arm that its friction holds. Else a hand is there.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +42,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver
+from sim.estimation.momentum_observer import MomentumObserver, follow
 from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.wrench_hypotheses import LONGEST
@@ -82,7 +81,6 @@ class PayloadFall:
             entry=(arm.n,),  # what the model wants the gears to bear there [N·m]
             ripple=(arm.n,),  # what the encoder alone may change a torque by [N·m]
             noise=(),  # sum of its squares [N²·m²]
-            gain=(),  # of the momentum observer
             q=(arm.n,),  # a tick ago [rad]
             untold=(),  # mass that the payload may be wrong by [kg]
             momentum=(2, 6),  # P and L of the payload a tick ago, and of 1 kg at its centre, in B [N·s, N·m·s]
@@ -95,7 +93,6 @@ class PayloadFall:
         own = self._own = self._record[0]
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
-        own["gain"] = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
         self._begun = self._blind = False
 
     def update(self, q: Array, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
@@ -117,7 +114,7 @@ class PayloadFall:
             self._begun, self._blind, own["ticks"] = True, False, 0
             own["entry"] = model
             own["before"] = before = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], deflection)
-            weight = _weight(self._rigid, self._wrench.record)
+            weight = self._weight()
             own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
         self._blind = self._blind or not sensed
         if not self._blind or not momentum.ready:
@@ -126,6 +123,12 @@ class PayloadFall:
         felt = q, model, momentum.residual, by_motor
         fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
         return fell, JointsFeel(feels)
+
+    def _weight(self) -> Array:
+        """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]."""
+        rigid = self._rigid[0]
+        force = -rigid["gravity"]
+        return np.concatenate([force, np.cross(rigid["R"] @ self._wrench.record[0]["com"], force)]) @ rigid["jacobian"]
 
 
 @kernel
@@ -175,31 +178,18 @@ def _need(own, rigid, payload, q) -> None:
     one = (v[0] + around[0], v[1] + around[1], v[2] + around[2])
     turns, carried, heavy = cross(c, one), cross(v, one), cross(c, g)
     for k in range(3):
-        _follow(own, (own.momentum[0], own.needed, k), m * one[k], -m * g[k])
-        _follow(own, (own.momentum[0], own.needed, 3 + k), m * lever[k] + spin[k], m * (carried[k] - heavy[k]))
-        _follow(own, (own.momentum[1], own.swing, k), one[k], 0.0)
-        _follow(own, (own.momentum[1], own.swing, 3 + k), turns[k], carried[k])
+        _add(own, (own.momentum[0], own.needed, k), m * one[k], -m * g[k])
+        _add(own, (own.momentum[0], own.needed, 3 + k), m * lever[k] + spin[k], m * (carried[k] - heavy[k]))
+        _add(own, (own.momentum[1], own.swing, k), one[k], 0.0)
+        _add(own, (own.momentum[1], own.swing, 3 + k), turns[k], carried[k])
 
 
 @kernel
-def _follow(own, change, momentum, rest) -> None:
-    """The change of a momentum, and the `rest` of what it takes, through both filters."""
+def _add(own, change, momentum, rest) -> None:
+    """The change of a momentum, and the `rest` of what it takes, as late as the torques."""
     before, needed, k = change
     if own.ticks < 2:  # before, there is no speed to compare with
         needed[0, k] = needed[1, k] = rest
     else:
-        needed[0, k] += own.gain * ((momentum - before[k]) / TICK + rest - needed[0, k])
-        needed[1, k] += own.gain * (needed[0, k] - needed[1, k])
+        follow(needed[0], needed[1], (momentum - before[k]) / TICK + rest, k)
     before[k] = momentum
-
-
-@kernel
-def _weight(model, wrenches) -> Array:
-    """What 1 kg at the payload's centre takes of each joint at rest [N·m]."""
-    rigid = model[0]
-    g, torque = rigid.gravity, np.zeros(rigid.jacobian.shape[1])
-    heavy = cross(turned(rigid.R, wrenches[0].com), g)
-    for i in range(torque.size):
-        for k in range(3):
-            torque[i] -= rigid.jacobian[k, i] * g[k] + rigid.jacobian[3 + k, i] * heavy[k]
-    return torque

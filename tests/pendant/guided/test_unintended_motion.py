@@ -280,7 +280,7 @@ def test_the_way_of_a_fall_begins_with_it_and_counts_however_slow_it_is(speed: f
     bench = Bench(sensor=False)
     assert bench.until([unseen(JointsFeel.FALL, 0.0, speed), unseen(JointsFeel.FALL, 0.99 * AWAY, speed)]) is None
     bench.held(unseen(JointsFeel.HAND, 0.99 * AWAY, 0.1))
-    assert bench.see(unseen(JointsFeel.FALL, 1.98 * AWAY, speed)) is None, "a hand between two falls begins it anew"
+    assert bench.see(unseen(JointsFeel.FALL, 1.98 * AWAY, speed)) is None, "after a hand the way of a fall begins again"
     assert bench.see(unseen(JointsFeel.FALL, 2.0 * AWAY, speed)) is not None
 
 
