@@ -85,10 +85,10 @@ class LinkChange(NamedTuple):
 
 def _felt(change: Array, signals: ContactSignals) -> tuple[Array, Array]:
     """What each joint feels of a contact in a change of torques and causes, and how wrong that may be, each (n,) [N·m]."""
-    n = signals.doubt.size
-    causes = change[n:].reshape(signals.misfit.shape)
-    wrong = signals.misfit * causes
-    return change[:n] - np.vecdot(signals.shares, causes), np.sqrt(np.vecdot(wrong, wrong))
+    n, (shares, misfit) = signals.joints, signals.known
+    causes = change[n:].reshape(misfit.shape)
+    wrong = misfit * causes
+    return change[:n] - np.vecdot(shares, causes), np.sqrt(np.vecdot(wrong, wrong))
 
 
 def _sizes(change: Array, limit: Array, signals: ContactSignals) -> tuple[float, float]:
@@ -132,7 +132,7 @@ class LinkWatch:
 
     def sense(self, signals: ContactSignals) -> None:
         """Take one tick into the buffers. Without joints it is a gap; with the sensor at the end of its range it is left out."""
-        if not signals.behind.size:
+        if not signals.joints:
             if self.torques.count:
                 self.gap()
             return
@@ -142,7 +142,7 @@ class LinkWatch:
         self._left_out = bool(elbow.saturated)
         if self._left_out:
             return
-        self.torques.push(np.concatenate((signals.behind, signals.causes.ravel())))
+        self.torques.push(signals.felt)
         self.points[0].push(elbow)
         self.points[1].push(forearm)
 

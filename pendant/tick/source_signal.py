@@ -34,18 +34,51 @@ class Signal(NamedTuple):
     driven: float = 0.0  # in deviations of noise: above 0 the arm moves its load, below 0 the load moves the arm
 
 
-class ContactSignals(msgspec.Struct, frozen=True, gc=False):
-    """One tick of all sources. While nobody looks at them they stay the rows of numbers that they come as."""
+WIDTH = len(Signal._fields)
 
-    rows: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, len(Signal._fields))))  # fields of `Signal`
+
+class ContactSignals(msgspec.Struct, frozen=True, gc=False):
+    """One tick of all sources. While nobody looks at them they stay the numbers that they come as, in one array: to copy six in
+    every tick takes as long as to make them.
+
+    Of n joints, m causes of each: a row of `Signal` of each source; torques (n,) of contacts behind the sensor [N·m]; the causes
+    (n, m) of what these are wrong by; the deviation (n,) of their changes for other reasons [N·m]; shares (n, m) of the causes
+    that they hold; misfit (n, m), how wrong these shares may be.
+    """
+
+    numbers: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))
     valid: tuple[bool, ...] = ()  # of each source
-    behind: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) torques of contacts behind the sensor
-    doubt: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros(0))  # (n,) deviation of their changes [N·m]
-    causes: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) of what `behind` is wrong by
-    shares: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) of them that it holds
-    misfit: NDArray[np.float64] = msgspec.field(default_factory=lambda: np.zeros((0, 0)))  # (n, m) how wrong these shares may be
+    joints: int = 0  # n; 0: the links are not watched
     elbow: int = 2  # which joint the elbow is
+
+    @property
+    def felt(self) -> NDArray[np.float64]:
+        """Torques of contacts behind the sensor, then the causes of their errors (n + n m,)."""
+        begin = self._begin
+        return self.numbers[begin : begin + self._felt]
+
+    @property
+    def doubt(self) -> NDArray[np.float64]:
+        """Deviation of the torques' changes (n,) [N·m]."""
+        begin = self._begin + self._felt
+        return self.numbers[begin : begin + self.joints]
+
+    @property
+    def known(self) -> NDArray[np.float64]:
+        """Shares of the causes that the torques hold, and how wrong these may be (2, n, m)."""
+        return self.numbers[self._begin + self._felt + self.joints :].reshape((2, self.joints, -1))
+
+    @property
+    def _begin(self) -> int:
+        return len(self.valid) * WIDTH
+
+    @property
+    def _felt(self) -> int:
+        """Torques and causes are a third of what is left without the deviations, but for the torques."""
+        n = self.joints
+        return n + (self.numbers.size - self._begin - 2 * n) // 3
 
     def each(self) -> tuple[Signal | None, ...]:
         """The signal of each source, None where it is not valid."""
-        return tuple(Signal._make(row) if valid else None for row, valid in zip(self.rows.tolist(), self.valid, strict=True))
+        rows = self.numbers[: self._begin].reshape((len(self.valid), WIDTH)).tolist()
+        return tuple(Signal._make(row) if valid else None for row, valid in zip(rows, self.valid, strict=True))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.source_signal import ContactSignals, Signal
+from pendant.tick.source_signal import WIDTH, ContactSignals, Signal
 from sim.arm.arm_file import SensorNumbers
 from sim.arm.chain import Body
 from sim.arm.frames import skew
@@ -17,7 +17,7 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.flange_drive import driven, flange_drive
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.torque_errors import left_over
+from sim.estimation.torque_errors import CAUSES, left_over
 from sim.rigid_body.cholesky import factor, solve
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
@@ -31,6 +31,8 @@ MASS_TICKS = 50
 """Ticks between two looks at the effective mass, which changes with the posture only."""
 LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
+LISTED = ("tool side", "arm side", "elbow", "forearm")
+"""Sources, in the order of their rows."""
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -78,7 +80,7 @@ class ContactSources:
             before=(2, 3, n),  # Jacobians of the two points on links, a tick ago
             felt=(n,),  # what the joints feel and the flange sensor does not
             joints="2i8",  # whose origins are elbow and end of the forearm
-            signals=(4, len(Signal._fields)),
+            numbers=(len(LISTED) * WIDTH + n * (2 + 3 * CAUSES),),  # all that `ContactSignals` holds
         )
         own = self._own = self._record[0]
         own["smoothing"] = 1.0 - math.exp(-2.0 * math.pi * TURN_BANDWIDTH * TICK)
@@ -86,8 +88,10 @@ class ContactSources:
         self._drive = flange_drive(sensors, float(own["smoothing"]))
         own["joints"] = elbow, elbow + 1
         own["gravity"], own["reach"] = dynamics.gravity_B, reach
-        self._out, self._started = own["signals"], False
-        self._elbow = elbow
+        self._numbers, self._started = own["numbers"], False
+        self._signals = self._numbers[: len(LISTED) * WIDTH]
+        self._out = self._signals.reshape((len(LISTED), WIDTH))
+        self._joints, self._elbow = n, elbow
         self._out[:, EFFECTIVE_MASS] = 1.4  # until the arm has been weighed
         self.set_load(dynamics.load)
 
@@ -123,12 +127,10 @@ class ContactSources:
         _read(self._record, models, motion, watched)
         self._started = links
         valid = (pair, flange, links, links)
-        if not links:
-            estimate.signals = ContactSignals(self._out.copy(), valid)
-            return
-        kept = (torques.residual, torques.doubt, torques.errors.causes, torques.errors.shares, torques.errors.misfit)
-        behind, doubt, causes, shares, misfit = (known.copy() for known in kept)
-        estimate.signals = ContactSignals(self._out.copy(), valid, behind, doubt, causes, shares, misfit, self._elbow)
+        if links:
+            estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow)
+        else:
+            estimate.signals = ContactSignals(self._signals.copy(), valid)
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:
@@ -149,15 +151,15 @@ def _read(sources, models, felt, watched) -> None:
     felt = Feeling(*felt)
     watched = WatchedSources(*watched)
     own, rigid, momentum, errors, drive = sources[0], models[0][0], models[1][0], models[2][0], models[3][0]
-    rest = felt.values[3 * felt.qd.size :]
-    wrench = rest[:6]
+    rest, signals = felt.values[3 * felt.qd.size :], len(LISTED) * WIDTH
+    wrench, rows = rest[:6], own.numbers[:signals].reshape((len(LISTED), WIDTH))
     if watched.tool:
         moved = _to_load(own, rest[9:12], rest[15:18])
-        _transfer(own, rigid.R, (wrench, rest[12:15], moved), own.signals[0])
+        _transfer(own, rigid.R, (wrench, rest[12:15], moved), rows[0])
         if watched.arm_side:
-            _transfer(own, rigid.R, (wrench, rest[6:9], moved), own.signals[1])
+            _transfer(own, rigid.R, (wrench, rest[6:9], moved), rows[1])
         own.added[:] = moved
-        own.signals[:2, DRIVEN] = driven(drive, wrench, rest[6:9], own.change)
+        rows[:2, DRIVEN] = driven(drive, wrench, rest[6:9], own.change)
     else:
         own.turn[:] = np.nan
         drive.count = 0
@@ -165,9 +167,10 @@ def _read(sources, models, felt, watched) -> None:
         beyond = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2])) >= own.reach[0]
         beyond = beyond or max(abs(wrench[3]), abs(wrench[4]), abs(wrench[5])) >= own.reach[1]
         _feel_behind(own, momentum, errors)
+        _keep(own.numbers[signals:], momentum, errors)
         for which in range(2):
-            own.signals[2 + which, 11] = 1.0 if beyond else 0.0
-            _derive(own, rigid, felt, (which, watched.went_on))
+            rows[2 + which, 11] = 1.0 if beyond else 0.0
+            _derive(own, rigid, (felt, rows[2 + which]), (which, watched.went_on))
 
 
 @kernel
@@ -217,14 +220,26 @@ def _feel_behind(own, momentum, errors) -> None:
 
 
 @kernel
-def _derive(own, rigid, felt, which) -> None:
-    """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of `signals`.
+def _keep(out, momentum, errors) -> None:
+    """What is known of the torques of contacts behind the sensor, in the order of `ContactSignals`."""
+    n, m = errors.causes.shape
+    for i in range(n):
+        out[i], out[n + n * m + i] = momentum.residual[i], momentum.doubt[i]
+        for k in range(m):
+            at = n + m * i + k
+            out[at], out[at + n + n * m] = errors.causes[i, k], errors.shares[i, k]
+            out[at + n + 2 * n * m] = errors.misfit[i, k]
+
+
+@kernel
+def _derive(own, rigid, made, which) -> None:
+    """Force of a link on the outside, specific force at its point, and gravity, each (3,) in B, into a row of signals.
 
     The force is the smallest one that explains what the joints that can move the point feel of contacts behind the sensor: with
     J^T F = tau, F = (J J^T + d²)^-1 J tau.
     """
-    link, went_on = which
-    joint, before, out = own.joints[link], own.before[link], own.signals[2 + link]
+    (felt, out), (link, went_on) = made, which
+    joint, before = own.joints[link], own.before[link]
     origins, flange, gravity = rigid.origins, rigid.jacobian, own.gravity
     qd, qdd, behind = felt.qd, felt.qdd, own.felt
     n = qd.size

@@ -7,7 +7,7 @@ from pendant.contact.contact_limits import ContactLimits, limits
 from pendant.contact.detector import Detector, Finding
 from pendant.contact.settings import ContactUse
 from pendant.tick.modes import Mode
-from pendant.tick.source_signal import Signal
+from pendant.tick.source_signal import ContactSignals, Signal
 
 Array = NDArray[np.float64]
 USE = ContactUse(on=True, instant=False, ratio_of_values=False)
@@ -61,3 +61,9 @@ def found(stream: list[Signal], use: ContactUse = USE, limit_: ContactLimits | N
         if finding is not None:
             result.append((tick, finding))
     return result
+
+
+def on_links(link: Signal, torques: Array, doubt: Array, causes: Array, shares: Array, misfit: Array) -> ContactSignals:
+    """A tick in which the links alone are watched; the names as in `ContactSignals`."""
+    numbers = np.concatenate([np.tile(link, 4), torques, causes.ravel(), doubt, shares.ravel(), misfit.ravel()])
+    return ContactSignals(numbers, (False, False, True, True), torques.size)

@@ -84,6 +84,6 @@ def test_a_contact_is_told_beyond_the_limits_of_the_mode_while_nothing_else_move
     bench.events.clear()
     for signal in signals(90, push=ramp(90, 40, 4.0, top=12.0)):
         value = estimate()
-        value.signals = ContactSignals(np.array([signal]), (True,))
+        value.signals = ContactSignals(np.array(signal), (True,))
         bench.step(value=value)
     assert (Kind.CONTACT_GAINED in [event.kind for event in bench.events]) is told

@@ -15,7 +15,7 @@ from pendant.contact.settings import ContactUse
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode
 from pendant.tick.source_signal import ContactSignals, Signal
-from tests.pendant.contacts import USE, ramp, signals
+from tests.pendant.contacts import USE, on_links, ramp, signals
 from tests.pendant.estimates import estimate
 
 START = 100
@@ -29,7 +29,7 @@ def estimates(source: int, stream: list[Signal | None]) -> list[Estimate]:
         now.R_BF, now.q = QUARTER, np.full(6, 0.001 * k)
         now.tcp = np.array([0.0002 * k, 0.0, 0.5, 0.0, 0.0, 0.0])
         valid = tuple(index == source and signal is not None for index in range(4))
-        now.signals = ContactSignals(np.tile(signal or Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (4, 1)), valid)
+        now.signals = ContactSignals(np.tile(signal or Signal(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 4), valid)
         result.append(now)
     return result
 
@@ -160,7 +160,7 @@ def test_poses_are_kept_for_so_many_ticks_and_no_longer() -> None:
 def test_what_is_kept_while_it_is_off_does_not_grow_without_end() -> None:
     monitor, kept = ContactMonitor(), []
     for now in estimates(0, [None] * (SUMMED + 5)):
-        kept.append(weakref.ref(now.signals.rows))
+        kept.append(weakref.ref(now.signals.numbers))
         monitor.step(now, USE, Mode.RUN, on=False)
     del now
     assert [each() is None for each in kept] == [True] * 5 + [False] * SUMMED
@@ -178,7 +178,7 @@ def test_what_several_sources_find_in_the_same_tick_is_all_told() -> None:
     """CD-2."""
     monitor, found, use = ContactMonitor(), [], msgspec.structs.replace(USE, flange=True)
     for now in estimates(0, [*signals(200, push=ramp(200, START, 8.0, top=40.0))]):
-        now.signals = ContactSignals(now.signals.rows, (True, True, False, False))
+        now.signals = ContactSignals(now.signals.numbers, (True, True, False, False))
         found.append([contact.source for contact in monitor.step(now, use, Mode.RUN, on=True)])
     assert [told for told in found if told] == [[AT_TOOL[0], AT_TOOL[1]]]
 
@@ -219,9 +219,9 @@ def linked(n: int, push: float, begin: int = START, end: int = 10**6) -> list[Es
     rng = np.random.default_rng(3)
     for k, now in enumerate(result):
         size = push if begin <= k < end else 0.0
-        rows = np.tile(Signal(-size, 0.0, 0.0, 0.1 * size, 0.0, 9.81), (4, 1))
+        link = Signal(-size, 0.0, 0.0, 0.1 * size, 0.0, 9.81)
         torques = rng.normal(0.0, 0.1, 6) + 0.4 * size * np.array([0.2, 1.0, 0.0, 0.0, 0.0, 0.0])
-        now.signals = ContactSignals(rows, (False, False, True, True), torques, np.ones(6), *(np.zeros((6, 1)) for _ in range(3)))
+        now.signals = on_links(link, torques, np.ones(6), *(np.zeros((6, 1)) for _ in range(3)))
     return result
 
 

@@ -11,6 +11,7 @@ from pendant.contact.joint_torques import Torques
 from pendant.contact.link_contact import CALM, FADED, GONE, HELD, LINKS, NEWEST, SETTLED, SILENCE, LinkChange, LinkWatch
 from pendant.contact.settings import ContactUse
 from pendant.tick.source_signal import ContactSignals, Signal
+from tests.pendant.contacts import on_links
 
 USE = ContactUse()
 DOUBT = np.array([1.0, 1.0, 1.0, 0.2, 0.2, 0.2])
@@ -35,10 +36,9 @@ def tick(
     Two causes of error: what the gears bear, and a lever of the flange sensor's zero, with the `shares` that are known.
     """
     force = -0.1 * float(torques.sum())
-    row = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
+    link = Signal(force, 0.0, 0.0, -0.01 * force, 0.0, 9.81, saturated=saturated)
     causes = np.stack([borne, np.full(6, lever)], axis=1)
-    known = (torques, DOUBT, causes, np.tile(shares, (6, 1)), np.tile([MISFIT, ZERO], (6, 1)))
-    return ContactSignals(np.tile(row, (4, 1)), (False, False, True, True), *known)
+    return on_links(link, torques, DOUBT, causes, np.tile(shares, (6, 1)), np.tile([MISFIT, ZERO], (6, 1)))
 
 
 def stream(n: int, way: tuple[float, ...], *spans: tuple[int, int, float], noise: float = 0.1, seed: int = 0) -> np.ndarray:
