@@ -4,7 +4,6 @@ Handing an array to a kernel costs as much as the arithmetic of a joint; a recor
 """
 
 from functools import cache
-from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,19 +19,6 @@ def record(**columns: tuple[int, ...] | str) -> Record:
     return np.zeros(
         1, _layout(tuple((name, column) if isinstance(column, str) else (name, "f8", column) for name, column in columns.items()))
     )
-
-
-class Number:
-    """Attribute of a class that keeps a record's only row as `_own`: the float of that name in it, read only."""
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    def __get__(self, instance: Any, owner: type) -> float:
-        return float(instance._own[self._name])
-
-    def __set__(self, instance: Any, value: float) -> NoReturn:
-        raise AttributeError(f"{self._name} is a kernel's to write")
 
 
 @cache

@@ -24,10 +24,8 @@ from sim.estimation.joint_tracking import (
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
-from sim.flange.external_wrench import ExternalWrench
-from sim.flange.fall_answer import FallAnswer
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.step_answer import StepAnswer
+from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -64,7 +62,7 @@ class Estimator:
         own["most"] = motors.current
         own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
         own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
-        own["rotor"] = self._rotor = np.array(motors.rotor_inertia) * calibration.rotor_inertia
+        own["rotor"] = np.array(motors.rotor_inertia) * calibration.rotor_inertia
         self.friction = AdaptiveFriction(arm)
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None
@@ -84,19 +82,17 @@ class Estimator:
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
-        self.wrench = ExternalWrench(arm, self.forces)
-        self.step = StepAnswer(arm.n, self.forces, self.wrench)
-        self.change = FallAnswer(self.wrench)
+        self.whose_force = WhoseForce(arm, self.forces)
         self.momentum = MomentumObserver(arm, dynamics)
         joints = JointTorques(self.momentum, self.transmission, self._deflection)
-        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.wrench)
+        self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force.bank)
         self._known: Estimate | None = None
         self.tick = 0
 
     def set_load(self, load: Body, payload: Body) -> None:
         """Take `load` (in F) as everything beyond the flange, of which the `payload` may get lost."""
         self.forces.set_load(load)
-        self.wrench.set_load(load, payload)
+        self.whose_force.bank.set_load(load, payload)
 
     def update(
         self,
@@ -159,17 +155,10 @@ class Estimator:
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
-        self.wrench.update(bias, accelerations=known.acceleration_valid)
-        self.step.update(sensed := bias is not None)
-        self.change.update(bias)
-        known.energy = self._energy(self._dynamics.recursion.energy)
-        known.lost_odds, known.lost_share = self.change.odds, self.change.share
-        known.step_odds, known.step_force = self.step.odds, self.step.size
-        known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=sensed)
-
-    def _energy(self, links: Array) -> float:
-        """Kinetic energy of the `links` (1,) and of the rotors [J]."""
-        return float(links[0] + 0.5 * self._rotor.dot(self._theta[1] * self._theta[1]))
+        odds = self.whose_force.update(bias, accelerations=known.acceleration_valid)
+        known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
+        known.energy = self._dynamics.recursion.energy.item() + self._own["spin"].item()
+        known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""

@@ -52,6 +52,7 @@ def joint_record(n: int) -> Record:
         rest=(n,),  # deflection at which the hysteresis spring is relaxed
         most=(n,),  # current that a motor may have [A]
         current=(n,),  # measured, as a share of it
+        spin=(),  # kinetic energy of the rotors [J]
         tau_m=(n,),
         deflection=(n,),  # torque that the deflection bears
         surplus=(n,),
@@ -128,8 +129,10 @@ def follow(joints, angles) -> None:
     angles = Angles(*angles)
     own = joints[0]
     theta, q, rest = own.theta, own.q, own.rest
+    own.spin = 0.0
     for i in range(rest.size):
         _track(angles.theta[i], own.gains[0], theta, i)
+        own.spin += 0.5 * own.rotor[i] * theta[1, i] * theta[1, i]
         _track(angles.q[i], own.gains[1], q, i)
         own.tau_m[i] = own.torque_constant[i] * angles.current[i]
         own.current[i] = angles.current[i] / own.most[i]

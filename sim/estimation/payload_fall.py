@@ -108,21 +108,27 @@ class PayloadFall:
         if not free:
             self._begun = False
             return NOT_ASKED
-        own, (momentum, transmission, deflection) = self._own, self._joints
-        model, by_motor = transmission.ways[DYNAMICS], transmission.by_motor
         if not self._begun:
-            self._begun, self._blind, own["ticks"] = True, False, 0
-            own["entry"] = model
-            own["before"] = before = model - np.where(by_motor > 0.0, transmission.ways[MOTOR], deflection)
-            weight = self._weight()
-            own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
+            self._begin()
         self._blind = self._blind or not sensed
-        if not self._blind or not momentum.ready:
-            own["ticks"] = 0
+        if not self._blind:
             return NOT_ASKED
-        felt = q, model, momentum.residual, by_motor
+        momentum, transmission, _ = self._joints
+        if not momentum.ready:
+            self._own["ticks"] = 0
+            return NOT_ASKED
+        felt = q, transmission.ways[DYNAMICS], momentum.residual, transmission.by_motor
         fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
         return fell, JointsFeel(feels)
+
+    def _begin(self) -> None:
+        """Free-drive begins."""
+        own, (_, transmission, deflection) = self._own, self._joints
+        self._begun, self._blind, own["ticks"] = True, False, 0
+        own["entry"] = model = transmission.ways[DYNAMICS]
+        own["before"] = before = model - np.where(transmission.by_motor > 0.0, transmission.ways[MOTOR], deflection)
+        weight = self._weight()
+        own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
 
     def _weight(self) -> Array:
         """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]."""

@@ -14,7 +14,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
 from sim.compiled.kernel import kernel
-from sim.compiled.record import Number, record
+from sim.compiled.record import record
 from sim.flange.flange_forces import FlangeForces, about_flange, needed, turn_both
 from sim.flange.wrench_hypotheses import (
     BEFORE,
@@ -45,26 +45,14 @@ KEPT = LONGEST + BEFORE + 1
 
 
 class ExternalWrench:
-    """The bank of hypotheses, one tick at a time, in free-drive alone.
-
-    Attributes:
-        lost: log of the odds that the payload changed, against all else [nats]; minus infinity where nothing is compared: there
-            is not enough, or nothing that a hand does not do as well.
-        share: of the payload that is gone then.
-        stepped: log of the odds that the sensor stepped, against all else: the same.
-    """
-
-    lost = Number()
-    share = Number()
-    stepped = Number()
+    """What the bank of hypotheses keeps; `compare` is one tick of it, in free-drive alone."""
 
     def __init__(self, arm: Arm, forces: FlangeForces) -> None:
         """
         Args:
             arm: the noise of its flange sensor, accelerometer and gyro.
-            forces: run in the same tick before.
+            forces: know the rigid model.
         """
-        self._forces = forces
         self.record = record(
             noise=(2,),  # of the sensor in a tick [N, N·m]
             offset=(),  # standard deviation of what the bias is off [N]
@@ -92,17 +80,16 @@ class ExternalWrench:
             sums=(12, 7),
             next="i8",
             count="i8",
-            lost=(),
-            share=(),
+            lost=(),  # log of the odds that the payload changed, against all else [nats]; minus infinity: nothing is compared
+            share=(),  # of the payload that is gone then
             lost_age="i8",  # ticks since that change
-            stepped=(),
-            step=(),
+            stepped=(),  # log of the odds that the sensor stepped, against all else [nats]; the same
+            step=(),  # size of the step [N]
             jump=(6,),  # the same as a wrench, axes of B
             age="i8",  # ticks since it
         )
         own = self._own = self.record[0]
         gyro, told = arm.sensors.gyro, sensor_spec(arm)
-        self._sensed = arm.sensors.force_torque is not None
         self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
         own["noise"] = told.noise_force, told.noise_torque
         # It is the mean of a window, and the sensor's zero has wandered since.
@@ -127,24 +114,19 @@ class ExternalWrench:
     def forget(self) -> None:
         """Nothing is compared with what was before: free-drive is off, or the sensor was out."""
         own = self._own
-        if own["count"]:
-            own["count"], own["lost"], own["stepped"], own["share"] = 0, -math.inf, -math.inf, 0.0
-
-    def update(self, bias: tuple[float, ...] | None, *, accelerations: bool) -> None:
-        """One tick.
-
-        Args:
-            bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used.
-            accelerations: the flange's accelerometer is valid.
-        """
-        if bias is None or not self._sensed:
-            self.forget()
-        else:
-            _update(self.record, (self._forces.record, self._forces.model), bias, accelerations)
+        own["count"], own["lost"], own["stepped"], own["share"] = 0, -math.inf, -math.inf, 0.0
 
 
 @kernel
-def _update(wrenches, known, bias, accelerations) -> None:
+def compare(wrenches, known, bias, accelerations) -> None:
+    """One tick.
+
+    Args:
+        wrenches: `ExternalWrench.record`.
+        known: `FlangeForces.record` and that of the rigid model, of the same tick.
+        bias: of the sensor (6,), axes of F [N, N·m].
+        accelerations: the flange's accelerometer is valid.
+    """
     forces, model = known
     own, felt = wrenches[0], forces[0]
     here = own.next

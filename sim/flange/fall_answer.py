@@ -21,8 +21,8 @@ import numpy as np
 from pendant.sensor.hand_model import LARGEST, TREMOR
 from pendant.sensor.odds import HALF, KNOWN, SUSPECTED
 from sim.compiled.kernel import kernel
-from sim.compiled.record import Number, record
-from sim.flange.external_wrench import ExternalWrench, in_base
+from sim.compiled.record import record
+from sim.flange.external_wrench import in_base
 from sim.flange.wrench_hypotheses import LATE, LONGEST, RARE, lever_of, noise
 from sim.flange.wrench_steps import both
 
@@ -31,47 +31,36 @@ LN_COMES, LN_STAYS = math.log(LONGEST * RARE), math.log(1.0 - LONGEST * RARE)
 
 
 class FallAnswer:
-    """One tick at a time, in free-drive alone.
+    """What is kept of a suspected change of the payload; `follow` is one tick of it, in free-drive alone."""
 
-    Attributes:
-        odds: log of the odds that the payload changed [nats]: those of the onset, and then what follows says of it, until a hand
-            is likelier.
-        share: of the payload that is gone then.
-    """
-
-    odds = Number()
-    share = Number()
-
-    def __init__(self, wrench: ExternalWrench) -> None:
-        """
-        Args:
-            wrench: run in the same tick before.
-        """
-        self._wrench = wrench
-        self._record = record(
+    def __init__(self) -> None:
+        self.record = record(
             after=(2, 6),  # mean of y after the onset, if the payload changed, and if a hand did [N, N·m]
             sums=(2, 6),  # of y since the last time that it was compared
             since="i8",  # ticks that these are of
             follows="i8",  # 1: a change is followed
             followed=(),  # its odds
             gone=(),  # its share
-            odds=(),
-            share=(),
+            odds=(),  # log of those that it changed [nats]: of the onset, or with what followed
+            share=(),  # of the payload that is gone then
         )
-        self._own = self._record[0]
-        self._own["odds"] = -math.inf
+        self._own = self.record[0]
+        self.forget()
 
-    def update(self, bias: tuple[float, ...] | None) -> None:
-        """One tick; the flange sensor's bias (6,), axes of F [N, N·m]; None: it is not used."""
-        if bias is None:
-            own = self._own
-            own["follows"], own["odds"], own["share"] = 0, -math.inf, 0.0
-        else:
-            _update(self._record, self._wrench.record, bias)
+    def forget(self) -> None:
+        """Nothing is suspected: free-drive is off, or the sensor was out."""
+        self._own["follows"], self._own["odds"], self._own["share"] = 0, -math.inf, 0.0
 
 
 @kernel
-def _update(answers, wrenches, bias) -> None:
+def follow(answers, wrenches, bias) -> None:
+    """One tick, after `compare`.
+
+    Args:
+        answers: `FallAnswer.record`.
+        wrenches: `ExternalWrench.record`.
+        bias: of the sensor (6,), axes of F [N, N·m].
+    """
     own, wrench = answers[0], wrenches[0]
     kept = wrench.x.shape[0]
     here = (wrench.next - 1) % kept

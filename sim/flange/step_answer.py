@@ -25,9 +25,7 @@ from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
-from sim.compiled.record import Number, record
-from sim.flange.external_wrench import ExternalWrench
-from sim.flange.flange_forces import FlangeForces
+from sim.compiled.record import record
 from sim.flange.wrench_hypotheses import LONGEST
 from sim.sensing.calibration import STIFFNESS
 
@@ -47,25 +45,10 @@ NEITHER = math.exp(-KNOWN)
 
 
 class StepAnswer:
-    """One tick at a time, in free-drive alone.
+    """What is kept of a suspected step, for n joints; `answer` is one tick of it, in free-drive alone."""
 
-    Attributes:
-        odds: log of the odds that the sensor stepped [nats]: those of the onset, and then what the joints say of it, until a
-            force is likelier by far.
-        size: of that step [N].
-    """
-
-    odds = Number()
-    size = Number()
-
-    def __init__(self, n: int, forces: FlangeForces, wrench: ExternalWrench) -> None:
-        """
-        Args:
-            n: number of joints.
-            forces, wrench: run in the same tick before.
-        """
-        self._forces, self._wrench = forces, wrench
-        self._record = record(
+    def __init__(self, n: int) -> None:
+        self.record = record(
             lately=(n,),  # mean of d
             unrest=(n,),  # and its variance
             now=(n,),  # mean of d in the last ticks
@@ -78,23 +61,28 @@ class StepAnswer:
             count="i8",
             since="i8",  # ticks since the onset; 0: no step is looked at
             onset=(),  # odds by it
-            odds=(),
+            odds=(),  # log of those that the sensor stepped [nats]: of the onset, then with what the joints say of it
             size=(),  # of the step [N]
         )
-        self._own = self._record[0]
-        self._own["odds"] = -math.inf
+        self._own = self.record[0]
+        self.forget()
 
-    def update(self, used: bool) -> None:
-        """One tick; whether the flange sensor is used in it."""
+    def forget(self) -> None:
+        """Nothing is suspected: free-drive is off, or the sensor was out."""
         own = self._own
-        if used:
-            _update(self._record, self._forces.record, self._wrench.record, self._forces.model)
-        elif own["count"]:
-            own["count"], own["since"], own["odds"] = 0, 0, -math.inf
+        own["count"], own["since"], own["odds"] = 0, 0, -math.inf
 
 
 @kernel
-def _update(answers, forces, wrenches, model) -> None:
+def answer(answers, known, wrenches) -> None:
+    """One tick, after `compare`.
+
+    Args:
+        answers: `StepAnswer.record`.
+        known: `FlangeForces.record` and that of the rigid model, of the same tick.
+        wrenches: `ExternalWrench.record`.
+    """
+    forces, model = known
     own, felt, wrench = answers[0], forces[0], wrenches[0]
     here, first = own.next, own.count == 0
     for i in range(own.lately.size):

@@ -1,6 +1,4 @@
-import pytest
-
-from sim.compiled.record import Number, record
+from sim.compiled.record import record
 
 
 def test_records_of_the_same_columns_share_their_layout() -> None:
@@ -19,19 +17,3 @@ def test_a_record_begins_with_zeros_in_the_shapes_asked_for() -> None:
     assert one["angle"][0].shape == (2, 3)
     assert one["share"][0] == one["number"][0] == 0
     assert not one["angle"].any()
-
-
-class Kept:
-    angle = Number()
-
-    def __init__(self) -> None:
-        self._own = record(angle=())[0]
-
-
-def test_a_number_of_a_record_is_read_and_not_written() -> None:
-    one, other = Kept(), Kept()
-    one._own["angle"] = 0.5
-    assert (one.angle, other.angle) == (0.5, 0.0)
-    assert type(one.angle) is float
-    with pytest.raises(AttributeError, match="angle"):
-        one.angle = 1.0

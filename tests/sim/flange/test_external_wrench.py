@@ -2,7 +2,6 @@
 
 import math
 
-import msgspec
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -15,8 +14,9 @@ from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
 from sim.arm.chain import Body, chain
 from sim.flange import wrench_hypotheses as bank
-from sim.flange.external_wrench import KEPT, ExternalWrench
+from sim.flange.external_wrench import KEPT
 from sim.flange.flange_forces import FlangeForces
+from sim.flange.whose_force import NOTHING, WhoseForce
 from sim.flange.wrench_hypotheses import BEFORE, FREED, LATE, LN_OFTEN, LN_RARE, LONGEST, LOST, MORE, SHORTEST, STRAY
 from sim.rigid_body.dynamics import Dynamics
 
@@ -39,8 +39,10 @@ class Arm:
     def __init__(self, seed: int = 0) -> None:
         rigid = chain(UR5E)
         self.forces = FlangeForces(Dynamics(rigid, rigid.links, TOOL + PAYLOAD, mounting=[0.0] * 3, elbow=UR5E.chain.elbow))
-        self.wrench = ExternalWrench(UR5E, self.forces)
+        self.whose_force = WhoseForce(UR5E, self.forces)
+        self.wrench = self.whose_force.bank
         self.wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
+        self.told = self.wrench.record[0]
         self.rng = np.random.default_rng(seed)
         self.gyro = np.zeros(3)
         self.forces.model[0]["R"] = np.eye(3)
@@ -66,10 +68,10 @@ class Arm:
         own["missing"], own["specific"] = x + noise, specific + shaking / load.mass
         own["gyro"], own["turn"] = self.gyro, turn
         own["a_felt"] = felt + 0.1 * self.rng.normal(size=3)
-        self.wrench.update(bias, accelerations=accelerometer)
-        self.odds.append(self.wrench.lost)
-        self.stepped.append(self.wrench.stepped)
-        return self.wrench.lost
+        self.whose = self.whose_force.update(bias, accelerations=accelerometer)
+        self.odds.append(float(self.told["lost"]))
+        self.stepped.append(float(self.told["stepped"]))
+        return self.odds[-1]
 
     def course(self, xs: list[Array], *, moves: bool = False) -> float:
         """After a quiet time; the best odds meanwhile. What changes `moves` the flange, or nothing does."""
@@ -154,8 +156,9 @@ def test_the_share_that_fell_is_told() -> None:
     arm, shares = Arm(), []
     for x in [np.zeros(6)] * 30 + [NEEDS] * 8:
         if arm.tick(x, felt=x[:3] / FREE_MASS) > KNOWN:
-            shares.append(arm.wrench.share)
+            shares.append(float(arm.told["share"]))
     assert shares[-1] == pytest.approx(1.0, abs=0.05)
+    assert arm.whose[:2] == (arm.odds[-1], shares[-1]), "nothing is to be followed yet"
 
 
 def test_a_payload_that_comes_on_top_is_another() -> None:
@@ -167,28 +170,18 @@ def test_a_payload_that_comes_on_top_is_another() -> None:
 def test_nothing_is_said_before_there_is_enough_to_compare() -> None:
     arm = Arm()
     for tick in range(KEPT - 1):
-        assert (arm.tick(NEEDS if tick < KEPT - 4 else np.zeros(6)), arm.wrench.stepped) == (-math.inf, -math.inf)
+        assert (arm.tick(NEEDS if tick < KEPT - 4 else np.zeros(6)), arm.stepped[-1]) == (-math.inf, -math.inf)
     assert math.isfinite(arm.tick(np.zeros(6)))
-    assert math.isfinite(arm.wrench.stepped)
-    assert (arm.tick(NEEDS, bias=None), arm.wrench.stepped) == (-math.inf, -math.inf)
-    assert (arm.tick(NEEDS), arm.wrench.stepped) == (-math.inf, -math.inf), "it begins afresh"
+    assert math.isfinite(arm.stepped[-1])
+    assert (arm.tick(NEEDS, bias=None), arm.stepped[-1]) == (-math.inf, -math.inf)
+    assert arm.whose == NOTHING
+    assert (arm.tick(NEEDS), arm.stepped[-1]) == (-math.inf, -math.inf), "it begins afresh"
 
 
 def test_without_a_payload_nothing_can_be_lost() -> None:
     arm = Arm()
     arm.wrench.set_load(TOOL, Body(0.0, np.zeros(3), np.zeros((3, 3))))
     assert arm.course(falls(), moves=True) == -math.inf
-
-
-def test_an_arm_without_a_sensor_has_nothing_to_say() -> None:
-    rigid = chain(UR5E)
-    dynamics = Dynamics(rigid, rigid.links, TOOL + PAYLOAD, mounting=[0.0] * 3, elbow=UR5E.chain.elbow)
-    without = msgspec.structs.replace(UR5E, sensors=msgspec.structs.replace(UR5E.sensors, force_torque=None))
-    wrench = ExternalWrench(without, FlangeForces(dynamics))
-    wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
-    for _ in range(2 * KEPT):
-        wrench.update(NO_BIAS, accelerations=True)
-    assert (wrench.lost, wrench.stepped) == (-math.inf, -math.inf)
 
 
 STEPS = [(12.0, 0.0, 0.0), (0.0, -12.0, 0.0), (4.0, 8.0, 8.0)]
@@ -202,6 +195,7 @@ def test_a_step_that_moves_nothing_is_the_sensors(force: tuple[float, float, flo
     lost = arm.course([hand, *steady(hand + pushed(force))])
     first = next(k for k, odds in enumerate(arm.stepped[30:]) if odds >= SUSPECTED)
     assert first <= SHORTEST + 1
+    assert arm.whose.step == pytest.approx(math.hypot(*force), rel=0.1)
     assert lost < SUSPECTED
     assert max(arm.stepped[:31]) < 1.0
 
@@ -287,13 +281,13 @@ def test_the_odds_are_those_of_the_whole_gaussians(seed: int, bias: tuple[float,
         attitudes.append(np.kron(np.eye(2), turned_by(0.03 * rng.normal(size=3)) @ start))
         arm.forces.model[0]["R"] = attitudes[-1][:3, :3]
         arm.tick(x + bias, UP + lift, bias, felt=0.1 * rng.normal(size=3), turn=turn)
-    assert max(arm.wrench.lost, arm.wrench.stepped) > 3.0
+    assert max(arm.odds[-1], arm.stepped[-1]) > 3.0
     own = arm.wrench.record[0]
     here = (int(own["next"]) - 1) % KEPT
     x, p, felt = (np.stack([own[name][(here - k) % KEPT] for k in reversed(range(KEPT))]) for name in ("x", "p", "felt"))
     lost, stepped = of_window(x - bias, p, felt, attitudes[-KEPT:])
-    assert arm.wrench.lost == pytest.approx(lost, rel=1e-9)
-    assert arm.wrench.stepped == pytest.approx(stepped, rel=1e-9)
+    assert arm.odds[-1] == pytest.approx(lost, rel=1e-9)
+    assert arm.stepped[-1] == pytest.approx(stepped, rel=1e-9)
     told = [1.0 / (1.0 + math.exp(-odds)) for odds in (lost, stepped)]
     assert sum(told) <= 1.0 + 1e-12, "of one whole"
 

@@ -11,7 +11,7 @@ from pendant.sensor.odds import KNOWN, SUSPECTED
 from sim.arm.chain import Body, chain
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.flange_forces import FlangeForces
-from sim.flange.step_answer import ANSWER, StepAnswer
+from sim.flange.step_answer import ANSWER, StepAnswer, answer
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -33,7 +33,8 @@ class Joints:
         dynamics.recursion.run(posture, still, np.zeros(3))
         self.forces = FlangeForces(dynamics)
         self.wrench = ExternalWrench(UR5E, self.forces)
-        self.answer = StepAnswer(UR5E.n, self.forces, self.wrench)
+        self.answer = StepAnswer(UR5E.n)
+        self.own = self.answer.record[0]
         self.onset, self.rng = onset, np.random.default_rng(seed)
         self.torques = dynamics.recursion.jacobian.T @ STEP
 
@@ -44,8 +45,8 @@ class Joints:
         if age:
             own["stepped"] = self.onset
         self.forces.record[0]["apart"] = apart + TREMOR * self.rng.normal(size=UR5E.n)
-        self.answer.update(True)
-        return self.answer.odds
+        answer(self.answer.record, (self.forces.record, self.forces.model), self.wrench.record)
+        return float(self.own["odds"])
 
     def quiet(self, before: Array, ticks: int = 200) -> None:
         for _ in range(ticks):
@@ -68,7 +69,7 @@ def test_what_the_joints_do_not_feel_is_the_sensors(seed: int) -> None:
     told = joints.course(1.0)
     assert told[1:ANSWER] == [joints.onset] * (ANSWER - 1), "until they have answered the onset alone counts"
     assert told[ANSWER + 1] > KNOWN
-    assert joints.answer.size == pytest.approx(math.hypot(6.0, -8.0, 4.0))
+    assert joints.own["size"] == pytest.approx(math.hypot(6.0, -8.0, 4.0))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -125,12 +126,13 @@ def test_the_likeliest_onset_of_the_window_counts() -> None:
     for age, odds in ((2, 1.0), (3, 4.0), (4, 2.0)):
         joints.onset = odds
         joints.tick(before + joints.torques, age)
-    assert joints.answer.odds == 4.0
+    assert joints.own["odds"] == 4.0
 
 
-@pytest.mark.parametrize("used", [True, False])
-def test_without_the_sensor_nothing_is_suspected(used: bool) -> None:
+def test_what_is_forgotten_is_suspected_no_more() -> None:
     joints = Joints()
     joints.course(1.0, ticks=10)
-    joints.answer.update(used)
-    assert (joints.answer.odds == -math.inf) is not used
+    assert joints.own["odds"] > -math.inf
+    joints.answer.forget()
+    assert joints.own["odds"] == -math.inf
+    assert joints.tick(joints.torques) == -math.inf

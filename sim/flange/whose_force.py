@@ -1,0 +1,63 @@
+"""Whose force it is, as the flange sensor tells: the bank of hypotheses and what follows a suspicion, one tick at a time (FD-19)."""
+
+import math
+from typing import NamedTuple
+
+from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.flange.external_wrench import ExternalWrench, compare
+from sim.flange.fall_answer import FallAnswer, follow
+from sim.flange.flange_forces import FlangeForces
+from sim.flange.step_answer import StepAnswer, answer
+
+
+class Odds(NamedTuple):
+    """Of a tick: logs of odds against all else [nats], minus infinity where nothing is suspected."""
+
+    lost: float  # that the payload changed
+    share: float  # of the payload that is gone then
+    stepped: float  # that the sensor stepped
+    step: float  # size of that step [N]
+
+
+NOTHING = Odds(-math.inf, 0.0, -math.inf, 0.0)
+
+
+class WhoseForce:
+    """All that is asked of the flange sensor in free-drive. One kernel: to call three takes as long as all that they do.
+
+    Args:
+        arm: the noise of its flange sensor, accelerometer and gyro.
+        forces: run in the same tick before.
+    """
+
+    def __init__(self, arm: Arm, forces: FlangeForces) -> None:
+        self.bank, self._step, self._fall = ExternalWrench(arm, forces), StepAnswer(arm.n), FallAnswer()
+        self._records = self.bank.record, self._step.record, self._fall.record
+        self._known = forces.record, forces.model
+        self._begun = False
+
+    def update(self, bias: tuple[float, ...] | None, *, accelerations: bool) -> Odds:
+        """One tick.
+
+        Args:
+            bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used, and what was before counts no more.
+            accelerations: the flange's accelerometer is valid.
+        """
+        if bias is None:
+            if self._begun:
+                self._begun = False
+                for each in (self.bank, self._step, self._fall):
+                    each.forget()
+            return NOTHING
+        self._begun = True
+        return Odds(*_update(self._records, self._known, bias, accelerations))
+
+
+@kernel
+def _update(records, known, bias, accelerations) -> tuple[float, float, float, float]:
+    bank, step, fall = records
+    compare(bank, known, bias, accelerations)
+    answer(step, known, bank)
+    follow(fall, bank, bias)
+    return fall[0].odds, fall[0].share, step[0].odds, step[0].size
