@@ -97,16 +97,6 @@ class AdaptiveFriction:
         own["temperature"], own["per_kelvin"], own["output_share"] = filed.temperature, filed.per_kelvin, filed.output_share
         self.warmth[:] = 1.0
 
-    def learn(self, turning: tuple[Array, Array, Array, Array], temperature: Array, free: bool) -> None:
-        """One tick.
-
-        Args:
-            turning: what the joints do, as `Turning`.
-            temperature: measured (n,) [°C].
-            free: no contact, so that the surplus is friction.
-        """
-        _step(self.record, turning, temperature, free)
-
     @property
     def breakaway(self) -> Array:
         """What a standing joint may hold by friction (n,) [N·m]."""
@@ -129,7 +119,15 @@ class AdaptiveFriction:
 
 
 @kernel
-def _step(friction, turning, temperature, free) -> None:
+def rub(friction, turning, temperature, free) -> None:
+    """One tick.
+
+    Args:
+        friction: `AdaptiveFriction.record`.
+        turning: what the joints do, as `Turning`.
+        temperature: measured (n,) [°C].
+        free: no contact, so that the surplus is friction.
+    """
     turning = Turning(*turning)
     own = friction[0]
     warmth = own.warmth

@@ -17,13 +17,12 @@ from sim.estimation.joint_tracking import (
     follow,
     joint_record,
     plan,
-    sides,
-    surplus,
     tracking_gains,
 )
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
-from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
+from sim.estimation.torque_balance import balance
+from sim.estimation.transmission_torque import MOTOR, WAYS, TransmissionTorque
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
@@ -67,8 +66,10 @@ class Estimator:
         self.transmission = TransmissionTorque(arm, dynamics.mass(np.array(arm.chain.home)).diagonal())
         self._use: JointControl | None = None
         self._ways = np.ones((len(WAYS), n), dtype=bool)
-        self._surplus, self._stiction, self._deflection = own["surplus"], own["stiction"], own["deflection"]
-        self._by_deflection: NDArray[np.bool_] | None = None  # whose friction is obtained from it (n,); None: of no joint
+        self._stiction, self._deflection = own["stiction"], own["deflection"]
+        self._by_deflection = np.zeros(n, dtype=bool)  # whose friction is obtained from it
+        self._torques = self._record, self.friction.record, self.transmission.record
+        self._touched = False  # some joint feels a contact
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
         self._theta, self._q, self.tau_m, self._current = own["theta"], own["q"], own["tau_m"], own["current"]
@@ -146,7 +147,7 @@ class Estimator:
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
         known.move_done, known.move_refused = move_done, move_refused
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
-        known.lost, known.touched = self._lost, self.transmission.contact
+        known.lost, known.touched = self._lost, self._touched
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None
@@ -206,12 +207,7 @@ class Estimator:
         self.momentum.update((self.q, *gears, sample.wrench), with_sensor=with_sensor, valid=valid, learn=learn)
 
     def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> bool:
-        """Friction and transmission torque (AF-2, AF-3), in one order: what one module learns the other needs.
-
-        Returns whether any joint moves.
-        """
-        friction, transmission, motor, rigid = self.friction, self.transmission, self._theta, self._dynamics.recursion
-        spent, stiction, ways = self._surplus, self._stiction, transmission.ways
+        """Friction and transmission torque. Returns whether any joint moves."""
         if use is not self._use:
             self._use = use
             both, motor_known = self._able[0] & self._able[1], self._able[0] & self._able[2]
@@ -219,22 +215,13 @@ class Estimator:
             # A joint that has lost the ways that are wanted of it goes on with the rigid model.
             lost = ~(deflection | motor_side) & (use.from_deflection or use.from_motor)
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
-            wanted = use.from_deflection and use.friction_from is _DEFLECTION
-            self._by_deflection = both & motor_known if wanted else None
-        surplus(self._record, rigid.torque, friction.record, transmission.record)
-        if self._lost:
-            spent[~(self._able[MOTOR_ANGLE] & self._able[CURRENT])] = np.nan
-        borne, touched, chosen = rigid.torque, transmission.contact, self._by_deflection
-        if chosen is not None:
-            spent, borne = np.where(chosen, self._own["rubbing"], spent), np.where(chosen, self._own["bending"], borne)
-            touched = touched and not chosen.all()  # the deflection bears what touches the arm, too
-        free = learn and self._started and use.adaptive and not touched
-        friction.learn((motor[1], spent, borne, transmission.fused), sample.temperature, free)
-        ways[DEFLECTION] = self._deflection
-        moving = sides(self._record, rigid.torque, friction.record, transmission.record)
-        transmission.update((friction.deviation, stiction, motor[2]), moving=moving and learn, use=self._ways)
+            self._by_deflection[:] = both & motor_known & (use.from_deflection and use.friction_from is _DEFLECTION)
+        known, adapts = (self._ways, self._able, self._by_deflection), learn and self._started and use.adaptive
+        moving, self._touched = balance(
+            self._torques, self._dynamics.recursion.torque, sample.temperature, known, (learn, adapts)
+        )
         if self._lost:  # what a way cannot tell says nothing against the others
-            np.copyto(ways, transmission.fused, where=~self._ways)
+            np.copyto(self.transmission.ways, self.transmission.fused, where=~self._ways)
         return moving
 
     def _made_up(self, sample: Sample) -> tuple[Array, Array, Array] | None:

@@ -66,7 +66,6 @@ class TransmissionTorque:
         by_motor: standard deviation of the motor's way (n,) where `external` is told by that, 0 where the deflection tells it.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
         offset: learned error of what the deflection is believed to bear at rest (n,) [N·m].
-        contact: some joint feels a contact.
     """
 
     def __init__(self, arm: Arm, inertia: Array) -> None:
@@ -96,54 +95,53 @@ class TransmissionTorque:
             external_deviation=(n,),
             by_motor=(n,),
             model=(n,),  # standard deviation of the rigid model where nothing is touched
+            quiet="i8",  # ticks since some joint felt a contact, at most `SETTLE_TICKS`
         )
-        own = self.record[0]
+        own = self._own = self.record[0]
         own["floor"], own["ripple"], own["least"], own["inertia"] = MODEL_FLOOR * limit, ripple, CONTACT_FLOOR * limit, inertia
         own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
         self.external_deviation, self.by_motor = own["external_deviation"], own["by_motor"]
+        own["quiet"] = SETTLE_TICKS
         self.forget()
-        self.contact = False
-        self._quiet = SETTLE_TICKS
 
     def forget(self) -> None:
         """Begin to learn anew: the rigid model has another load, and what was learned from it may have been its error."""
-        own = self.record[0]
+        own = self._own
         for column in ("stiffer", "offset", "covariance", "differ", "slow_square", "fast_square", "compared"):
             own[column] = 0.0
         own["covariance"][:, 0, 0] = STIFFNESS**2 / 3.0  # of a uniform error
         own["covariance"][:, 1, 1] = own["ripple"] ** 2
 
-    def update(self, rubbing: tuple[Array, Array, Array], *, moving: bool, use: NDArray[np.bool_]) -> None:
-        """One tick, on the raw values that the caller has put into `ways`.
-
-        These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
-        tau_m - J theta_dd - friction of the input side.
-
-        Args:
-            rubbing: what that friction leaves uncertain, as `Rubbing`.
-            moving: some joint moves; at rest nothing is learned, for a wrong payload would pass for a soft spring.
-            use: which of `WAYS` may be used, of which joint (3, n).
-        """
-        touched = _update(self.record, rubbing, use, (moving, self._quiet))
-        self._quiet = 0 if touched else self._quiet + 1
-        self.contact = self._quiet < SETTLE_TICKS
+    @property
+    def contact(self) -> bool:
+        """Some joint feels a contact, or felt one lately."""
+        return bool(self._own["quiet"] < SETTLE_TICKS)
 
 
 @kernel
-def _update(transmission, rubbing, use, state) -> bool:
-    """Compare, then fuse. Returns whether something is touched."""
+def fuse(transmission, rubbing, use, learns) -> bool:
+    """One tick, on the raw values that the caller has put into `ways`: compare, then fuse. Returns whether there is a contact.
+
+    These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
+    tau_m - J theta_dd - friction of the input side.
+
+    Args:
+        transmission: `TransmissionTorque.record`.
+        rubbing: what that friction leaves uncertain, as `Rubbing`.
+        use: which of `WAYS` may be used, of which joint (3, n).
+        learns: planned motion moves some joint; at rest nothing is learned, for a wrong payload would pass for a soft spring.
+    """
     rubbing = Rubbing(*rubbing)
     own = transmission[0]
-    moving, quiet = state
-    learn = moving and quiet >= SETTLE_TICKS
+    learns = learns and own.quiet == SETTLE_TICKS
     touched = _compare(own, rubbing, use)
-    if learn and not touched:
+    if learns and not touched:
         _correct_spring(own, use)
-    quiet = 0 if touched else quiet + 1
-    _fuse(own, use, quiet < SETTLE_TICKS)
-    return touched
+    own.quiet = 0 if touched else min(own.quiet + 1, SETTLE_TICKS)
+    _fuse(own, use, own.quiet < SETTLE_TICKS)
+    return own.quiet < SETTLE_TICKS
 
 
 @kernel

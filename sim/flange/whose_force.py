@@ -1,4 +1,4 @@
-"""Whose force it is, as the flange sensor tells: the bank of hypotheses and what follows a suspicion, one tick at a time (FD-19)."""
+"""Whose force it is, as the flange sensor tells: the bank of hypotheses, and what follows a suspicion (FD-19)."""
 
 import math
 from typing import NamedTuple

@@ -23,7 +23,18 @@ RESPONSE = 0.03
 """Time constant with which a virtual hand goes to where it is wanted [s]. A page tells it 20 times a second; without that each
 time would be a step of force, which no arm of flesh can do and a falling payload does."""
 
+WEIGHED = 10
+"""Ticks between two looks at how light a part is where it is held, which changes with the posture only."""
+
 _FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
+
+
+class Hold(NamedTuple):
+    """A virtual hand that pulls, one tick ago."""
+
+    goes: Triple  # where it had come to, in W [m]
+    damping: float  # [N·s/m]
+    weighed: int  # ticks since the part was weighed
 
 
 class Bodies(NamedTuple):
@@ -55,7 +66,7 @@ class Hands:
         self._bodies = (data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
         self._applied = data.xfrc_applied
         self._pushed: set[int] = set()
-        self._goes: dict[tuple[str, Triple], Triple] = {}  # where each pull has come to by now, in W [m]
+        self._holds: dict[tuple[str, Triple], Hold] = {}  # by part and point
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
 
     def apply(self, touches: Sequence[Touch]) -> None:
@@ -69,7 +80,7 @@ class Hands:
             for body in pushed:
                 self._applied[body] = 0.0
             pushed.clear()
-        went, self._goes = self._goes, {}
+        before, self._holds = self._holds, {}
         if not touches:
             self.touched = ()
             return
@@ -77,7 +88,8 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                held = (_floats(touch.point), self._reach(touch, body, went), float(touch.cap), self._damping(touch, body))
+                goes, damping, _ = self._hold(touch, body, before.get((touch.part, touch.point)))
+                held = _floats(touch.point), goes, float(touch.cap), damping
                 point, force = _pull(bodies, self._roots[body], body, held)
                 torque = ZERO
             else:
@@ -87,13 +99,17 @@ class Hands:
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
 
-    def _reach(self, pull: Pull, body: int, went: Mapping[tuple[str, Triple], Triple]) -> Triple:
-        """Where a pull has come to in this tick, in W [m]; it begins where it takes hold."""
-        hold = pull.part, pull.point
-        x, y, z = went.get(hold) or _at(self._bodies, body, _floats(pull.point))
+    def _hold(self, pull: Pull, body: int, before: Hold | None) -> Hold:
+        """How a pull holds in this tick; it begins where it takes hold."""
+        x, y, z = _at(self._bodies, body, _floats(pull.point)) if before is None else before.goes
         a, b, c = pull.target
-        self._goes[hold] = goes = _floats((x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z)))
-        return goes
+        goes = float(x + _FOLLOWS * (a - x)), float(y + _FOLLOWS * (b - y)), float(z + _FOLLOWS * (c - z))
+        if before is None or before.weighed == WEIGHED:
+            now = Hold(goes, self._damping(pull, body), 1)
+        else:
+            now = Hold(goes, before.damping, before.weighed + 1)
+        self._holds[pull.part, pull.point] = now
+        return now
 
     def _damping(self, pull: Pull, body: int) -> float:
         """Of the hand that pulls [N·s/m]."""

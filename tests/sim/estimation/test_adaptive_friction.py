@@ -7,7 +7,7 @@ from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.program.steps import JointMove, Program
 from sim.arm.scenario import Scenario
-from sim.estimation.adaptive_friction import AdaptiveFriction, Turning
+from sim.estimation.adaptive_friction import AdaptiveFriction, Turning, rub
 from sim.estimation.joint_tracking import joint_record, surplus
 from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
@@ -131,10 +131,10 @@ def test_nothing_is_learned_at_rest_and_friction_never_drives() -> None:
     before = friction.terms.copy()
     loads, warm = np.full(6, 20.0), np.full(6, 44.0)
     for _ in range(500):
-        friction.learn(Turning(np.full(6, 0.01), np.full(6, 30.0), loads, loads), warm, True)
+        rub(friction.record, Turning(np.full(6, 0.01), np.full(6, 30.0), loads, loads), warm, True)
     assert np.array_equal(friction.terms, before)
     for _ in range(5000):
-        friction.learn(Turning(np.full(6, 0.5), np.full(6, -50.0), np.zeros(6), loads), warm, True)
+        rub(friction.record, Turning(np.full(6, 0.5), np.full(6, -50.0), np.zeros(6), loads), warm, True)
     assert (friction.terms[:, :4] >= 0.0).all()
     assert (friction.total >= 0.0).all()
 
@@ -142,11 +142,11 @@ def test_nothing_is_learned_at_rest_and_friction_never_drives() -> None:
 def test_the_prior_is_the_filed_curve_and_falls_with_temperature() -> None:
     friction = AdaptiveFriction(UR5E)
     still = np.zeros(6)
-    friction.learn(Turning(np.full(6, 0.5), still, still, still), np.full(6, 44.0), False)
+    rub(friction.record, Turning(np.full(6, 0.5), still, still, still), np.full(6, 44.0), False)
     filed = [row[1] for row in UR5E.frictions.torque]
     assert np.allclose(friction.total, filed, rtol=0.06), "its terms follow a root of the speed to a few percent"
     cold = friction.total.copy()
-    friction.learn(Turning(np.full(6, 0.5), still, still, still), np.full(6, 54.0), False)
+    rub(friction.record, Turning(np.full(6, 0.5), still, still, still), np.full(6, 54.0), False)
     assert np.allclose(friction.total / cold, 1.0 + 10.0 * UR5E.frictions.per_kelvin)
-    friction.learn(Turning(np.full(6, -0.5), still, still, still), np.full(6, 54.0), False)
+    rub(friction.record, Turning(np.full(6, -0.5), still, still, still), np.full(6, 54.0), False)
     assert (friction.total < 0.0).all()

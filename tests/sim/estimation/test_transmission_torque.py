@@ -3,7 +3,7 @@
 import numpy as np
 
 from pendant.tick.modes import TICK
-from sim.estimation.transmission_torque import SETTLE_TICKS, Rubbing, TransmissionTorque
+from sim.estimation.transmission_torque import SETTLE_TICKS, Rubbing, TransmissionTorque, fuse
 from tests.sim.arms import UR5E
 
 N = UR5E.n
@@ -37,7 +37,7 @@ class Gears:
     ) -> TransmissionTorque:
         for row, value in zip(self.module.ways, (dynamics, deflection, motor), strict=True):
             row[:] = value
-        self.module.update(Rubbing(np.full(N, friction_deviation), CALM, np.full(N, acceleration)), moving=moving, use=use)
+        fuse(self.module.record, Rubbing(np.full(N, friction_deviation), CALM, np.full(N, acceleration)), use, moving)
         return self.module
 
 
