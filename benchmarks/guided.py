@@ -2,7 +2,8 @@
 
 It leads the flange, the tool, the wrist or the elbow on circles and lines, from place to place with pauses of 1 to 3 s in which a
 waypoint is registered, and slowly and gently: with 1 to 5 N, and with more only while that moves nothing, as people do. Payloads
-are right, the sensor drifts, all mismatch is on. Truth is read for scoring alone.
+are right, the sensor drifts, all mismatch is on. In half of the pauses it lets go: then the arm has to stay. Truth is read for
+scoring alone.
 """
 
 import math
@@ -33,10 +34,12 @@ STYLES = ("circle", "line", "teach", "gentle")
 HAND = 50.0  # [N] at most
 RATE = 20.0  # of the hand's targets, as a page sends them [1/s]
 TOOL = 0.1  # beyond the flange [m]
+ALONE = 30.0  # an arm that nobody touches goes so far at most [mm], as in the bench `drift`
 LEAST_LEVER = 0.3  # [m] with which joints move a part that goes that way
 STANDS, HARDER = 0.3, 40.0  # a hand that moves nothing for so long [s] pulls harder by so much a second [N/s]
 OFF = 0.01  # [m] from where it is wanted, beyond which it does
 GETS_HOLD = 0.3  # [s] after entry
+COMES_TO_REST = 0.5  # [s] that an arm may take for it after the hand has let go
 
 
 class Lead(NamedTuple):
@@ -57,6 +60,7 @@ class Result(NamedTuple):
     end: str  # kind of an involuntary end, and its values
     caught: int  # times that a wall held the arm
     way: float  # of the part [m]
+    alone: float  # way of the part in a pause in which nobody holds it, after it may have come to rest; the longest [m]
 
 
 class Path:
@@ -138,7 +142,7 @@ def measure_lead(lead: Lead) -> Result:
     """Enter, lead, and see whether it lasts."""
     device = simulation(lead.case, SETTINGS)
     if not enter(device):
-        return Result(lead, False, 0.0, "", 0, 0.0)
+        return Result(lead, False, 0.0, "", 0, 0.0, 0.0)
     rng = np.random.default_rng([lead.case.seed, lead.case.number, 17])
     for _ in range(round(GETS_HOLD / TICK)):
         device.tick(IDLE)
@@ -147,7 +151,8 @@ def measure_lead(lead: Lead) -> Result:
     gentle = float(rng.uniform(1.0, 5.0)) if lead.style == "gentle" else HAND
     cap, more, stood, harder = gentle, 0.0, 0.0, False
     reach = ahead = np.zeros(3)
-    caught, way, end = 0, 0.0, ""
+    caught, way, alone, end = 0, 0.0, 0.0, ""
+    let_go, rests = 0.0, last  # since when nobody holds it [s], and where it should rest
     registered = False
     total = round(60.0 * lead.minutes / TICK)
     tick = 0
@@ -164,6 +169,10 @@ def measure_lead(lead: Lead) -> Result:
             now = place_of(device, lead.part)
             gone, last = float(np.linalg.norm(now - last)), now
             way += gone
+            let_go = 0.0 if holds else let_go + 0.1
+            if let_go <= COMES_TO_REST:
+                rests = now
+            alone = max(alone, float(np.linalg.norm(now - rests)))
             stood = stood + 0.1 if gone < 0.001 else 0.0
             wanted = target - now
             harder = stood >= STANDS and not path.pauses and bool(np.linalg.norm(wanted) >= OFF)
@@ -178,7 +187,7 @@ def measure_lead(lead: Lead) -> Result:
                 end = f"{event.kind.value} ({values})"
         if end:
             break
-    return Result(lead, True, (tick + 1) * TICK / 60.0, end, caught, way)
+    return Result(lead, True, (tick + 1) * TICK / 60.0, end, caught, way, alone)
 
 
 def leads(report: Report, minutes: float) -> list[Lead]:
@@ -210,6 +219,9 @@ def measure(report: Report) -> None:
         report.share(f"{style}: involuntary ends", sum(bool(result.end) for result in some), len(some))
         speed = sum(r.way for r in some) / sum(60.0 * r.led for r in some)
         report.row(f"{style}: speed of the part, mean", speed, "m/s", n=len(some))
+    loose = [1000.0 * result.alone for result in led if result.lead.style == "teach"]
+    report.row("teach: way in a pause in which nobody holds the arm, largest", max(loose), "mm", at_most=ALONE, n=len(loose))
+    report.share("teach: such a way beyond that", sum(each > ALONE for each in loose), len(loose))
     report.row("a wall held a led arm, in 300 minutes", 300.0 * sum(r.caught for r in led) / minutes, "", n=len(led))
     for r in ends:
         case = r.lead.case

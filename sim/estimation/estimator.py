@@ -217,9 +217,8 @@ class Estimator:
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
             self._by_deflection[:] = both & motor_known & (use.from_deflection and use.friction_from is _DEFLECTION)
         known, adapts = (self._ways, self._able, self._by_deflection), learn and self._started and use.adaptive
-        moving, self._touched = balance(
-            self._torques, self._dynamics.recursion.torque, sample.temperature, known, (learn, adapts)
-        )
+        told = self._dynamics.recursion.torque, sample.temperature
+        moving, self._touched = balance(self._torques, told, known, (learn, adapts))
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(self.transmission.ways, self.transmission.fused, where=~self._ways)
         return moving

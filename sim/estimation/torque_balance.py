@@ -29,13 +29,12 @@ class Learns(NamedTuple):
 
 
 @kernel
-def balance(records, tau_dyn, temperature, known, learns) -> tuple[bool, bool]:
+def balance(records, told, known, learns) -> tuple[bool, bool]:
     """One kernel: to call four takes longer than all that they do.
 
     Args:
         records: of `joint_tracking`, after `follow`; of `AdaptiveFriction`; of `TransmissionTorque`.
-        tau_dyn: torques of the rigid model (n,) [N·m].
-        temperature: measured (n,) [°C].
+        told: torques of the rigid model (n,) [N·m], and temperatures as measured (n,) [°C].
         known: as `Known`.
         learns: as `Learns`.
 
@@ -44,6 +43,7 @@ def balance(records, tau_dyn, temperature, known, learns) -> tuple[bool, bool]:
     """
     known, learns = Known(*known), Learns(*learns)
     joints, friction, transmission = records
+    tau_dyn, temperature = told
     own, gears = joints[0], transmission[0]
     n = tau_dyn.size
     surplus(joints, tau_dyn, friction, transmission)

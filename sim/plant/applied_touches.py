@@ -29,7 +29,7 @@ WEIGHED = 10
 _FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
 
 
-class Hold(NamedTuple):
+class Pulling(NamedTuple):
     """A virtual hand that pulls, one tick ago."""
 
     goes: Triple  # where it had come to, in W [m]
@@ -66,7 +66,7 @@ class Hands:
         self._bodies = (data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
         self._applied = data.xfrc_applied
         self._pushed: set[int] = set()
-        self._holds: dict[tuple[str, Triple], Hold] = {}  # by part and point
+        self._holds: dict[tuple[str, Triple], Pulling] = {}  # by part and point
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
 
     def apply(self, touches: Sequence[Touch]) -> None:
@@ -99,15 +99,15 @@ class Hands:
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
 
-    def _hold(self, pull: Pull, body: int, before: Hold | None) -> Hold:
+    def _hold(self, pull: Pull, body: int, before: Pulling | None) -> Pulling:
         """How a pull holds in this tick; it begins where it takes hold."""
         x, y, z = _at(self._bodies, body, _floats(pull.point)) if before is None else before.goes
         a, b, c = pull.target
         goes = float(x + _FOLLOWS * (a - x)), float(y + _FOLLOWS * (b - y)), float(z + _FOLLOWS * (c - z))
         if before is None or before.weighed == WEIGHED:
-            now = Hold(goes, self._damping(pull, body), 1)
+            now = Pulling(goes, self._damping(pull, body), 1)
         else:
-            now = Hold(goes, before.damping, before.weighed + 1)
+            now = Pulling(goes, before.damping, before.weighed + 1)
         self._holds[pull.part, pull.point] = now
         return now
 
