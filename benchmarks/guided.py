@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.arms import heaviest
-from benchmarks.common import Report, main, spread
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.hold import IDLE, MOUNTINGS, enter
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from pendant.event_table import TABLE
@@ -220,7 +220,13 @@ def measure(report: Report) -> None:
         speed = sum(r.way for r in some) / sum(60.0 * r.led for r in some)
         report.row(f"{style}: speed of the part, mean", speed, "m/s", n=len(some))
     loose = [1000.0 * result.alone for result in led if result.lead.style == "teach"]
-    report.row("teach: way in a pause in which nobody holds the arm, largest", max(loose), "mm", at_most=ALONE, n=len(loose))
+    report.row(
+        "teach: way in a pause in which nobody holds the arm, largest",
+        max(loose, default=NO_CASE),
+        "mm",
+        at_most=ALONE,
+        n=len(loose),
+    )
     report.share("teach: such a way beyond that", sum(each > ALONE for each in loose), len(loose))
     report.row("a wall held a led arm, in 300 minutes", 300.0 * sum(r.caught for r in led) / minutes, "", n=len(led))
     for r in ends:

@@ -69,7 +69,6 @@ class Estimator:
         self._stiction, self._deflection = own["stiction"], own["deflection"]
         self._by_deflection = np.zeros(n, dtype=bool)  # whose friction is obtained from it
         self._torques = self._record, self.friction.record, self.transmission.record
-        self._touched = False  # some joint feels a contact
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
         self._theta, self._q, self.tau_m, self._current = own["theta"], own["q"], own["tau_m"], own["current"]
@@ -147,7 +146,7 @@ class Estimator:
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
         known.move_done, known.move_refused = move_done, move_refused
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
-        known.lost, known.touched = self._lost, self._touched
+        known.lost, known.touched = self._lost, self.transmission.contact
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None
@@ -217,8 +216,7 @@ class Estimator:
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
             self._by_deflection[:] = both & motor_known & (use.from_deflection and use.friction_from is _DEFLECTION)
         known, adapts = (self._ways, self._able, self._by_deflection), learn and self._started and use.adaptive
-        told = self._dynamics.recursion.torque, sample.temperature
-        moving, self._touched = balance(self._torques, told, known, (learn, adapts))
+        moving: bool = balance(self._torques, (self._dynamics.recursion.torque, sample.temperature), known, (learn, adapts))
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(self.transmission.ways, self.transmission.fused, where=~self._ways)
         return moving

@@ -29,21 +29,21 @@ class Learns(NamedTuple):
 
 
 @kernel
-def balance(records, told, known, learns) -> tuple[bool, bool]:
+def balance(records, given, known, learns) -> bool:
     """One kernel: to call four takes longer than all that they do.
 
     Args:
         records: of `joint_tracking`, after `follow`; of `AdaptiveFriction`; of `TransmissionTorque`.
-        told: torques of the rigid model (n,) [N·m], and temperatures as measured (n,) [°C].
+        given: torques of the rigid model (n,) [N·m], and temperatures as measured (n,) [°C].
         known: as `Known`.
         learns: as `Learns`.
 
     Returns:
-        Whether any joint moves, and whether one feels a contact.
+        Whether any joint moves.
     """
     known, learns = Known(*known), Learns(*learns)
     joints, friction, transmission = records
-    tau_dyn, temperature = told
+    tau_dyn, temperature = given
     own, gears = joints[0], transmission[0]
     n = tau_dyn.size
     surplus(joints, tau_dyn, friction, transmission)
@@ -60,5 +60,5 @@ def balance(records, told, known, learns) -> tuple[bool, bool]:
     rub(friction, (own.theta[1], spent, borne, gears.fused), temperature, learns.friction and not felt)
     gears.ways[1] = own.deflection
     moving = sides(joints, tau_dyn, friction, transmission)
-    touched = fuse(transmission, (friction[0].deviation, own.stiction, own.theta[2]), known.ways, moving and learns.gears)
-    return moving, touched
+    fuse(transmission, (friction[0].deviation, own.stiction, own.theta[2]), known.ways, moving and learns.gears)
+    return moving

@@ -121,8 +121,8 @@ class TransmissionTorque:
 
 
 @kernel
-def fuse(transmission, rubbing, use, learns) -> bool:
-    """One tick, on the raw values that the caller has put into `ways`: compare, then fuse. Returns whether there is a contact.
+def fuse(transmission, rubbing, use, learns) -> None:
+    """One tick, on the raw values that the caller has put into `ways`: compare, then fuse.
 
     These are: torque of the rigid model and of the output side's friction; stiffness as believed times the deflection;
     tau_m - J theta_dd - friction of the input side.
@@ -141,7 +141,6 @@ def fuse(transmission, rubbing, use, learns) -> bool:
         _correct_spring(own, use)
     own.quiet = 0 if touched else min(own.quiet + 1, SETTLE_TICKS)
     _fuse(own, use, own.quiet < SETTLE_TICKS)
-    return own.quiet < SETTLE_TICKS
 
 
 @kernel

@@ -1,5 +1,6 @@
 """Whether the payload fell, as the joints alone tell it (FD-19)."""
 
+import math
 from types import SimpleNamespace
 from typing import cast
 
@@ -292,6 +293,15 @@ def test_a_hand_is_no_fall(force: list[float]) -> None:
     bench = arm(3.0, sensor=False)
     bench.run(0.08, Push("flange", CENTRE, (x, y, z)))
     assert not [event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD]
+
+
+@pytest.mark.parametrize("sensor", [False, True])
+def test_of_a_flange_sensor_that_is_not_there_nothing_is_asked(sensor: bool) -> None:
+    bench = arm(3.0, sensor=sensor)
+    bench.change(DropPayload())
+    for _ in range(20):
+        bench.run(TICK)
+        assert (bench.estimate.lost_odds, bench.estimate.step_odds) == (-math.inf, -math.inf)
 
 
 def test_a_hand_that_leads_is_no_fall() -> None:
