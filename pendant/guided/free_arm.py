@@ -108,8 +108,8 @@ class FreeArm:
         hand.step(estimate, bias.used, settings.unexplained.speed)
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
-            least = settings.unexplained.force + bias.slack(estimate).force
-            told = bias.step(estimate, hand, around.mean, waits=waits, still=around.still.count > 0, least=least)
+            still, force = around.still.count > 0, settings.unexplained.force
+            told = bias.step(estimate, hand, around.mean, waits=waits, still=still, force=force)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)

@@ -46,7 +46,7 @@ class BiasFollower:
         lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "_weight", "lately")
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "_taken", "_weight", "lately")
 
     def __init__(self, sensor: SensorSpec, tick: int = 0, weight: Vector = ORIGIN) -> None:
         """
@@ -59,6 +59,7 @@ class BiasFollower:
         self._quiet, self._weight = tick, weight  # when it was last followed
         self._count = 0
         self._followed: Wrench | None = None
+        self._taken: Wrench = ZEROS  # what was subtracted since the arm last came to rest, axes of F [N, N·m]
         self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
         self._felt: Vector = ORIGIN  # by the joints in it [N]
         self.lately: deque[Wrench] = deque(maxlen=BEGINS)
@@ -77,10 +78,15 @@ class BiasFollower:
         self._count = 0
         self.restart()
 
-    def slack(self, tick: int) -> Slack:
-        """At this tick."""
+    def drifted(self, tick: int) -> Slack:
+        """By so much it may have drifted since the arm came to rest."""
         seconds = TICK * (tick - self._quiet)
         return Slack(self._sensor.drift_force * seconds, self._sensor.drift_torque * seconds)
+
+    def slack(self, tick: int) -> Slack:
+        """At this tick: it may have drifted since the arm came to rest, or what was subtracted then was a hand's."""
+        (force, torque), (x, y, z, a, b, c) = self.drifted(tick), self._taken
+        return Slack(max(force, norm((x, y, z))), max(torque, norm((a, b, c))))
 
     def begin(self, apart: Wrench, estimate: Estimate) -> Wrench | None:
         """The arm has come to rest in the tick of the estimate, and feels so much beyond the baseline, axes of F [N, N·m].
@@ -94,17 +100,21 @@ class BiasFollower:
         if norm((apart[0], apart[1], apart[2])) > slack.force + wrong:
             return None
         self._quiet, self._weight = estimate.tick, load_weight(estimate)
-        return (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
+        self._taken = taken = (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
+        return taken
 
     def give_back(self) -> list[Wrench]:
         """What was subtracted lately was a hand's force, axes of F [N, N·m]."""
         lately = list(self.lately)
         self.lately.clear()
+        for gone in lately:
+            self._taken = _sum(self._taken, gone, -1.0)
         return lately
 
     def keep(self, gone: Wrench) -> None:
         """So much was subtracted, axes of F [N, N·m]."""
         self.lately.append(gone)
+        self._taken = _sum(self._taken, gone)
 
     def due(self) -> bool:
         """One tick; whether a mean is wanted in it."""
@@ -143,6 +153,10 @@ def _within(change: list[float], most: float) -> Vector:
     x, y, z = change
     share = most / max(math.sqrt(x * x + y * y + z * z), most, 1e-12)
     return share * x, share * y, share * z
+
+
+def _sum(one: Wrench, other: Wrench, factor: float = 1.0) -> Wrench:
+    return tuple([a + factor * b for a, b in zip(one, other, strict=True)])
 
 
 def _less(a: Vector, b: Vector) -> Vector:
@@ -198,7 +212,7 @@ class SensorBias:
         return self._drift.slack(estimate.tick)
 
     def step(
-        self, estimate: Estimate, hand: UserForce, mean: WrenchMean, *, waits: bool, still: bool, least: float
+        self, estimate: Estimate, hand: UserForce, mean: WrenchMean, *, waits: bool, still: bool, force: float
     ) -> Event | None:
         """One tick of free-drive with a valid sensor: its drift is subtracted.
 
@@ -210,8 +224,9 @@ class SensorBias:
             mean: of F_user.
             waits: nobody is known to move the arm.
             still: no joint moves.
-            least: a hand's force is at least so large [N], so that a smaller step moves nothing.
+            force: a hand's is at least so large, if the sensor has not drifted [N], so that a smaller step moves nothing.
         """
+        least = force + self._drift.drifted(estimate.tick).force
         x, y, z = estimate.F_joints.tolist()
         fx, fy, fz = self._felt
         self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))

@@ -5,7 +5,7 @@ import math
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import SURE, Slack
 from pendant.guided.settings import Unexplained
-from pendant.guided.user_force import ON_A_LINK, UserForce
+from pendant.guided.user_force import UserForce
 from pendant.guided.work import Work
 from pendant.limits.parameters import EntryValues
 from pendant.sensor.odds import HALF
@@ -13,6 +13,9 @@ from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, norm
+
+LIGHT = 5.0
+"""A force that the flange sensor feels may be of what hangs there; below this [N] the work that it does is a light hand's."""
 
 
 class Way:
@@ -30,7 +33,7 @@ class Way:
             since: what held at entry; the way begins there.
         """
         self._began = since.position
-        self.work = Work(since.torques)
+        self.work = Work()
 
     def begin(self, estimate: Estimate) -> None:
         """It begins here."""
@@ -106,21 +109,18 @@ class UnintendedMotion:
         x, y, z = hand.user
         least = self._on.force + slack.force
         caused = driven or (x * x + y * y + z * z >= least * least if use_wrench else estimate.joints_feel is JointsFeel.HAND)
-        # Work on a link counts while the flange sensor rules out that it is the weight of what hangs there.
-        usual = norm(hand.usual)
-        by_link = not use_wrench or usual < ON_A_LINK + slack.force
-        wrench = NO_WRENCH
-        if use_wrench and by_link:
+        wrench, usual = NO_WRENCH, norm(hand.usual)
+        if use_wrench and usual < LIGHT + slack.force:
             wrench = _beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
-        way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench, by_link=by_link)
+        way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench)
         if way is None:
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
     def _too_long(
-        self, estimate: Estimate, wrench: tuple[Vector, Vector], *, speed: float, caused: bool, use_wrench: bool, by_link: bool
+        self, estimate: Estimate, wrench: tuple[Vector, Vector], *, speed: float, caused: bool, use_wrench: bool
     ) -> Way | None:
         """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
 
@@ -134,41 +134,41 @@ class UnintendedMotion:
             if self._ticks == 0:
                 stretch.begin(estimate)
             self._ticks += 1
-            stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
+            stretch.work.step(estimate, *wrench)
         if not use_wrench and estimate.joints_feel is not JointsFeel.FALL:
             whole.begin(estimate)
         if caused:
             self._at_rest = False
-            self.led = moves and by_link and stretch.work.settled
+            self.led = moves and stretch.work.settled
             self._end_doubt()
             return None
         if not (moves or self._at_rest):
             self._at_rest, self._helped = True, 0.0
             if use_wrench:
                 whole.begin(estimate)
-        too_long, far = self._since_rest(estimate, wrench, by_link) if use_wrench else self._unfelt(estimate, moves)
+        too_long, far = self._since_rest(estimate, wrench) if use_wrench else self._unfelt(estimate, moves)
         if too_long is not None:
             return too_long
         if moves:
-            self.led = by_link and stretch.work.settled
+            self.led = stretch.work.settled
         if self.led or not moves:
             self._ticks, self.doubtful = 0, False
-        elif self._lasts(HALF, by_link):
+        elif self._lasts(HALF):
             self.doubtful = True
         self.doubtful = self.doubtful or far
         self._doubted = self._doubted + 1 if self.doubtful else 0
         # Without help an arm that nobody leads may come to rest first.
-        waits = by_link and self._doubted < HALF * self._allowed
-        return stretch if moves and not (self.led or waits) and self._lasts(1.0, by_link) else None
+        waits = self._doubted < HALF * self._allowed
+        return stretch if moves and not (self.led or waits) and self._lasts(1.0) else None
 
-    def _since_rest(self, estimate: Estimate, wrench: tuple[Vector, Vector], by_link: bool) -> tuple[Way | None, bool]:
+    def _since_rest(self, estimate: Estimate, wrench: tuple[Vector, Vector]) -> tuple[Way | None, bool]:
         """The way of an arm that was at rest, if it is too long, and whether it is more than half of what is allowed."""
         whole, away = self._whole, self._on.distance
         if not self._at_rest:
             return None, False
         whole.work.step(estimate, *wrench)
         length = whole.length(estimate)
-        paid = by_link and whole.work.paid
+        paid = whole.work.paid
         if length > max(away, self._helped + HALF * away) and not paid:
             return whole, False
         self._at_rest = not (paid and length > away)
@@ -192,10 +192,9 @@ class UnintendedMotion:
         length, away = way.length(estimate), self._on.distance
         return (way if length > away else None), fallen or length > HALF * away
 
-    def _lasts(self, share: float, by_link: bool) -> bool:
+    def _lasts(self, share: float) -> bool:
         """Nobody has led the arm for this share of the time that it has."""
-        most = round(share * self._allowed)
-        return self._stretch.work.lasts(most) if by_link else self._ticks > most
+        return self._stretch.work.lasts(round(share * self._allowed))
 
     def _end_doubt(self) -> None:
         self.doubtful, self._doubted = False, 0

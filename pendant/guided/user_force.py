@@ -1,7 +1,8 @@
 """The user's force on the arm in free-drive, separated from a wrong payload's and from a sensor's offset (FD-13, FD-19, VW-5).
 
 What the sensor and the joints measured when free-drive began is no user force. Of the change since then, a steady part along
-gravity may be a payload's; it stops counting as the user's with a time constant, as in `pendant.freedrive.manipulation`.
+gravity may be a payload's; it stops counting as the user's with a time constant, as in `pendant.freedrive.manipulation`. A hand
+on a link is felt by the joints alone: beside the sensor the estimator tells which of their torques are more than their errors.
 """
 
 import math
@@ -9,7 +10,7 @@ import math
 from pendant.limits.residual import upward
 from pendant.sensor.hand_model import KEEPS, STEADY
 from pendant.sensor.odds import HALF
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, dot, flat, norm, turned_back
 
@@ -18,12 +19,6 @@ SWING = 0.05
 
 JOINTS_SWING = 2.0 * SWING
 """The same of what the joints feel, and of the force lately [s]: between them and the flange are the gears."""
-
-FELT_BY_JOINTS = 10.0
-"""A force that the joints alone feel counts from here on [N]: friction and the model's errors are 3 to 6 N·m, at 0.5 m."""
-
-ON_A_LINK = HALF * FELT_BY_JOINTS
-"""And from here on [N] while the flange sensor feels a smaller change: it would feel what falls, which hangs there."""
 
 _SLOW, _SLOWER, _SENSOR, _JOINTS = (1.0 - math.exp(-TICK / time) for time in (KEEPS, STEADY, SWING, JOINTS_SWING))
 
@@ -42,6 +37,7 @@ class UserForce:
         "_slow",
         "_slow_joints",
         "_up",
+        "by_joints",
         "change",
         "fluctuation",
         "payload",
@@ -67,6 +63,7 @@ class UserForce:
         self._slow = self._slow_joints = 0.0  # changes along gravity, smoothed [N]
         self._by_sensor: Vector = ORIGIN
         self._by_joints: Vector = ORIGIN
+        self.by_joints = False  # they tell some of the user's force
         self.user: Vector = ORIGIN  # the user's force, axes of B [N]
         self.change: Vector = ORIGIN  # of what the sensor feels, as measured, axes of B [N]
         self.usual: Vector = ORIGIN  # of that the mean lately [N]
@@ -77,11 +74,6 @@ class UserForce:
     def sensed(self) -> float:
         """Size of the user's force as the flange sensor alone tells it [N]; 0 where it has not been used."""
         return norm(self._by_sensor)
-
-    @property
-    def by_joints(self) -> bool:
-        """The joints tell the user's force, and not the flange sensor."""
-        return self.user is self._by_joints is not ORIGIN
 
     def shift(self, force: Vector) -> None:
         """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""
@@ -106,8 +98,8 @@ class UserForce:
         by += _JOINTS * (y - residual * uy - by)
         bz += _JOINTS * (z - residual * uz - bz)
         self._by_joints = (bx, by, bz)
-        user, size = self._by_joints, math.hypot(bx, by, bz)
-        felt = size >= FELT_BY_JOINTS
+        user = self._by_joints if estimate.joints_feel is JointsFeel.HAND else ORIGIN
+        self.by_joints = user is not ORIGIN
         if use_wrench:
             (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
             (ox, oy, oz), payload = self._baseline, self._payload
@@ -127,11 +119,10 @@ class UserForce:
             sy += _SENSOR * (y - slow * uy - sy)
             sz += _SENSOR * (z - slow * uz - sz)
             self._by_sensor = (sx, sy, sz)
-            by_sensor = math.hypot(sx, sy, sz)
-            felt = felt or (size >= ON_A_LINK and math.hypot(x, y, z) < ON_A_LINK)
-            if not felt or by_sensor >= FELT_BY_JOINTS:
-                user, size, felt = self._by_sensor, by_sensor, True
-        self.user = user if felt and size >= self._doubt else ORIGIN
+            x, y, z = estimate.F_link.tolist()
+            self.by_joints = (x, y, z) != ORIGIN
+            user = (sx + x, sy + y, sz + z)
+        self.user = user if norm(user) >= self._doubt else ORIGIN
         self.payload = (residual * ux, residual * uy, residual * uz)
 
 

@@ -19,10 +19,11 @@ from sim.estimation.joint_tracking import (
     plan,
     tracking_gains,
 )
+from sim.estimation.link_hand import LinkHand
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.torque_balance import balance
-from sim.estimation.transmission_torque import MOTOR, WAYS, TransmissionTorque
+from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.whose_force import WhoseForce
 from sim.motion.moves import Reference
@@ -86,6 +87,7 @@ class Estimator:
         self.momentum = MomentumObserver(arm, dynamics)
         joints = JointTorques(self.momentum, self.transmission, self._deflection)
         self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force.bank)
+        self.link_hand = LinkHand(arm, dynamics.recursion, self.momentum)
         self._known: Estimate | None = None
         self.tick = 0
 
@@ -150,8 +152,12 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None
-            self._ask_whose(known, bias if sample.wrench_valid else None)
+            self._ask_whose(known, bias if self._sensed(sample) else None)
         return known
+
+    def _sensed(self, sample: Sample) -> bool:
+        """The flange sensor is valid, and was so since free-drive began, if it is on."""
+        return sample.wrench_valid and not self.fall.blind
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
@@ -159,6 +165,12 @@ class Estimator:
         known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
         known.energy = self._dynamics.recursion.energy.item() + self._own["spin"].item()
         known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
+        if bias is None:
+            self.link_hand.forget()
+            known.tau_hand = self.fall.torque
+        else:
+            self.link_hand.update(bias, self._q[1], self._ways[DEFLECTION])
+            known.tau_hand = self.link_hand.torque
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""
@@ -195,6 +207,8 @@ class Estimator:
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
+            F_link=self.link_hand.force,
+            tau_hand=self.link_hand.torque,
             current=self._current,
         )
 
@@ -202,7 +216,7 @@ class Estimator:
         """External torques by the momentum."""
         friction, motor = self.friction, self.transmission.ways[MOTOR]
         gears = (self._deflection, motor, friction.total, friction.deviation, self._stiction, self._ways)
-        valid, with_sensor = sample.joints_valid, sample.wrench_valid
+        valid, with_sensor = sample.joints_valid, self._sensed(sample)
         self.momentum.update((self.q, *gears, sample.wrench), with_sensor=with_sensor, valid=valid, learn=learn)
 
     def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> bool:

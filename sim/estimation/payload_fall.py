@@ -65,7 +65,11 @@ class JointTorques(NamedTuple):
 
 
 class PayloadFall:
-    """One tick at a time, in free-drive alone."""
+    """One tick at a time, in free-drive alone.
+
+    Attributes:
+        torque: of a hand (n,) [N·m]; zeros where there is none.
+    """
 
     def __init__(self, arm: Arm, rigid: NewtonEuler, joints: JointTorques, wrench: ExternalWrench) -> None:
         """
@@ -86,6 +90,7 @@ class PayloadFall:
             momentum=(2, 6),  # P and L of the payload a tick ago, and of 1 kg at its centre, in B [N·s, N·m·s]
             needed=(2, 6),  # force and moment behind the first and the second of both filters [N, N·m]
             swing=(2, 6),  # the same to accelerate 1 kg at its centre
+            hand=(arm.n,),  # what a hand makes of the change of tau_ext [N·m]
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
             ticks="i8",  # since both run
             lasts="i8",  # ticks
@@ -93,7 +98,13 @@ class PayloadFall:
         own = self._own = self._record[0]
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
+        self.torque: Array = own["hand"]
         self._begun = self._blind = False
+
+    @property
+    def blind(self) -> bool:
+        """The flange sensor was out in this free-drive; until it ends the joints tell."""
+        return self._begun and self._blind
 
     def update(self, q: Array, *, free: bool, sensed: bool) -> tuple[bool, JointsFeel]:
         """One tick. Returns whether the payload fell, and what explains the torques of this tick.
@@ -107,6 +118,7 @@ class PayloadFall:
         """
         if not free:
             self._begun = False
+            self.torque[:] = 0.0
             return NOT_ASKED
         if not self._begun:
             self._begin()
@@ -116,6 +128,7 @@ class PayloadFall:
         momentum, transmission, _ = self._joints
         if not momentum.ready:
             self._own["ticks"] = 0
+            self.torque[:] = 0.0
             return NOT_ASKED
         felt = q, transmission.ways[DYNAMICS], momentum.residual, transmission.by_motor
         fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
@@ -158,13 +171,17 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
         for k in range(MEAN):
             more += own.latest[k, 0, i] / MEAN
             lost += own.latest[k, 1, i] / MEAN
+        own.hand[i] = more
         change += more * more
         left += (more - lost) * (more - lost)
         nothing = nothing and abs(more) <= wrong
         falls = falls and abs(more - lost) <= wrong + STIFFNESS * abs(lost)
         unmissed = unmissed and abs(lost) <= wrong
     own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
-    return own.lasts >= LONGEST - MEAN, NOTHING if nothing else FALL if falls and not unmissed else HAND
+    feels = NOTHING if nothing else FALL if falls and not unmissed else HAND
+    if feels != HAND:
+        own.hand[:] = 0.0
+    return own.lasts >= LONGEST - MEAN, feels
 
 
 @kernel

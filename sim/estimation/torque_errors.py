@@ -153,14 +153,20 @@ def left_over(shares, torque, causes):
 
 
 @kernel
-def _beyond(own, doubt, i, felt) -> bool:
-    """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
-    left, causes = left_over(own.shares[i], felt[0], felt[1:]), felt[1:]
+def variance(own, i, causes):
+    """Of what these causes make of joint i's torque, as well as their shares are known [N²·m²]."""
     known = 0.0
     for k in range(CAUSES):
         for m in range(CAUSES):
             known += causes[k] * own.covariance[_place(i, k), _place(i, m)] * causes[m]
-    return left * left > CONTACT**2 * (max(known, 0.0) + _noise(own, doubt, i))
+    return max(known, 0.0)
+
+
+@kernel
+def _beyond(own, doubt, i, felt) -> bool:
+    """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
+    left = left_over(own.shares[i], felt[0], felt[1:])
+    return left * left > CONTACT**2 * (variance(own, i, felt[1:]) + _noise(own, doubt, i))
 
 
 @kernel

@@ -109,7 +109,7 @@ def _update(forces, model, felt, valid) -> None:
     own, rigid = forces[0], model[0]
     R, specific, gravity, a_felt = rigid.R, felt.arm_side, own.gravity, own.a_felt
     wrench_valid, differentiated = valid
-    _felt_by_joints(rigid.jacobian, felt.tau_ext, own.F_joints)
+    best_force(rigid.jacobian, felt.tau_ext, own.F_joints)
     for k in range(3):
         a_felt[k] = R[k, 0] * specific[0] + R[k, 1] * specific[1] + R[k, 2] * specific[2] + gravity[k]
     if differentiated:
@@ -126,7 +126,7 @@ def _update(forces, model, felt, valid) -> None:
 
 
 @kernel
-def _felt_by_joints(jacobian, tau_ext, out) -> None:
+def best_force(jacobian, tau_ext, out) -> None:
     """The force f on the flange with the least |J^T f - tau_ext|² + |damping f|²: a pure force, the damping for singularities."""
     a = np.zeros((3, 3))
     b = np.zeros(3)

@@ -42,6 +42,8 @@ def estimate(
     tau_ext_deviation: float = 0.0,
     friction: float | list[float] = 0.0,
     energy: float = 0.0,
+    tau_hand: float | list[float] = 0.0,
+    link: float | list[float] = 0.0,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
@@ -83,4 +85,6 @@ def estimate(
         load_mass=load_mass,
         friction=np.array(vector(friction, n)),
         energy=energy,
+        tau_hand=np.array(vector(tau_hand, n)),
+        F_link=np.array(vector(link, 3)),
     )

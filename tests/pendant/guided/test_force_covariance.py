@@ -15,10 +15,10 @@ from pendant.guided.force_covariance import (
     upward_in_flange,
 )
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.user_force import FELT_BY_JOINTS, JOINTS_SWING, ON_A_LINK, SWING, UserForce
+from pendant.guided.user_force import JOINTS_SWING, SWING, UserForce
 from pendant.limits.validity import WINDOW
 from pendant.sensor.sensor_spec import SensorSpec
-from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.estimate import GRAVITY, Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector
 from tests.pendant.estimates import MOVES, SENSOR, estimate
@@ -153,14 +153,15 @@ def test_what_the_flange_sensor_tells_comes_with_all_that_it_feels() -> None:
     assert hand.fluctuation == pytest.approx((1.0 - math.exp(-TICK / JOINTS_SWING)) * 20.0**2)
 
 
-@pytest.mark.parametrize(("used", "at_flange"), [(True, 0.0), (True, 0.5 * ON_A_LINK), (False, 0.0)])
+@pytest.mark.parametrize(("used", "at_flange"), [(True, 0.0), (True, 2.5), (False, 0.0)])
 def test_of_what_the_joints_tell_there_is_none(used: bool, at_flange: float) -> None:
     hand = UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
     value = estimate(force=[0.0, at_flange, 0.0])
-    value.F_joints = np.array([3.0 * FELT_BY_JOINTS, 0.0, 0.0])
+    value.F_joints = value.F_link = np.array([30.0, 0.0, 0.0])
+    value.joints_feel = JointsFeel.NOTHING if used else JointsFeel.HAND
     for _ in range(50):
         hand.step(value, used, MOVES)
-    assert hand.user[0] > FELT_BY_JOINTS
+    assert hand.user[0] > 15.0
     found = taken(hand, Slack(0.0, 0.0), UP, use_wrench=used)
     assert found == TakenForce(hand.user, None)
     assert covariance(found, value, QUIET, KILOGRAM) is None

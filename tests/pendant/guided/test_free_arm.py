@@ -212,7 +212,7 @@ def test_the_tether_follows_who_pays_for_the_motion(on: bool) -> None:
     for tick in range(1, 400):
         place = [0.2 * TICK * tick, 0.0, 0.0]
         torques = [0.0, 0.0, 1.5, 0.0, 0.0, 0.0]
-        told += free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_ext=torques))
+        told += free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_hand=torques))
     assert free.arm.user == ORIGIN
     assert [event.kind for event in told] == ([] if on else [Kind.WALL_REACHED])
 
@@ -266,7 +266,7 @@ def test_a_hand_that_leads_a_link_is_told_while_the_arm_moves() -> None:
     assert free.arm.pull.felt is HandFelt.NOBODY
     for tick in range(1, 100):
         place = [0.2 * TICK * tick, 0.0, 0.0]
-        free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_ext=[0.0, 0.0, 1.5, 0.0, 0.0, 0.0]))
+        free.see(estimate(position=place, speed=0.2, qd=TRANSITIONS, friction=RUBS, tau_hand=[0.0, 0.0, 1.5, 0.0, 0.0, 0.0]))
     assert free.arm.pull.felt is HandFelt.LINK
     free.see(estimate(position=[0.04, 0.0, 0.0], speed=0.0))
     assert free.arm.pull.felt is HandFelt.NOBODY

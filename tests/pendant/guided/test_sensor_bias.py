@@ -99,7 +99,7 @@ def test_a_drift_turns_with_the_flange(turned: bool) -> None:
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
-        zero.step(value, hand, mean, waits=True, still=True, least=HAND)
+        zero.step(value, hand, mean, waits=True, still=True, force=HAND)
     assert zero.felt(after) == pytest.approx((0.0,) * 6)
     drifted = np.concatenate([R_BF @ zero.drifted[:3], R_BF @ zero.drifted[3:]])
     after.R_BF = R_BF
@@ -187,7 +187,7 @@ def test_a_sensor_that_has_drifted_for_long_may_seem_to_step_by_more() -> None:
     zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
     zero.begin(estimate(), True, mean)
     for force, told in ((2.0, False), (2.5, True)):
-        event = zero.step(stepped(KNOWN, force), hand, mean, waits=False, still=True, least=2.3)
+        event = zero.step(stepped(KNOWN, force), hand, mean, waits=False, still=True, force=2.3)
         assert (event is not None) is told
 
 
@@ -215,12 +215,12 @@ def test_what_is_taken_off_in_every_axis_is_given_back_to_who_moves_the_arm(stil
     zero.begin(before, True, mean)
     for value in [before] * 50 + [after] * 51:
         mean.step(value)
-        assert zero.step(value, hand, mean, waits=True, still=True, least=HAND) is None
+        assert zero.step(value, hand, mean, waits=True, still=True, force=HAND) is None
     gone = (-0.2, -0.1, 0.05, -0.02, -0.01, 0.03)  # axes of the flange, and of B at entry
     assert zero.baseline == pytest.approx(gone)
     hand.step(after, True, MOVES)
     assert hand.change == pytest.approx((0.0,) * 3)
-    assert zero.step(after, hand, mean, waits=False, still=still, least=HAND) is None
+    assert zero.step(after, hand, mean, waits=False, still=still, force=HAND) is None
     hand.step(after, True, MOVES)
     assert zero.baseline == pytest.approx(gone if still else (0.0,) * 6)
     assert hand.change == pytest.approx((0.0,) * 3 if still else force)
@@ -264,7 +264,49 @@ def test_the_longer_it_was_not_followed_the_more_a_sensor_may_have_drifted(secon
     force = QUIET + SENSOR.drift_force * 100.0
     assert (drift.begin((force, 0.0, 0.0, 0.0, 0.0, 0.0), estimate(tick)) is None) is held
     left = seconds if held else 0.0
-    assert drift.slack(tick) == pytest.approx((SENSOR.drift_force * left, SENSOR.drift_torque * left))
+    assert drift.drifted(tick) == pytest.approx((SENSOR.drift_force * left, SENSOR.drift_torque * left))
+
+
+def at_rest(drift: BiasFollower, tick: int, *forces: float) -> float:
+    """The arm comes to rest with the first force, then with others in the next windows. Returns what is subtracted."""
+    taken = drift.begin((0.0, forces[0], 0.0, 0.0, 0.0, 0.0), estimate(tick))
+    assert taken is not None
+    total = taken[1]
+    for force in forces:
+        gone = drift.step((0.0, force, 0.0, 0.0, 0.0, 0.0), ORIGIN, HAND)
+        if gone is not None:
+            drift.keep(gone)
+            total += gone[1]
+    return total
+
+
+def test_what_was_subtracted_may_have_been_a_hands_until_the_arm_rests_again() -> None:
+    """A hand that lets go slowly, 0.6 N; then nobody holds the arm, which feels that it was wrong; then nothing."""
+    drift, going = BiasFollower(SENSOR), [-0.1 * k for k in range(7)]
+    assert at_rest(drift, 0, *going) == pytest.approx(-0.6)
+    assert drift.slack(0).force == pytest.approx(0.6)
+    drift.pause()
+    assert at_rest(drift, 0, 0.6) == pytest.approx(0.6), "more than it may have drifted by"
+    assert drift.slack(0).force == pytest.approx(0.6), "which of them was a hand's is not known"
+    drift.pause()
+    assert at_rest(drift, 0, 0.0) == 0.0
+    assert drift.slack(0) == (0.0, 0.0)
+
+
+def test_what_is_added_again_was_not_subtracted() -> None:
+    drift = BiasFollower(SENSOR)
+    at_rest(drift, 0, 0.0, 0.1, 0.2)
+    assert drift.slack(0).force == pytest.approx(0.2)
+    drift.give_back()
+    assert drift.slack(0).force == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("seconds", [1.0, 100.0])
+def test_the_larger_of_drift_and_what_was_subtracted_is_unsure(seconds: float) -> None:
+    drift, tick = BiasFollower(SENSOR), round(500 * seconds)
+    at_rest(drift, 0, 0.0, 0.1, 0.2)
+    assert drift.slack(tick).force == pytest.approx(max(0.2, SENSOR.drift_force * seconds))
+    assert drift.slack(tick).torque == pytest.approx(SENSOR.drift_torque * seconds)
 
 
 @pytest.mark.parametrize("axis", range(3))

@@ -31,7 +31,7 @@ class Follows:
         """All its ticks look alike; the mean of one is exactly what it is."""
         mean = WrenchMean()
         mean.step(value)
-        events = [self.bias.step(value, self.hand, mean, waits=True, still=True, least=HAND) for _ in range(WINDOW)]
+        events = [self.bias.step(value, self.hand, mean, waits=True, still=True, force=HAND) for _ in range(WINDOW)]
         return [event.kind for event in events if event is not None]
 
 

@@ -7,8 +7,8 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import UnintendedMotion
-from pendant.guided.user_force import ON_A_LINK, UserForce
+from pendant.guided.unintended_motion import LIGHT, UnintendedMotion
+from pendant.guided.user_force import UserForce
 from pendant.guided.work import LEFT
 from pendant.limits.parameters import reference
 from pendant.sensor.odds import HALF
@@ -31,7 +31,7 @@ def at(way: float, speed: float, to: tuple[float, float, float] = WAYS[0], turns
     third = [0.0, 0.0, 0.2 * turns, 0.0, 0.0, 0.0]
     place = [a + way * b for a, b in zip(HERE, to, strict=True)]
     rubs = [0.0, 0.0, FRICTION * turns, 0.0, 0.0, 0.0]
-    return estimate(position=place, speed=speed, qd=third, tau_ext=[0.0, 0.0, felt, 0.0, 0.0, 0.0], friction=rubs)
+    return estimate(position=place, speed=speed, qd=third, tau_hand=[0.0, 0.0, felt, 0.0, 0.0, 0.0], friction=rubs)
 
 
 class Bench:
@@ -151,10 +151,10 @@ def test_the_work_counts_from_where_the_arm_rested() -> None:
     assert bench.until(creep(LEAST_CREPT + 5, turns=1.0, felt=0.9 * PAYS)) is not None
 
 
-def test_what_hangs_at_the_flange_is_no_hand_on_a_link() -> None:
+def test_what_hangs_at_the_flange_is_no_hand() -> None:
     bench = Bench()
-    bench.hand.usual = (0.0, 0.0, -ON_A_LINK)
-    told = (bench.alone.step(value, bench.hand, use_wrench=True, driven=False) for value in creep(400, turns=1.0, felt=5.0))
+    bench.hand.usual = (0.0, 0.0, -LIGHT)
+    told = (bench.alone.step(value, bench.hand, use_wrench=True, driven=False) for value in creep(400, turns=1.0))
     assert any(values is not None for values in told)
 
 
@@ -175,13 +175,16 @@ def test_who_leads_a_link_does_so_as_long_as_it_is_paid_for() -> None:
     assert bench.until(creep(20, begins=0.2 + AWAY)) is not None
 
 
-def test_with_what_hangs_there_no_work_excuses_a_motion() -> None:
-    bench = Bench()
-    bench.held(at(0.0, 0.1))
-    bench.hand.usual = (ON_A_LINK, 0.0, 0.0)
-    told = [bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=True, driven=False) for _ in range(151)]
-    assert told[:150] == [None] * 150
-    assert told[150] is not None
+def test_with_what_hangs_there_work_on_a_link_excuses_a_motion_and_its_own_does_not() -> None:
+    """No payload is among the torques of contacts behind the flange sensor."""
+    for felt, stopped in ((9.0, False), (0.0, True)):
+        bench = Bench()
+        bench.held(at(0.0, 0.1))
+        bench.hand.usual = (LIGHT, 0.0, 0.0)
+        value = at(0.0, 0.1, turns=1.0, felt=felt)
+        told = [bench.alone.step(value, bench.hand, use_wrench=True, driven=False) for _ in range(151)]
+        assert told[:150] == [None] * 150
+        assert (told[150] is not None) is stopped
 
 
 def test_its_state_tells_all_of_it() -> None:
@@ -217,8 +220,8 @@ def test_a_hand_at_the_flange_ends_a_doubt() -> None:
 
 
 def unseen(feels: JointsFeel, way: float = 0.0, speed: float = 0.1, felt: float = 9.0) -> Estimate:
-    """What an arm without a flange sensor tells; the joints feel torques that would pay for its motion."""
-    value = at(way, speed, turns=1.0, felt=felt)
+    """What an arm without a flange sensor tells; the torques of a hand would pay for its motion."""
+    value = at(way, speed, turns=1.0, felt=felt if feels is JointsFeel.HAND else 0.0)
     value.joints_feel = feels
     return value
 
@@ -382,7 +385,7 @@ def test_who_leads_it_slowly_is_known_from_where_it_rested(felt: float, led: boo
     assert not bench.alone.led, "a wall drives it"
 
 
-@pytest.mark.parametrize("carried", [0.0, ON_A_LINK])
+@pytest.mark.parametrize("carried", [0.0, LIGHT])
 def test_half_of_the_way_that_nobody_pays_for_is_doubtful(carried: float) -> None:
     """The doubt stays while the arm rests there, for the way would go on; a hand that is felt ends it."""
     bench = Bench()
@@ -437,7 +440,7 @@ def test_who_pays_late_or_no_more_has_half_of_the_way_without_help() -> None:
 def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> None:
     bench = Bench()
     bench.held(at(0.0, 0.1))
-    bench.hand.usual = (ON_A_LINK, 0.0, 0.0)
+    bench.hand.usual = (LIGHT, 0.0, 0.0)
     for _ in range(ticks):
-        bench.alone.step(at(0.0, 0.1, turns=1.0, felt=9.0), bench.hand, use_wrench=True, driven=False)
+        bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, use_wrench=True, driven=False)
     assert bench.alone.doubtful is (ticks > 75)

@@ -5,8 +5,8 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import UnintendedMotion
-from pendant.guided.user_force import ON_A_LINK, UserForce
+from pendant.guided.unintended_motion import LIGHT, UnintendedMotion
+from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import reference
 from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
@@ -44,12 +44,14 @@ def test_in_the_first_tick_already_the_arm_may_be_too_far() -> None:
     assert Bench().see(at(0.99 * AWAY, 0.0)) is None
 
 
-@pytest.mark.parametrize(("usual", "led"), [(0.99 * (ON_A_LINK + 2.0), True), (1.01 * (ON_A_LINK + 2.0), False)])
+@pytest.mark.parametrize(("usual", "led"), [(0.99 * (LIGHT + 2.0), True), (1.01 * (LIGHT + 2.0), False)])
 @pytest.mark.parametrize("axis", range(3))
 def test_what_hangs_at_the_flange_is_known_beyond_what_may_be_drift(axis: int, usual: float, led: bool) -> None:
-    """4 N, and 2 N that may be the sensor's: up to there a hand on a link leads the arm."""
+    """5 N, and 2 N that may be the sensor's: up to there a light hand leads the arm, with what is beyond the drift."""
     felt, force = Felt(), [usual if k == axis else 0.0 for k in range(3)]
-    felt.see(at(0.0, 0.1, turns=1.0, felt=2.0 * PAYS), (force[0], force[1], force[2]), Slack(2.0, 0.2))
+    value = at(0.0, 0.0, turns=1.0)
+    value.v_F[axis] = 0.1
+    felt.see(value, (force[0], force[1], force[2]), Slack(2.0, 0.2))
     assert felt.alone.led is led
 
 

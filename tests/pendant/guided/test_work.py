@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from pendant.guided.work import LEFT, Work
@@ -12,22 +13,21 @@ from pendant.tick.pose import Vector
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
-BEFORE = (0.0, -8.0, 0.0, 0.0, 0.0, 0.0)
 FRICTION = (0.0, 10.0, 0.0, 2.0, 0.0, 0.0)
 SPEED = 0.2  # of shoulder and wrist 1 [rad/s]
 PAYS = HALF * LEFT * (FRICTION[1] + FRICTION[3])  # [N·m] on either, as both turn alike
 
 
 def moving(shoulder: float = 0.0, wrist: float = 0.0, way: float = 1.0, energy: float = 0.0, speed: float = SPEED) -> Estimate:
-    """Both turn; external torques beyond those at entry [N·m]."""
+    """Both turn; torques of a hand on a link [N·m]."""
     qd = [0.0, way * speed, 0.0, way * speed, 0.0, 0.0]
     friction = [way * torque for torque in FRICTION]
-    felt = [0.0, BEFORE[1] + shoulder, 0.0, wrist, 0.0, 0.0]
-    return estimate(qd=qd, tau_ext=felt, friction=friction, energy=energy)
+    felt = [0.0, shoulder, 0.0, wrist, 0.0, 0.0]
+    return estimate(qd=qd, tau_hand=felt, friction=friction, energy=energy)
 
 
 def done(*values: tuple[int, Estimate]) -> Work:
-    work = Work(BEFORE)
+    work = Work()
     work.begin(values[0][1])
     for count, value in values:
         for _ in range(count):
@@ -60,11 +60,11 @@ def test_a_torque_against_the_turn_pays_for_nothing_and_is_not_owed_twice() -> N
 @pytest.mark.parametrize(("share", "paid"), [(0.99, False), (1.01, True), (-1.01, False)])
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
 def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, share: float, paid: bool) -> None:
-    """0.05 m/s along it; the joints' noise hides what they feel of it."""
-    value = moving(-1.0)
+    """0.05 m/s along it."""
+    value = moving()
     value.v_F[:3] = [0.05 * part for part in way]
     needed = PAYS * SPEED / 0.05
-    work = Work(BEFORE)
+    work = Work()
     work.begin(value)
     for _ in range(100):
         work.step(value, (share * needed * way[0], share * needed * way[1], share * needed * way[2]))
@@ -76,10 +76,10 @@ def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, sha
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
 def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, share: float, paid: bool) -> None:
     """A tool that is led at its end turns the flange, at 0.5 rad/s."""
-    value = moving(-1.0)
+    value = moving()
     value.v_F[3:] = [0.5 * part for part in way]
     needed = PAYS * SPEED / 0.5
-    work = Work(BEFORE)
+    work = Work()
     work.begin(value)
     for _ in range(100):
         work.step(value, torque=(share * needed * way[0], share * needed * way[1], share * needed * way[2]))
@@ -90,7 +90,7 @@ def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, s
 def test_an_arm_that_slows_down_pays_with_its_speed(share: float, lasts: bool) -> None:
     """Of what 101 ticks cost, which is a tick more than what may be owed. One that gets faster owes no less."""
     cost = 100 * TICK * SPEED * PAYS
-    work = Work(BEFORE)
+    work = Work()
     work.begin(moving(energy=1.0))
     for tick in range(1, 202):
         work.step(moving(energy=1.0 - share * cost * tick / 201))
@@ -132,13 +132,13 @@ def test_half_paid_it_lasts_twice_as_long() -> None:
 
 
 def test_an_arm_that_does_not_move_is_not_paid_for() -> None:
-    assert not Work(BEFORE).paid
+    assert not Work().paid
     assert not done((10, moving(5.0, speed=0.0))).paid
 
 
 def test_a_stretch_begins_afresh() -> None:
     value = moving(1.0, energy=0.5)
-    work = Work(BEFORE)
+    work = Work()
     work.begin(value)
     fresh = state_of(work)
     work.step(value)
@@ -148,7 +148,7 @@ def test_a_stretch_begins_afresh() -> None:
 
 
 def test_before_it_moves_nothing_is_owed() -> None:
-    work = Work(BEFORE)
+    work = Work()
     assert work.unpaid == 0.0
     assert not work.settled, "nor is it known what the motion costs"
     work.begin(moving(energy=3.0))
@@ -158,15 +158,27 @@ def test_before_it_moves_nothing_is_owed() -> None:
 @pytest.mark.parametrize(("energy", "lasts"), [(0.0, True), (-1.0, False)])
 def test_an_arm_that_was_at_rest_in_the_beginning_had_no_speed_to_pay_with(energy: float, lasts: bool) -> None:
     """One J less than at rest there cannot be; it would pay for all."""
-    work = Work(BEFORE)
+    work = Work()
     for _ in range(101):
         work.step(moving(energy=energy))
     assert 101 * TICK * SPEED * PAYS < 1.0
     assert work.lasts(100) is lasts
 
 
-def test_what_was_felt_at_entry_must_have_a_value_for_each_joint() -> None:
+@pytest.mark.parametrize("n", [5, 7])
+def test_the_torque_of_a_hand_must_have_a_value_for_each_joint(n: int) -> None:
+    value = moving()
+    value.tau_hand = np.zeros(n)
     with pytest.raises(ValueError, match="zip"):
-        Work(BEFORE[:5]).step(moving())
-    with pytest.raises(ValueError, match="zip"):
-        Work((*BEFORE, 0.0)).step(moving())
+        Work().step(value)
+
+
+def test_a_hand_on_a_link_and_one_at_the_flange_pay_together() -> None:
+    value = moving(0.6 * PAYS)
+    value.v_F[:3] = [0.05, 0.0, 0.0]
+    work = Work()
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, (0.41 * PAYS * SPEED / 0.05, 0.0, 0.0))
+    assert work.settled
+    assert work.paid

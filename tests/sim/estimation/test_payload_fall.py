@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from pendant.events.event import Kind
+from pendant.inputs import Command
 from pendant.sensor.odds import RARELY
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
@@ -253,6 +254,42 @@ def test_a_sensor_that_comes_back_is_not_asked_again() -> None:
     assert any(joints.tick(joints.lost, sensed=True) for _ in range(SETTLED))
 
 
+@pytest.mark.parametrize(("joint", "share"), [(1, 1.2), (2, -1.5), (5, 3.0)])
+def test_the_torques_of_a_hand_are_the_change_since_entry(joint: int, share: float) -> None:
+    joints, before = Joints(), np.linspace(-3.0, 2.0, N)
+    joints.tick(before)
+    assert not joints.fall.torque.any()
+    change = share * RIPPLE * np.eye(N)[joint]
+    for _ in range(MEAN):
+        joints.tick(before + change)
+    assert joints.feels is JointsFeel.HAND
+    assert joints.fall.torque == pytest.approx(change)
+    for _ in range(MEAN):
+        joints.tick(before)
+    assert joints.feels is JointsFeel.NOTHING
+    assert not joints.fall.torque.any()
+
+
+@pytest.mark.parametrize("how", ["left", "not ready"])
+def test_a_hand_makes_no_torques_any_more_when_nothing_is_asked(how: str) -> None:
+    joints = Joints()
+    joints.tick(np.zeros(N))
+    for _ in range(MEAN):
+        joints.tick(3.0 * RIPPLE)
+    assert joints.fall.torque.any()
+    joints.ready = how == "left"
+    joints.tick(3.0 * RIPPLE, free=how != "left")
+    assert not joints.fall.torque.any()
+
+
+def test_it_is_blind_from_an_outage_to_the_end_of_free_drive() -> None:
+    joints, blind = Joints(), []
+    for free, sensed in ((True, True), (True, False), (True, True), (False, True), (False, False), (True, True)):
+        joints.tick(np.zeros(N), free=free, sensed=sensed)
+        blind.append(joints.fall.blind)
+    assert blind == [False, True, True, False, False, False]
+
+
 def test_each_free_drive_has_a_beginning_of_its_own() -> None:
     joints = Joints()
     assert joints.course(joints.lost)[-1]
@@ -302,6 +339,22 @@ def test_of_a_flange_sensor_that_is_not_there_nothing_is_asked(sensor: bool) -> 
     for _ in range(20):
         bench.run(TICK)
         assert (bench.estimate.lost_odds, bench.estimate.step_odds) == (-math.inf, -math.inf)
+
+
+def test_a_flange_sensor_that_comes_back_in_free_drive_is_not_asked_whose_torques_the_joints_feel() -> None:
+    """They are those of all contacts to the end; then they are those behind the sensor again."""
+    bench = arm(3.0, sensor=True)
+    bench.change(SensorFault(sensor="force_torque"))
+    bench.run(0.2, Push("flange", CENTRE, (0.0, 30.0, 0.0)))
+    estimator, estimate = bench.simulation.estimator, bench.estimate
+    assert estimate.wrench_valid
+    assert estimate.joints_feel is JointsFeel.HAND
+    np.testing.assert_array_equal(estimate.tau_hand, estimator.fall.torque)
+    np.testing.assert_allclose(estimate.tau_hand, estimator.momentum.residual - estimator.fall._own["before"], atol=3.0)
+    assert (estimate.F_link == 0.0).all()
+    bench.do(Command.PROTECTIVE_STOP)
+    bench.run(0.2)
+    assert not estimator.fall.blind
 
 
 def test_a_hand_that_leads_is_no_fall() -> None:

@@ -1,0 +1,149 @@
+"""A hand on a link, which the flange sensor does not feel: what the joints feel of it in free-drive, beyond their errors (FD-19).
+
+The momentum observer tells the torques of contacts behind the sensor. What gears, encoders and the sensor's zero put into them is
+a sum of known causes with shares that are known so well as was learned (`sim.estimation.torque_errors`). Since free-drive began
+the torque of a joint has changed by
+
+    change = hand + sum of shares x change of causes + sum of zero's change x its levers + what the model leaves,
+
+so its error has the variance of these shares with the change of their causes, of the zero's walk since entry, and of the rest. A
+hand is there where a joint's change is more than `CONTACT` deviations of that. What was felt at entry is no hand's.
+
+Far from there little of a hand would be left. But a hand comes faster than the arm's posture changes: a change against what was
+felt lately, while nothing was a hand's, is told in the same way. An arm at rest is followed, too, as long as the change since
+entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What was felt lately tells better
+than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it leads the arm.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.sensor.hand_model import KEEPS
+from pendant.settings.schema import ticks
+from sim.arm.arm_file import Arm
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.momentum_observer import MomentumObserver
+from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, left_over, variance
+from sim.estimation.transmission_torque import CONTACT
+from sim.flange.flange_forces import best_force
+from sim.motion.references import STANDING
+from sim.rigid_body.newton_euler import NewtonEuler
+from sim.sensing.calibration import LINK_MASS, MOTOR_CONSTANT
+
+Array = NDArray[np.float64]
+
+LASTS = ticks(KEEPS)
+"""Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
+
+
+class LinkHand:
+    """One tick at a time, in free-drive with the flange sensor.
+
+    Attributes:
+        torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt.
+        force: the force (3,) at the flange, in B, that would make these torques best [N].
+
+    Args:
+        arm: its number of joints.
+        rigid: the controller's rigid model, which has been run in the tick before `update`.
+        momentum: updated in the same tick before.
+    """
+
+    def __init__(self, arm: Arm, rigid: NewtonEuler, momentum: MomentumObserver) -> None:
+        self._rigid, self._momentum = rigid.record, momentum
+        self._known = momentum.record, momentum.errors.record
+        self._record = record(
+            felt=(2, arm.n, 1 + CAUSES),  # torque and causes, smoothed, as free-drive began and lately
+            bias=(2, ZERO),  # of the flange sensor then, axes of F [N, N·m]
+            ticks="2i8",  # since then
+            lasts="i8",  # ticks for which who was felt may be there still
+            torque=(arm.n,),
+            force=(3,),
+        )
+        self._own = self._record[0]
+        self.torque, self.force = self._own["torque"], self._own["force"]
+
+    def forget(self) -> None:
+        """Free-drive is to begin, or the sensor is out: nothing is felt."""
+        self._own["ticks"] = self._own["lasts"] = 0
+        self.torque[:], self.force[:] = 0.0, 0.0
+
+    def update(self, bias: tuple[float, ...], qd: Array, by_deflection: NDArray[np.bool_]) -> None:
+        """One tick.
+
+        Args:
+            bias: of the flange sensor (6,), axes of F [N, N·m].
+            qd: joint speeds (n,) [rad/s].
+            by_deflection: whose torque comes from the deflection (n,); else it comes from the motor.
+        """
+        if self._momentum.ready:
+            _update(self._record, self._known, self._rigid, (bias, qd, by_deflection))
+        else:
+            self.forget()
+
+
+@kernel
+def _update(memory, known, model, told) -> None:
+    own, errors, jacobian = memory[0], known[1][0], model[0].jacobian
+    bias, qd, by_deflection = told
+    if own.ticks[0] == 0:
+        own.felt[:] = errors.felt
+        _keep(own, bias, 0)
+        _keep(own, bias, 1)
+    own.ticks += 1
+    away = _feel(own, known, (bias, by_deflection), 0)
+    torque = own.torque.copy()
+    lately = _feel(own, known, (bias, by_deflection), 1)
+    stands = True
+    for speed in qd:
+        stands = stands and abs(speed) < STANDING
+    if not away and (stands or not lately):
+        own.felt[1] += FOLLOW * (errors.felt - own.felt[1])
+        _keep(own, bias, 1)
+    own.lasts = LASTS if lately or away else max(own.lasts - 1, 0)
+    if not lately and (away or _power(torque, qd) > _power(own.torque, qd)):
+        own.torque[:] = torque
+    if own.lasts == 0:
+        own.torque[:] = 0.0
+    if lately or away:
+        best_force(jacobian, own.torque, own.force)
+    else:
+        own.force[:] = 0.0
+
+
+@kernel
+def _keep(own, bias, when) -> None:
+    own.ticks[when] = 0
+    for k in range(ZERO):
+        own.bias[when, k] = bias[k]
+
+
+@kernel
+def _power(torque, qd):
+    power = 0.0
+    for i in range(qd.size):
+        power += torque[i] * qd[i]
+    return power
+
+
+@kernel
+def _feel(own, known, told, when) -> bool:
+    """Whether a hand is felt against what was felt then; `torque` becomes what it would be."""
+    momentum, errors, felt = known[0][0], known[1][0], own.felt[when]
+    bias, by_deflection = told
+    found, change = False, np.empty(1 + CAUSES)
+    for i in range(own.torque.size):
+        for k in range(1 + CAUSES):
+            change[k] = errors.felt[i, k] - felt[i, k]
+        left, bears = left_over(errors.shares[i], change[0], change[1:]), LINK_MASS * change[1]
+        wrong = variance(errors, i, change[1:]) + momentum.doubt[i] ** 2 + bears * bears
+        if not by_deflection[i]:
+            wrong += (MOTOR_CONSTANT * change[1]) ** 2
+        for k in range(ZERO):
+            lever = errors.felt[i, 2 + k]
+            left += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
+            wrong += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
+        own.torque[i] = left
+        found = found or left * left > CONTACT**2 * wrong
+    return found
