@@ -23,6 +23,7 @@ MODULES = (
     "pendant/limits/residual.py",
     "pendant/signals/contact_free_baseline.py",
     "pendant/signals/joint_push.py",
+    "sim/estimation/link_hand.py",
     "sim/estimation/payload_fall.py",
     "sim/flange/external_wrench.py",
     "sim/flange/fall_answer.py",

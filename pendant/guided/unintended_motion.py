@@ -8,14 +8,12 @@ from pendant.guided.settings import Unexplained
 from pendant.guided.user_force import UserForce
 from pendant.guided.work import Work
 from pendant.limits.parameters import EntryValues
+from pendant.sensor.hand_model import LIGHT
 from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, norm
-
-LIGHT = 5.0
-"""A force that the flange sensor feels may be of what hangs there; below this [N] the work that it does is a light hand's."""
 
 
 class Way:

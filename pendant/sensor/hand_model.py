@@ -15,6 +15,9 @@ RISE = 5.0
 TREMOR = 0.5
 """What it is off a straight line from tick to tick, and off a constant force within some windows, about [N]."""
 
+LIGHT = 5.0
+"""What the flange sensor feels may hang there; the work of a force below this [N] is a light hand's."""
+
 GRIP_LEVER = 0.1
 """Lever of a hand's force about the flange [m]: its torques are so many times its forces."""
 

@@ -10,11 +10,10 @@ from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
 from pendant.guided.sensor_bias import SURE
-from pendant.guided.unintended_motion import LIGHT
 from pendant.guided.user_force import SWING, UserForce
 from pendant.guided.work import LEFT
 from pendant.inputs import NOTHING, Button, Inputs
-from pendant.sensor.hand_model import TOUCH
+from pendant.sensor.hand_model import LIGHT, TOUCH
 from pendant.sensor.odds import HALF, KNOWN, SUSPECTED, TOUCHES
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate

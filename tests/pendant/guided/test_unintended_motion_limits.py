@@ -5,9 +5,10 @@ import pytest
 from pendant.all_settings import Settings
 from pendant.events.event import Values
 from pendant.guided.sensor_bias import Slack
-from pendant.guided.unintended_motion import LIGHT, UnintendedMotion
+from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import reference
+from pendant.sensor.hand_model import LIGHT
 from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
