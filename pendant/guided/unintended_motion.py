@@ -132,7 +132,7 @@ class UnintendedMotion:
             if self._ticks == 0:
                 stretch.begin(estimate)
             self._ticks += 1
-            stretch.work.step(estimate, *wrench)
+            stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
         if not use_wrench and estimate.joints_feel is not JointsFeel.FALL:
             whole.begin(estimate)
         if caused:

@@ -45,14 +45,17 @@ class Work:
         self._rubbed = 0.0  # what is asked for of the friction [J]
         self.unpaid = 0.0
 
-    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN) -> None:
-        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m]."""
+    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN, *, counts: bool = True) -> None:
+        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m].
+
+        What the joints feel pays only where it `counts`: beside a flange sensor that is not used it may be the sensor's error.
+        """
         x, y, z, a, b, c = estimate.v_F.tolist()
         done = dot(force, (x, y, z)) + dot(torque, (a, b, c))
         rubbed = 0.0
         joints = zip(estimate.qd.tolist(), estimate.tau_hand.tolist(), estimate.friction.tolist(), strict=True)
         for speed, hand, friction in joints:
-            done += hand * speed
+            done += hand * speed * counts
             rubbed += friction * speed
         done *= TICK
         rubbed *= HALF * LEFT * TICK

@@ -220,6 +220,14 @@ def test_a_hand_at_the_flange_ends_a_doubt() -> None:
     assert not bench.alone.doubtful
 
 
+def test_beside_a_sensor_that_is_not_used_no_work_excuses_a_motion() -> None:
+    """It stepped, and what the joints feel beside it may be its error."""
+    bench = Bench(sensor=False)
+    bench.held(unseen(JointsFeel.HAND))
+    assert bench.until([at(0.0, 0.1, turns=1.0, felt=9.0)] * 150) is None
+    assert bench.see(at(0.0, 0.1, turns=1.0, felt=9.0)) is not None
+
+
 def unseen(feels: JointsFeel, way: float = 0.0, speed: float = 0.1, felt: float = 9.0) -> Estimate:
     """What an arm without a flange sensor tells; the torques of a hand would pay for its motion."""
     value = at(way, speed, turns=1.0, felt=felt if feels is JointsFeel.HAND else 0.0)

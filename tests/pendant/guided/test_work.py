@@ -126,6 +126,13 @@ def test_a_push_against_it_does_not_shorten_the_time() -> None:
     assert done((51, moving(-20.0))).lasts(50)
 
 
+def test_what_does_not_count_pays_for_nothing() -> None:
+    work = Work()
+    work.begin(moving())
+    work.step(moving(20.0), counts=False)
+    assert work.unpaid == pytest.approx(TICK * SPEED * PAYS)
+
+
 def test_half_paid_it_lasts_twice_as_long() -> None:
     assert not done((199, moving(0.5 * PAYS))).lasts(100)
     assert done((201, moving(0.5 * PAYS))).lasts(100)
