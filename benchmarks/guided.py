@@ -2,8 +2,8 @@
 
 It leads the flange, the tool, the wrist or the elbow on circles and lines, from place to place with pauses of 1 to 3 s in which a
 waypoint is registered, and slowly and gently: with 1 to 5 N, and with more only while that moves nothing, as people do. Payloads
-are right, the sensor drifts, all mismatch is on. In half of the pauses it lets go: then the arm has to stay. Truth is read for
-scoring alone.
+are right, the sensor drifts, all mismatch is on. In half of the pauses it lets go, and in the end: then the arm has to stay.
+Truth is read for scoring alone.
 """
 
 import math
@@ -40,6 +40,7 @@ STANDS, HARDER = 0.3, 40.0  # a hand that moves nothing for so long [s] pulls ha
 OFF = 0.01  # [m] from where it is wanted, beyond which it does
 GETS_HOLD = 0.3  # [s] after entry
 COMES_TO_REST = 0.5  # [s] that an arm may take for it after the hand has let go
+LET_GO = round(3.0 / TICK)  # ticks for which nobody holds it in the end
 
 
 class Lead(NamedTuple):
@@ -60,7 +61,7 @@ class Result(NamedTuple):
     end: str  # kind of an involuntary end, and its values
     caught: int  # times that a wall held the arm
     way: float  # of the part [m]
-    alone: float  # way of the part in a pause in which nobody holds it, after it may have come to rest; the longest [m]
+    alone: float  # way of the part while nobody holds it, after it may have come to rest; the longest [m]
 
 
 class Path:
@@ -156,9 +157,9 @@ def measure_lead(lead: Lead) -> Result:
     registered = False
     total = round(60.0 * lead.minutes / TICK)
     tick = 0
-    for tick in range(total):
+    for tick in range(total + LET_GO):
         target = path.at(tick * TICK)
-        holds = path.keeps_hold or not path.pauses
+        holds = tick < total and (path.keeps_hold or not path.pauses)
         touches = (Pull(lead.part, grip(lead.part), tuple((target + reach).tolist()), cap),) if holds else ()
         commands: tuple[Command, ...] = ()
         if path.registers != registered:
@@ -168,7 +169,7 @@ def measure_lead(lead: Lead) -> Result:
         if tick % 50 == 0:
             now = place_of(device, lead.part)
             gone, last = float(np.linalg.norm(now - last)), now
-            way += gone
+            way += gone * (tick < total)
             let_go = 0.0 if holds else let_go + 0.1
             if let_go <= COMES_TO_REST:
                 rests = now
@@ -180,14 +181,14 @@ def measure_lead(lead: Lead) -> Result:
         more = min(max(more + (HARDER if harder else -HARDER) * TICK, 0.0), HAND)
         cap = min(gentle + more, HAND)
         reach = more / STIFFNESS * ahead
-        for event in decision.events:
+        for event in decision.events if tick < total else ():
             caught += event.kind is Kind.WALL_REACHED
             if TABLE[event.kind].effect in LEAVING:
                 values = ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in event.values.items())
                 end = f"{event.kind.value} ({values})"
         if end:
             break
-    return Result(lead, True, (tick + 1) * TICK / 60.0, end, caught, way, alone)
+    return Result(lead, True, min(tick + 1, total) * TICK / 60.0, end, caught, way, alone)
 
 
 def leads(report: Report, minutes: float) -> list[Lead]:
@@ -219,22 +220,17 @@ def measure(report: Report) -> None:
         report.share(f"{style}: involuntary ends", sum(bool(result.end) for result in some), len(some))
         speed = sum(r.way for r in some) / sum(60.0 * r.led for r in some)
         report.row(f"{style}: speed of the part, mean", speed, "m/s", n=len(some))
-    loose = [1000.0 * result.alone for result in led if result.lead.style == "teach"]
-    report.row(
-        "teach: way in a pause in which nobody holds the arm, largest",
-        max(loose, default=NO_CASE),
-        "mm",
-        at_most=ALONE,
-        n=len(loose),
-    )
-    report.share("teach: such a way beyond that", sum(each > ALONE for each in loose), len(loose))
+    loose = [1000.0 * result.alone for result in led if not result.end]
+    report.row("way while nobody holds the arm, largest", max(loose, default=NO_CASE), "mm", at_most=ALONE, n=len(loose))
+    report.share("such a way beyond that", sum(each > ALONE for each in loose), len(loose))
     report.row("a wall held a led arm, in 300 minutes", 300.0 * sum(r.caught for r in led) / minutes, "", n=len(led))
-    for r in ends:
-        case = r.lead.case
-        report.notes.append(
-            f"{r.lead.style} at {r.lead.part}, {case.true:.1f} kg, {case.mounting}, "
-            f"case {case.number}: after {r.led:.1f} min {r.end}"
-        )
+    for r in led:
+        if r.end or 1000.0 * r.alone > ALONE:
+            what = f"after {r.led:.1f} min {r.end}" if r.end else f"alone {1000.0 * r.alone:.0f} mm"
+            case = r.lead.case
+            report.notes.append(
+                f"{r.lead.style} at {r.lead.part}, {case.true:.1f} kg, {case.mounting}, case {case.number}: {what}"
+            )
 
 
 if __name__ == "__main__":
