@@ -229,7 +229,7 @@ def frozen(value: object) -> object:
 def test_a_snapshot_never_changes_afterwards() -> None:
     bench = Bench(SCENARIO)
     bench.enter()
-    bench.run(0.1, push("flange", (0.0, 30.0, 0.0)))
+    bench.run(0.1, push("flange", (0.0, 30.0, 0.0)), push("wrist_1", (0.0, 30.0, 0.0)))
     first = bench.simulation.snapshot()
     before = frozen(first)
     bench.change(DropPayload(), MoveObject(name="table", position=[0.0, 2.0, 0.0]))
