@@ -265,6 +265,6 @@ class SensorBias:
     def _take_off(self, gone: Wrench, hand: UserForce) -> Wrench:
         """So much, axes of F [N, N·m], is an offset of the sensor. Returns what it drifted by in all."""
         hand.shift((gone[0], gone[1], gone[2]))
-        self.drifted = drifted = tuple([a + b for a, b in zip(self.drifted or ZEROS, gone, strict=True)])
-        self.baseline = tuple([a + b for a, b in zip(self.baseline, gone, strict=True)])
+        self.drifted = drifted = _sum(self.drifted or ZEROS, gone)
+        self.baseline = _sum(self.baseline, gone)
         return drifted

@@ -24,12 +24,12 @@ from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, left_over, variance
+from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, left_over, noise, variance
 from sim.estimation.transmission_torque import CONTACT
 from sim.flange.flange_forces import best_force
 from sim.motion.references import STANDING
 from sim.rigid_body.newton_euler import NewtonEuler
-from sim.sensing.calibration import LINK_MASS, MOTOR_CONSTANT
+from sim.sensing.calibration import MOTOR_CONSTANT
 
 Array = NDArray[np.float64]
 
@@ -136,8 +136,8 @@ def _feel(own, known, told, when) -> bool:
     for i in range(own.torque.size):
         for k in range(1 + CAUSES):
             change[k] = errors.felt[i, k] - felt[i, k]
-        left, bears = left_over(errors.shares[i], change[0], change[1:]), LINK_MASS * change[1]
-        wrong = variance(errors, i, change[1:]) + momentum.doubt[i] ** 2 + bears * bears
+        left = left_over(errors.shares[i], change[0], change[1:])
+        wrong = variance(errors, i, change[1:]) + noise(momentum.doubt[i], change[1])
         if not by_deflection[i]:
             wrong += (MOTOR_CONSTANT * change[1]) ** 2
         for k in range(ZERO):

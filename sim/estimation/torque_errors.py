@@ -138,10 +138,10 @@ def _place(i, k):
 
 
 @kernel
-def _noise(own, doubt, i):
-    """Variance of what is not explained of joint i: of links' masses, which go with what is borne, and of all else [N²·m²]."""
-    masses = LINK_MASS * own.causes[i, 0]
-    return doubt[i] * doubt[i] + masses * masses
+def noise(doubt, borne):
+    """Variance of what is not explained of a joint: of links' masses, which go with what is borne, and of all else [N²·m²]."""
+    masses = LINK_MASS * borne
+    return doubt * doubt + masses * masses
 
 
 @kernel
@@ -166,7 +166,7 @@ def variance(own, i, causes):
 def _beyond(own, doubt, i, felt) -> bool:
     """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
     left = left_over(own.shares[i], felt[0], felt[1:])
-    return left * left > CONTACT**2 * (variance(own, i, felt[1:]) + _noise(own, doubt, i))
+    return left * left > CONTACT**2 * (variance(own, i, felt[1:]) + noise(doubt[i], own.causes[i, 0]))
 
 
 @kernel
@@ -207,7 +207,7 @@ def learn(errors, residual, doubt, by_deflection) -> None:
     i = (own.joint[at - 1] + 1) % n
     own.joint[at], own.at, own.count = i, (at + 1) % WAIT, min(own.count + 1, WAIT)
     waiting = own.waiting[at]
-    waiting[0], waiting[1], waiting[2:] = residual[i], _noise(own, doubt, i), own.causes[i]
+    waiting[0], waiting[1], waiting[2:] = residual[i], noise(doubt[i], own.causes[i, 0]), own.causes[i]
     if not by_deflection[i]:
         waiting[2:] = 0.0  # it tells nothing
 
