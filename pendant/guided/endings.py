@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
-from pendant.guided.sensor_bias import SURE, Slack
+from pendant.guided.bias_follower import SURE, Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
@@ -86,7 +86,14 @@ class EndingWatch:
         return self._unintended.doubtful
 
     def step(
-        self, estimate: Estimate, hand: UserForce, *, baseline: Wrench | None, driven: bool, slack: Slack = SURE
+        self,
+        estimate: Estimate,
+        hand: UserForce,
+        *,
+        baseline: Wrench | None,
+        driven: bool,
+        slack: Slack = SURE,
+        steady: bool = False,
     ) -> Ending | None:
         """One tick; its joint values are finite.
 
@@ -96,6 +103,7 @@ class EndingWatch:
             baseline: the part of F_user that is the sensor's bias, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
+            steady: what it feels may be its own error altogether.
         """
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
         stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
@@ -119,7 +127,9 @@ class EndingWatch:
         if not self._on.motion:
             return None
         use_wrench = baseline is not None
-        values = self._unintended.step(estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque)
+        values = self._unintended.step(
+            estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque, steady=steady
+        )
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
 

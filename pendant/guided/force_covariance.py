@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.guided.sensor_bias import Slack
+from pendant.guided.bias_follower import Slack
 from pendant.guided.user_force import SWING, UserForce
 from pendant.limits.residual import upward
 from pendant.limits.validity import WINDOW

@@ -8,12 +8,14 @@ from pendant.guided.endings import EndingWatch
 from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
+from pendant.guided.steady_wrench import SteadyWrench
 from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
 from pendant.limits.nearness import SingularityWatch
 from pendant.limits.soft_limits import Damping
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.pose import ORIGIN, Vector, norm
 from pendant.walls.barrier import Consequence
@@ -41,6 +43,7 @@ class FreeArm:
         "_hung",
         "_operation",
         "_singularity",
+        "_steady",
         "_zones",
         "caught",
         "damping",
@@ -77,6 +80,7 @@ class FreeArm:
         self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
         self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
+        self._steady = SteadyWrench(bias.sensor, ticks(settings.unexplained.time))
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -109,7 +113,8 @@ class FreeArm:
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
             still, force = around.still.count > 0, settings.unexplained.force
-            told = bias.step(estimate, hand, around.mean, waits=waits, still=still, force=force)
+            steady = self._steady.steady
+            told = bias.step(estimate, hand, around.mean, waits=waits, still=still, steady=steady, force=force)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
@@ -127,13 +132,25 @@ class FreeArm:
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
         slack = bias.slack(estimate)
-        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
-        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
+        steady = self._is_steady(around, settings, driven)
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack, steady=steady)
+        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful or steady
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
+
+    def _is_steady(self, around: Surroundings, settings: Settings, driven: bool) -> bool:
+        """One tick: what the flange sensor feels may be its own error, and nobody is felt on a link."""
+        bias, steady, estimate = self._bias, self._steady, around.estimate
+        if driven or not (bias.used and settings.unexplained.sensor) or self._hand.by_joints:
+            steady.forget()
+        elif steady.due():
+            vx, vy, vz = estimate.v_F.tolist()[:3]
+            moves = norm((vx, vy, vz)) >= settings.unexplained.speed
+            steady.step(bias.apart(estimate, around.mean.mean()), estimate, moves=moves, wrong=bias.wrong(estimate.tick))
+        return steady.steady
 
     def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
         """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""

@@ -3,7 +3,7 @@
 import math
 
 from pendant.events.event import Values
-from pendant.guided.sensor_bias import SURE, Slack
+from pendant.guided.bias_follower import SURE, Slack
 from pendant.guided.settings import Unexplained
 from pendant.guided.user_force import UserForce
 from pendant.guided.work import Work
@@ -93,6 +93,7 @@ class UnintendedMotion:
         driven: bool,
         slack: Slack = SURE,
         torque: Vector = ORIGIN,
+        steady: bool = False,
     ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 
@@ -103,12 +104,14 @@ class UnintendedMotion:
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
             torque: of the hand at the flange, axes of B [N·m].
+            steady: what the flange sensor feels may be its own error altogether.
         """
         x, y, z = hand.user
         least = self._on.force + slack.force
-        caused = driven or (x * x + y * y + z * z >= least * least if use_wrench else estimate.joints_feel is JointsFeel.HAND)
+        feels = not steady and x * x + y * y + z * z >= least * least
+        caused = driven or (feels if use_wrench else estimate.joints_feel is JointsFeel.HAND)
         wrench, usual = NO_WRENCH, norm(hand.usual)
-        if use_wrench and usual < LIGHT + slack.force:
+        if use_wrench and usual < LIGHT + slack.force and not steady:
             wrench = _beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))

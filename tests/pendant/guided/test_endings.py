@@ -8,8 +8,8 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
+from pendant.guided.bias_follower import SURE
 from pendant.guided.endings import Ending, EndingWatch, _torque, way_back
-from pendant.guided.sensor_bias import SURE
 from pendant.guided.user_force import SWING, UserForce
 from pendant.guided.work import LEFT
 from pendant.inputs import NOTHING, Button, Inputs

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pendant.events.event import Kind
+from pendant.guided.bias_follower import Slack
 from pendant.guided.endings import _torque, way_back
-from pendant.guided.sensor_bias import Slack
 from pendant.tick.pose import from_rpy
 from tests.pendant.estimates import estimate
 from tests.pendant.guided.test_endings import FRICTION, JOINTS, PAYS, ZEROS, Free, elbow

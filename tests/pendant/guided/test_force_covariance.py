@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from pendant.guided.bias_follower import Slack
 from pendant.guided.force_covariance import (
     WITHIN_95,
     Doubts,
@@ -14,7 +15,6 @@ from pendant.guided.force_covariance import (
     taken,
     upward_in_flange,
 )
-from pendant.guided.sensor_bias import Slack
 from pendant.guided.user_force import JOINTS_SWING, SWING, UserForce
 from pendant.limits.validity import WINDOW
 from pendant.sensor.sensor_spec import SensorSpec

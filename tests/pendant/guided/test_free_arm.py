@@ -288,3 +288,40 @@ def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_t
         assert taken.doubts.hung == (0.0, 0.0, 1.0)
     free.see(estimate(wrench_valid=False))
     assert free.arm.taken == (free.arm.user, None)
+
+
+def drifting(tick: int, force: float, speed: float = 0.1, **more: Any) -> Estimate:
+    """The arm moves, and the sensor feels this along x."""
+    return estimate(position=[speed * tick * TICK, 0.0, 0.0], speed=speed, force=force, qd=speed, **more)
+
+
+def test_what_does_not_change_while_the_arm_moves_brakes_it_and_is_the_sensors() -> None:
+    free = Free(unexplained__motion=False, unexplained__time=0.3)
+    free.tick = 60_000  # two minutes: the sensor may have drifted by 2.8 N
+    assert free.during(150, drifting(0, 2.0)) == []
+    assert not free.arm.doubtful
+    assert free.during(150, drifting(0, 2.0)) == []
+    assert free.arm.doubtful
+    assert free.zero.baseline[0] == 0.0
+    free.during(60, drifting(0, 2.0, speed=0.0), waits=True)
+    assert free.zero.baseline[0] == pytest.approx(2.0)
+    free.during(100, drifting(0, 2.0, speed=0.0), waits=True)
+    assert not free.arm.doubtful
+
+
+@pytest.mark.parametrize(
+    ("why", "force", "doubtful"),
+    [
+        ("the bias cannot be so wrong", 3.0, False),
+        ("it may be", 2.0, True),
+        ("the sensor is not watched", 2.0, False),
+        ("a wall or shaking moves it", 2.0, False),
+        ("a hand is on a link", 2.0, False),
+    ],
+)
+def test_who_is_known_to_move_the_arm_is_no_error_of_the_sensor(why: str, force: float, doubtful: bool) -> None:
+    free = Free(unexplained__motion=False, unexplained__time=0.3, unexplained__sensor=why != "the sensor is not watched")
+    free.tick = 60_000
+    link = [6.0, 0.0, 0.0] if why == "a hand is on a link" else 0.0
+    free.during(300, drifting(0, force, link=link), shaken=why == "a wall or shaking moves it")
+    assert free.arm.doubtful is doubtful

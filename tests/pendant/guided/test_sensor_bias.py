@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from pendant.events.event import Kind
-from pendant.guided.sensor_bias import BEGINS, BiasFollower, SensorBias
+from pendant.guided.bias_follower import BEGINS, BiasFollower
+from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.inputs import NOTHING
 from pendant.limits.validity import WrenchMean
@@ -366,3 +367,51 @@ def test_a_hand_that_presses_on_an_arm_at_rest_is_felt_by_the_joints() -> None:
     for _ in range(1000):
         bench.step(NOTHING, estimate())
     assert bench.last.baseline == pytest.approx((0.0,) * 6, abs=0.15), "of the first newton, which nobody can tell"
+
+
+def rested(zero: SensorBias, mean: WrenchMean, hand: UserForce, value: Estimate, *, steady: bool = False) -> None:
+    """The arm rests for two windows and feels this."""
+    for _ in range(101):
+        value.tick += 1
+        mean.step(value)
+        assert zero.step(value, hand, mean, waits=True, still=True, force=HAND, steady=steady) is None
+
+
+def test_a_wrench_that_was_steady_is_the_sensors_whole() -> None:
+    """As the arm comes to rest; else it would be a hand that holds the arm."""
+    wrench = [1.0, -2.0, 2.0], [0.1, 0.2, -0.2]
+    for steady in (False, True):
+        zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
+        zero.begin(estimate(), True, mean)
+        rested(zero, mean, hand, estimate(force=wrench[0], torque=wrench[1]), steady=steady)
+        assert zero.baseline == pytest.approx((*wrench[0], *wrench[1]) if steady else (0.0,) * 6)
+        slack = zero.slack(estimate(tick=101))
+        assert slack.force == pytest.approx(SENSOR.drift_force * 0.002 * (0 if steady else 101), abs=0.003)
+
+
+def test_many_short_rests_take_no_more_than_a_good_sensor_drifts() -> None:
+    """A hand that turns round rests with a force again and again, in each of which it seems to be drift."""
+    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
+    zero.begin(estimate(), True, mean)
+    for count in range(1, 13):
+        begins = estimate(tick=5000 * count)
+        force = zero.baseline[0] + 0.2  # beyond what was subtracted [N]
+        value = estimate(tick=5000 * count, force=[force, 0.0, 0.0], torque=[0.0, 0.0, zero.baseline[5] + 0.02])
+        for _ in range(50):
+            mean.step(value)
+        assert zero.step(value, hand, mean, waits=True, still=True, force=HAND) is None
+        zero.step(begins, hand, mean, waits=False, still=True, force=HAND)
+        most = math.sqrt(3.0) * 10.0 * count
+        assert zero.baseline[0] <= SENSOR.drift_force * most + 1e-9
+        assert zero.baseline[5] <= SENSOR.drift_torque * most + 1e-9
+
+
+@pytest.mark.parametrize("seconds", [0.0, 60.0])
+def test_the_bias_is_wrong_by_what_was_subtracted_and_by_the_drift_in_all_axes_at_most(seconds: float) -> None:
+    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
+    zero.begin(estimate(tick=7), True, mean)
+    tick = 7 + round(500 * seconds)
+    drifts = math.sqrt(3.0) * seconds
+    assert zero.wrong(tick) == pytest.approx((SENSOR.drift_force * drifts, SENSOR.drift_torque * drifts))
+    rested(zero, mean, hand, estimate(force=[1.0, -2.0, 2.0], torque=[0.1, 0.2, -0.2]), steady=True)
+    assert zero.wrong(tick) == pytest.approx((3.0 + SENSOR.drift_force * drifts, 0.3 + SENSOR.drift_torque * drifts))

@@ -3,7 +3,8 @@
 import pytest
 
 from pendant.events.event import Kind
-from pendant.guided.sensor_bias import BiasFollower, SensorBias
+from pendant.guided.bias_follower import BiasFollower
+from pendant.guided.sensor_bias import SensorBias
 from pendant.guided.user_force import UserForce
 from pendant.limits.validity import WINDOW, WrenchMean
 from pendant.sensor.odds import HALF

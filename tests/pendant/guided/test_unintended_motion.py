@@ -6,7 +6,7 @@ import pytest
 
 from pendant.all_settings import Settings
 from pendant.events.event import Values
-from pendant.guided.sensor_bias import Slack
+from pendant.guided.bias_follower import Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.guided.work import LEFT
@@ -453,3 +453,21 @@ def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> 
     for _ in range(ticks):
         bench.alone.step(at(0.0, 0.1, turns=1.0), bench.hand, use_wrench=True, driven=False)
     assert bench.alone.doubtful is (ticks > 75)
+
+
+@pytest.mark.parametrize("steady", [False, True])
+@pytest.mark.parametrize(("force", "turns"), [(20.0, 0.0), (0.5 * LIGHT, 0.2)])
+def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: float, turns: float) -> None:
+    """Neither as a hand's force nor by the work that it would do."""
+    start = at(0.0, 0.0)
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
+    hand, told = UserForce(start, ZEROS, SENSOR.offset_force), None
+    for tick in range(1, 1001):
+        value = at(0.0001 * tick, 0.05, turns=turns)
+        value.F_user[0] = force
+        hand.step(value, True, MOVES)
+        slack = Slack(0.0 if force > LIGHT else force - 0.95, 0.0)  # with it less than a hand's force
+        told = told or alone.step(value, hand, use_wrench=True, driven=False, slack=slack, steady=steady)
+        if steady:
+            assert not alone.led
+    assert (told is not None) is steady

@@ -4,7 +4,7 @@ import pytest
 
 from pendant.all_settings import Settings
 from pendant.events.event import Values
-from pendant.guided.sensor_bias import Slack
+from pendant.guided.bias_follower import Slack
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import reference

@@ -1,0 +1,76 @@
+"""Whether what seems to lead the free arm is an error of the flange sensor's bias: a wrench that does not change (FD-19).
+
+An error of the bias turns with the flange, and is the same in every window but for noise and gain. The wrench of a hand that
+leads a moving arm is not. So a wrench that the bias may be wrong by, and that has not changed for as long as an arm may move
+without a hand, may be the sensor's. Nothing helps the motion on then, and the arm brakes. A hand that is there pushes more, and
+is known by that. An error stays what it is until the arm rests: then it is known, and becomes part of the bias.
+"""
+
+import math
+
+from pendant.guided.bias_follower import Slack
+from pendant.limits.validity import WINDOW
+from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
+from pendant.sensor.sensor_spec import SensorSpec
+from pendant.tick.estimate import Estimate
+from pendant.tick.pose import ORIGIN, Vector, Wrench
+
+
+class SteadyWrench:
+    """Compares windows of the wrench, one after the other.
+
+    Attributes:
+        steady: it has not changed for so long, while the arm moved.
+    """
+
+    __slots__ = ("_count", "_first", "_needed", "_sensor", "_weight", "_windows", "steady")
+
+    def __init__(self, sensor: SensorSpec, needed: int) -> None:
+        """
+        Args:
+            sensor: what is known of it.
+            needed: ticks for which an arm may move without a hand.
+        """
+        self._sensor, self._needed = sensor, -(-needed // WINDOW)
+        self._count = 0  # ticks of the window
+        self._first: Wrench | None = None  # window since which it is the same, axes of F [N, N·m]
+        self._weight: Vector = ORIGIN  # of the load in it, axes of F [N]
+        self._windows = 0  # that were the same as it
+        self.steady = False
+
+    def due(self) -> bool:
+        """One tick; whether a window ends with it."""
+        self._count = (self._count + 1) % WINDOW
+        return self._count == 0
+
+    def forget(self) -> None:
+        """The sensor is not used, or something else moves the arm."""
+        self._first, self._windows, self.steady = None, 0, False
+
+    def step(self, apart: Wrench, estimate: Estimate, *, moves: bool, wrong: Slack) -> None:
+        """One window.
+
+        Args:
+            apart: the wrench without the bias, axes of F [N, N·m].
+            estimate: of its last tick.
+            moves: the arm does.
+            wrong: of the bias at most.
+        """
+        if math.hypot(*apart[:3]) > wrong.force or math.hypot(*apart[3:]) > wrong.torque or not (moves or self.steady):
+            self.forget()
+            return
+        first = self._first
+        if first is not None and self._same(apart, first, estimate):
+            self._windows += 1
+            self.steady = self._windows >= self._needed
+            return
+        self.forget()
+        self._first, self._weight = apart, load_weight(estimate)
+
+    def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:
+        """Noise and gain explain how far apart the two are."""
+        sensor = self._sensor
+        gain, noise = gain_error(sensor, estimate, self._weight), window_noise(sensor, estimate)
+        if math.dist(apart[:3], first[:3]) > gain + FALSE_ALARM * noise:
+            return False
+        return math.dist(apart[3:], first[3:]) <= LEVER * (gain + FALSE_ALARM * noise)
