@@ -16,6 +16,10 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
 
 
+OFTEN = WINDOW // 5
+"""Ticks from one window's end to the next one's: the windows overlap, so that a hand that lets go is missed soon."""
+
+
 class SteadyWrench:
     """Compares windows of the wrench, one after the other.
 
@@ -31,8 +35,8 @@ class SteadyWrench:
             sensor: what is known of it.
             needed: ticks for which an arm may move without a hand.
         """
-        self._sensor, self._needed = sensor, -(-needed // WINDOW)
-        self._count = 0  # ticks of the window
+        self._sensor, self._needed = sensor, -(-needed // OFTEN)
+        self._count = 0  # ticks since a window ended
         self._first: Wrench | None = None  # window since which it is the same, axes of F [N, N·m]
         self._weight: Vector = ORIGIN  # of the load in it, axes of F [N]
         self._windows = 0  # that were the same as it
@@ -40,7 +44,7 @@ class SteadyWrench:
 
     def due(self) -> bool:
         """One tick; whether a window ends with it."""
-        self._count = (self._count + 1) % WINDOW
+        self._count = (self._count + 1) % OFTEN
         return self._count == 0
 
     def forget(self) -> None:

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from pendant.guided.bias_follower import Slack
-from pendant.guided.steady_wrench import SteadyWrench
-from pendant.limits.validity import WINDOW
+from pendant.guided.steady_wrench import OFTEN, SteadyWrench
 from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, window_noise
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.pose import Wrench
 from tests.pendant.estimates import SENSOR, estimate
 
-NEEDED = 150  # ticks: three windows
+NEEDED = 3 * OFTEN
 WRENCH: Wrench = (1.0, -2.0, 2.0, 0.1, 0.2, -0.2)  # 3 N, 0.3 N·m
 WRONG = Slack(3.5, 0.4)
 NOISE = FALSE_ALARM * window_noise(SENSOR, estimate())  # [N]
@@ -36,7 +35,7 @@ def test_it_takes_as_long_as_an_arm_may_move_alone(windows: int, steady: bool) -
     assert seen(*[WRENCH] * windows).steady is steady
 
 
-@pytest.mark.parametrize(("needed", "windows"), [(1, 2), (50, 2), (51, 3), (100, 3), (101, 4)])
+@pytest.mark.parametrize(("needed", "windows"), [(1, 2), (OFTEN, 2), (OFTEN + 1, 3), (2 * OFTEN, 3), (2 * OFTEN + 1, 4)])
 def test_a_window_that_has_begun_counts(needed: int, windows: int) -> None:
     watch = SteadyWrench(SENSOR, needed)
     count = 0
@@ -48,7 +47,7 @@ def test_a_window_that_has_begun_counts(needed: int, windows: int) -> None:
 
 def test_a_window_ends_every_so_many_ticks() -> None:
     watch = SteadyWrench(SENSOR, NEEDED)
-    assert [tick for tick in range(1, 3 * WINDOW + 1) if watch.due()] == [WINDOW, 2 * WINDOW, 3 * WINDOW]
+    assert [tick for tick in range(1, 3 * OFTEN + 1) if watch.due()] == [OFTEN, 2 * OFTEN, 3 * OFTEN]
 
 
 @pytest.mark.parametrize("axis", range(6))
@@ -69,7 +68,7 @@ def test_a_load_that_turns_adds_what_the_gain_makes_of_it(share: float, steady: 
     load = 2.0
     noise = FALSE_ALARM * window_noise(SENSOR, estimate(load_mass=load))
     by = share * (noise + SENSOR.gain * load * GRAVITY * math.sqrt(2.0)) * (LEVER if axis >= 3 else 1.0)
-    watch, wide = SteadyWrench(SENSOR, WINDOW), Slack(9.0, 9.0)
+    watch, wide = SteadyWrench(SENSOR, OFTEN), Slack(9.0, 9.0)
     watch.step(WRENCH, estimate(load_mass=load), moves=True, wrong=wide)
     after = estimate(load_mass=load)
     after.R_BF = FAR
