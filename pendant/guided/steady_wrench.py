@@ -15,7 +15,6 @@ from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
 
-
 OFTEN = WINDOW // 5
 """Ticks from one window's end to the next one's: the windows overlap, so that a hand that lets go is missed soon."""
 
