@@ -2,13 +2,14 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW
 from pendant.sensor.hand_model import SLOWEST, TOUCH, TREMOR
 from pendant.sensor.odds import HALF
-from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
+from pendant.sensor.sensor_errors import LEVER, load_weight, window_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
@@ -26,6 +27,12 @@ class Slack(NamedTuple):
 
 
 SURE = Slack(0.0, 0.0)
+
+
+def drift(sensor: SensorSpec, ticks: int) -> Slack:
+    """Of a good sensor in so many ticks at most, each axis."""
+    seconds = TICK * ticks
+    return Slack(sensor.drift_force * seconds, sensor.drift_torque * seconds)
 
 
 class BiasFollower:
@@ -69,8 +76,7 @@ class BiasFollower:
 
     def drifted(self, tick: int) -> Slack:
         """By so much it may have drifted since the arm came to rest."""
-        seconds = TICK * (tick - self._quiet)
-        return Slack(self._sensor.drift_force * seconds, self._sensor.drift_torque * seconds)
+        return drift(self._sensor, tick - self._quiet)
 
     def slack(self, tick: int) -> Slack:
         """At this tick: it may have drifted since the arm came to rest, or what was subtracted then was a hand's."""
@@ -84,12 +90,11 @@ class BiasFollower:
             What of it the sensor drifted by while the arm was moved; None while a hand holds the arm, for it is more than drift,
             noise and gain explain.
         """
-        slack, sensor = self.slack(estimate.tick), self._sensor
-        wrong = gain_error(sensor, estimate, self._weight) + FALSE_ALARM * window_noise(sensor, estimate)
-        if norm((apart[0], apart[1], apart[2])) > slack.force + wrong:
+        slack = self.slack(estimate.tick)
+        if norm((apart[0], apart[1], apart[2])) > slack.force + window_error(self._sensor, estimate, self._weight):
             return None
         self._quiet, self._weight = estimate.tick, load_weight(estimate)
-        self._taken = taken = (*_within(list(apart[:3]), slack.force), *_within(list(apart[3:]), slack.torque))
+        self._taken = taken = (*within(apart[:3], slack.force), *within(apart[3:], slack.torque))
         return taken
 
     def give_back(self) -> list[Wrench]:
@@ -129,15 +134,15 @@ class BiasFollower:
             return None
         change = [now - then for now, then in zip(mean, self._followed, strict=True)]
         time = WINDOW * TICK
-        gone = (*_within(change[:3], SLOWEST * time), *_within(change[3:], LEVER * SLOWEST * time))
+        gone = (*within(change[:3], SLOWEST * time), *within(change[3:], LEVER * SLOWEST * time))
         # What was too fast may be noise, up to a hand's tremor, and waits for the next windows; more is a hand's.
         rest = [whole - part for whole, part in zip(change, gone, strict=True)]
-        later = (*_within(rest[:3], TREMOR), *_within(rest[3:], LEVER * TREMOR))
+        later = (*within(rest[:3], TREMOR), *within(rest[3:], LEVER * TREMOR))
         self._followed = tuple([now - part for now, part in zip(mean, later, strict=True)])
         return gone
 
 
-def _within(change: list[float], most: float) -> Vector:
+def within(change: Sequence[float], most: float) -> Vector:
     """A change of three numbers, at most so large."""
     x, y, z = change
     share = most / max(math.sqrt(x * x + y * y + z * z), most, 1e-12)

@@ -9,7 +9,7 @@ joints show it (rollback). A sensor that steps is not used any more: how likely 
 import math
 
 from pendant.events.event import Event, Kind
-from pendant.guided.bias_follower import BiasFollower, Slack, added
+from pendant.guided.bias_follower import BiasFollower, Slack, added, drift, within
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
@@ -17,7 +17,6 @@ from pendant.sensor.odds import KNOWN
 from pendant.sensor.sensor_errors import LEVER, load_weight
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
-from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, flat, norm, turned
 
 SMOOTH = 1.0 / WINDOW
@@ -79,13 +78,12 @@ class SensorBias:
 
     def _most(self, tick: int) -> Slack:
         """A good sensor has drifted by so much since the beginning, in all axes together."""
-        seconds = TICK * (tick - self._since)
-        force, torque = self.sensor.drift_force * seconds, self.sensor.drift_torque * seconds
+        force, torque = drift(self.sensor, tick - self._since)
         return Slack(norm((force, force, force)), norm((torque, torque, torque)))
 
     def apart(self, estimate: Estimate, mean: Wrench) -> Wrench:
         """A mean of F_user without the bias, axes of F [N, N·m]."""
-        return tuple([value - part for value, part in zip(in_flange(estimate, mean), self.baseline, strict=True)])
+        return added(in_flange(estimate, mean), self.baseline, -1.0)
 
     def step(
         self,
@@ -139,9 +137,8 @@ class SensorBias:
                 far, turn = norm((x, y, z)), norm((a, b, c))
                 # So far a good one does not; or a hand presses slowly on an arm at rest, and would seem to push the other way
                 # when it lets go.
-                sensor, seconds = self.sensor, TICK * (estimate.tick - self._since)
-                most = sensor.offset_force + sensor.drift_force * seconds
-                if far >= most or turn >= LEVER * sensor.offset_force + sensor.drift_torque * seconds:
+                offset, drifts = self.sensor.offset_force, drift(self.sensor, estimate.tick - self._since)
+                if far >= offset + drifts.force or turn >= LEVER * offset + drifts.torque:
                     self.leave()
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
@@ -171,7 +168,5 @@ def _grown(gone: tuple[float, ...], more: tuple[float, ...], most: float) -> Vec
 
     Else many short rests, in each of which a hand was taken for drift, would add up to what no good sensor drifts by.
     """
-    x, y, z = (a + b for a, b in zip(gone, more, strict=True))
-    size = norm((x, y, z))
-    share = min(max(most, math.hypot(*gone)) / max(size, 1e-12), 1.0)
-    return share * x - gone[0], share * y - gone[1], share * z - gone[2]
+    x, y, z = within([a + b for a, b in zip(gone, more, strict=True)], max(most, math.hypot(*gone)))
+    return x - gone[0], y - gone[1], z - gone[2]

@@ -10,7 +10,7 @@ import math
 
 from pendant.guided.bias_follower import Slack
 from pendant.limits.validity import WINDOW
-from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
+from pendant.sensor.sensor_errors import LEVER, load_weight, window_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
@@ -72,8 +72,5 @@ class SteadyWrench:
 
     def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:
         """Noise and gain explain how far apart the two are."""
-        sensor = self._sensor
-        gain, noise = gain_error(sensor, estimate, self._weight), window_noise(sensor, estimate)
-        if math.dist(apart[:3], first[:3]) > gain + FALSE_ALARM * noise:
-            return False
-        return math.dist(apart[3:], first[3:]) <= LEVER * (gain + FALSE_ALARM * noise)
+        error = window_error(self._sensor, estimate, self._weight)
+        return math.dist(apart[:3], first[:3]) <= error and math.dist(apart[3:], first[3:]) <= LEVER * error

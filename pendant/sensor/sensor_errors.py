@@ -29,3 +29,8 @@ def load_weight(estimate: Estimate) -> Vector:
 def gain_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
     """Of the load's weight, since it was `before` [N]: in axes of F."""
     return sensor.gain * math.dist(load_weight(estimate), before)
+
+
+def window_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
+    """Of a window's mean force at most, since the load's weight was `before` [N]: gain, and noise in all axes together."""
+    return gain_error(sensor, estimate, before) + FALSE_ALARM * window_noise(sensor, estimate)
