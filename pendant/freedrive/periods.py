@@ -13,6 +13,7 @@ from pendant.freedrive.gate import Gate
 from pendant.freedrive.manipulation import Maintained
 from pendant.freedrive.settings import RestartBegins
 from pendant.settings.schema import ticks
+from pendant.tick.limit_engine import Excess
 from pendant.tick.modes import TICK, Phase
 from pendant.tick.pose import Vector, Wrench, norm
 
@@ -95,7 +96,16 @@ class Periods:
         """A waypoint is registered in this tick, which counts as manipulation (FD-13)."""
         self._registered = True
 
-    def step(self, around: Surroundings, settings: Settings, gate: Gate, *, user: Vector, wrench: Wrench | None) -> Happened:
+    def step(
+        self,
+        around: Surroundings,
+        settings: Settings,
+        gate: Gate,
+        *,
+        user: Vector,
+        wrench: Wrench | None,
+        pressed: Excess | None = None,
+    ) -> Happened:
         """One tick, with valid joints.
 
         Args:
@@ -104,8 +114,11 @@ class Periods:
             gate: the button, as sensed in this tick.
             user: the user's force, axes of B [N].
             wrench: as there.
+            pressed: the user's force where it is more than can be wrong of it: it counts though it does not change.
         """
         anew, registered = self._anew, self._registered
+        if around.shaken:
+            pressed = None
         self._anew = self._registered = False
         if self.phase is _HELD:
             return self._hold(around, settings, gate.ended, wrench)
@@ -114,10 +127,10 @@ class Periods:
             self._pressed = 0
             return Happened([])
         if self.phase is not Phase.GUIDED:
-            return self._count(around, settings, anew=anew, registered=registered, wrench=wrench)
+            return self._count(around, settings, anew=anew, registered=registered, wrench=wrench, pressed=pressed)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
-        if settings.free_drive.ends_by_period and self._left == 0 and self._rests(around, settings):
+        if settings.free_drive.ends_by_period and self._left == 0 and pressed is None and self._rests(around, settings):
             self._begin(Phase.RESTART, around, settings, wrench)
             return Happened([Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})])
         return Happened([])
@@ -138,7 +151,14 @@ class Periods:
         return Happened([])
 
     def _count(
-        self, around: Surroundings, settings: Settings, *, anew: bool, registered: bool, wrench: Wrench | None
+        self,
+        around: Surroundings,
+        settings: Settings,
+        *,
+        anew: bool,
+        registered: bool,
+        wrench: Wrench | None,
+        pressed: Excess | None,
     ) -> Happened:
         """The free-drive or the restart period runs."""
         tick = around.estimate.tick
@@ -148,7 +168,7 @@ class Periods:
         self._left -= 1
         maintained = self._maintained
         assert maintained is not None
-        excess = None if around.shaken else maintained.step(around.estimate, wrench)
+        excess = pressed if around.shaken else maintained.step(around.estimate, wrench) or pressed
         events: list[Event] = []
         if excess is not None and not self._stirred:
             events.append(Event(Kind.MANIPULATION, tick, dict(excess._asdict())))

@@ -201,7 +201,7 @@ class FreeDrive:
         if seen.transition is Transition.LEFT:
             return seen
         wrench = self._bias.felt(around.estimate)
-        happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench)
+        happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench, pressed=arm.pressed)
         self.phase = periods.phase
         return happened.after(seen.events) if seen.events else happened
 

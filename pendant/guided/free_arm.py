@@ -17,6 +17,7 @@ from pendant.limits.soft_limits import Damping
 from pendant.limits.validity import JOINTS_SENSED, joints_ok
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
+from pendant.tick.limit_engine import Excess
 from pendant.tick.pose import ORIGIN, Vector, norm
 from pendant.walls.barrier import Consequence
 from pendant.walls.containment import NOBODY, Containment, caught, facts
@@ -28,6 +29,7 @@ class FreeArm:
     Attributes:
         caught: a wall keeps the arm where it is (VW-6).
         user: the user's force, axes of B [N].
+        pressed: the user's force, where it is more than the sensor may be wrong by and could be felt at entry (FD-13).
         damping: where free motion is resisted before a limit on its speed (FD-12b).
         singularity: how near the arm is to one (FD-4).
         pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
@@ -48,6 +50,7 @@ class FreeArm:
         "caught",
         "damping",
         "doubtful",
+        "pressed",
         "pull",
         "singularity",
         "suspect",
@@ -84,6 +87,7 @@ class FreeArm:
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
+        self.pressed: Excess | None = None
         self.damping: Damping | None = None
         self._hung = upward_in_flange(estimate)
         self.taken: TakenForce | None = None
@@ -136,6 +140,7 @@ class FreeArm:
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack, steady=steady)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful or steady
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
+        self.pressed = self._pressed(settings, tick)
         self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
         if ending is not None:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
@@ -151,6 +156,14 @@ class FreeArm:
             moves = norm((vx, vy, vz)) >= settings.unexplained.speed
             steady.step(bias.apart(estimate, around.mean.mean()), estimate, moves=moves, wrong=bias.wrong(estimate.tick))
         return steady.steady
+
+    def _pressed(self, settings: Settings, tick: int) -> Excess | None:
+        """At entry the sequence let so much pass; without it nobody knows what was felt then."""
+        passes, size = settings.limits.activation.user_force, norm(self.user)
+        if size < passes.max or not (self._bias.used and passes.on and settings.sequence.on):
+            return None
+        limit = passes.max + self._bias.wrong(tick).force
+        return Excess("user force", "arm", size, limit, "N") if size >= limit else None
 
     def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
         """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""

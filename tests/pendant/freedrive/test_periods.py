@@ -11,6 +11,7 @@ from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.validity import Stillness, WrenchMean
 from pendant.signals.sources import BUTTON, NONE
 from pendant.tick.estimate import Estimate
+from pendant.tick.limit_engine import Excess
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tick.pose import ORIGIN, Vector
 from pendant.tick.state import state_of
@@ -35,15 +36,17 @@ class Alone:
     def __init__(self, held: bool, value: Estimate = STILL, **changes: float | bool) -> None:
         self.settings = apply(Settings(), {name.replace("__", "."): change for name, change in changes.items()})
         self.tick, self.gate, self.held = 0, Gate(), held
+        self.still, self.shaken = Stillness(), False
         self.gate.sense(held, BUTTON if held else NONE)
         wrench = tuple(value.F_user.tolist())
         self.periods = Periods(self._around(value), self.settings, held=held, wrench=wrench, joints=JOINTS)
 
-    def step(self, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
+    def step(self, value: Estimate = STILL, user: Vector = ORIGIN, pressed: Excess | None = None) -> list[Event]:
         self.tick += 1
         self.gate.sense(self.held, BUTTON if self.held else NONE)
         wrench = tuple(value.F_user.tolist())
-        happened = self.periods.step(self._around(value), self.settings, self.gate, user=user, wrench=wrench)
+        around = self._around(value)
+        happened = self.periods.step(around, self.settings, self.gate, user=user, wrench=wrench, pressed=pressed)
         return whole_transition(happened, self.tick)
 
     def run(self, count: int, value: Estimate = STILL, user: Vector = ORIGIN) -> list[Event]:
@@ -51,7 +54,7 @@ class Alone:
 
     def _around(self, value: Estimate) -> Surroundings:
         value.tick = self.tick
-        return Surroundings(value, Mode.FREE_DRIVE, True, Stillness(), WrenchMean())
+        return Surroundings(value, Mode.FREE_DRIVE, True, self.still, WrenchMean(), shaken=self.shaken)
 
 
 def pressed(alone: Alone, ticks: int) -> list[Event]:
@@ -358,6 +361,26 @@ def test_a_force_that_was_there_as_the_period_began_is_no_manipulation(held: boo
     assert alone.periods.phase is Phase.PERIOD
     values = {"parameter": "user force", "part": "flange", "value": pytest.approx(8.5), "limit": 8.0, "unit": "N"}
     assert alone.step(estimate(force=28.5)) == [Event(Kind.MANIPULATION, alone.tick, values)]
+
+
+PRESSED = Excess("user force", "arm", 30.0, 12.0, "N")
+
+
+def test_a_hand_that_presses_steadily_keeps_free_drive() -> None:
+    """FD-13: in the period, and where the guided arm rests; the restart period begins when it lets go."""
+    alone = Alone(False, free_drive__restart_period=0.5)
+    alone.still.count = 1000
+    assert alone.step(pressed=PRESSED) == [Event(Kind.MANIPULATION, 1, dict(PRESSED._asdict()))]
+    for _ in range(1000):
+        assert alone.step(pressed=PRESSED) == []
+    assert alone.periods.phase is Phase.GUIDED
+    assert [event.kind for event in alone.run(251)] == [Kind.RESTARTED, Kind.LEFT_RESTART]
+
+
+def test_while_a_pattern_shakes_the_arm_a_steady_force_is_nobodys() -> None:
+    alone = Alone(False, free_drive__period=0.5)
+    alone.shaken = True
+    assert [event.kind for _ in range(250) for event in alone.step(pressed=PRESSED)] == [Kind.LEFT_PERIOD]
 
 
 def test_hold_to_run_leaves_on_release() -> None:

@@ -325,3 +325,32 @@ def test_who_is_known_to_move_the_arm_is_no_error_of_the_sensor(why: str, force:
     link = [6.0, 0.0, 0.0] if why == "a hand is on a link" else 0.0
     free.during(300, drifting(0, force, link=link), shaken=why == "a wall or shaking moves it")
     assert free.arm.doubtful is doubtful
+
+
+@pytest.mark.parametrize(
+    ("why", "force", "pressed"),
+    [
+        ("at entry it passed", 11.9, False),
+        ("more than at entry", 12.1, True),
+        ("the sensor may have drifted", 14.5, False),
+        ("more than that, too", 15.0, True),
+        ("nothing was checked at entry", 50.0, False),
+        ("the force was not", 50.0, False),
+        ("no sensor", 50.0, False),
+    ],
+)
+def test_a_steady_hand_is_known_by_a_force_that_nothing_else_explains(why: str, force: float, pressed: bool) -> None:
+    """FD-13: 12 N pass at entry; in two minutes the sensor may drift by 2.8 N."""
+    entry = {
+        "sequence__on": why != "nothing was checked at entry",
+        "limits__activation__user_force__on": why != "the force was not",
+    }
+    free = Free(sensor=why != "no sensor", **entry)
+    free.tick = 60_000 if force > 14.0 else 0
+    free.during(500, estimate(force=force, felt=force))
+    excess = free.arm.pressed
+    assert (excess is not None) is pressed
+    if excess is not None:
+        assert excess[:2] == ("user force", "arm")
+        assert excess.value == pytest.approx(force, abs=0.01)
+        assert excess.limit == pytest.approx(14.8 if force > 14.0 else 12.0, abs=0.05)
