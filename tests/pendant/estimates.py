@@ -1,6 +1,9 @@
 """Estimates for tests: an arm at rest, with what a test wants to differ."""
 
+from functools import cache
+
 import numpy as np
+from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
 from pendant.sensor.sensor_spec import SensorSpec
@@ -48,43 +51,66 @@ def estimate(
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
     `needed` is the force that the configured load needs in its motion; what the sensor measures then follows from `force`.
+    Many share their arrays, which cannot be written into: those of a `copy` can.
     """
-
-    def vector(value: float | list[float], length: int) -> list[float]:
-        return value if isinstance(value, list) else [value] + [0.0] * (length - 1)
-
     return Estimate(
         tick=tick,
         joints_valid=joints_valid,
         wrench_valid=wrench_valid,
         acceleration_valid=acceleration_valid,
-        q=np.array(q or [0.0] * n),
-        qd=np.array(vector(qd, n)),
-        qdd=np.zeros(n),
-        theta=np.array(theta or [0.0] * n),
-        theta_d=np.array(theta_d or [0.0] * n),
-        tau_m=np.zeros(n),
-        tau_J=np.array(vector(tau_J, n)),
-        tau_ext=np.array(vector(tau_ext, n)),
-        tau_ext_deviation=np.full(n, tau_ext_deviation),
-        w_sensor=np.zeros(6) if needed is None else np.subtract(needed + [0.0] * 3, vector(force, 3) + [0.0] * 3),
-        F_user=np.array(vector(force, 3) + vector(torque, 3)),
-        a_F=np.add(vector(acceleration, 3), [0.0, 0.0, 9.81]),
-        a_felt=np.array(vector(acceleration, 3)),
-        p_BF=np.array(vector(position, 3)),
-        R_BF=np.eye(3),
-        v_F=np.array(vector(speed, 3) + [0.0] * 3),
+        q=_zeros(n) if q is None else np.array(q),
+        qd=_vector(qd, n),
+        qdd=_zeros(n),
+        theta=_zeros(n) if theta is None else np.array(theta),
+        theta_d=_zeros(n) if theta_d is None else np.array(theta_d),
+        tau_m=_zeros(n),
+        tau_J=_vector(tau_J, n),
+        tau_ext=_vector(tau_ext, n),
+        tau_ext_deviation=_zeros(n) if tau_ext_deviation == 0.0 else np.full(n, tau_ext_deviation),
+        w_sensor=_zeros(6) if needed is None else np.subtract(needed + [0.0] * 3, _listed(force, 3) + [0.0] * 3),
+        F_user=_wrench(force, torque),
+        a_F=AT_REST if acceleration == 0.0 else np.add(_listed(acceleration, 3), [0.0, 0.0, 9.81]),
+        a_felt=_vector(acceleration, 3),
+        p_BF=_vector(position, 3),
+        R_BF=UNTURNED,
+        v_F=_wrench(speed, 0.0),
         v_tcp=v_tcp,
         v_elbow=v_elbow,
         move_done=move_done,
         move_refused=move_refused,
-        tcp=np.array(tcp or [0.0] * 6),
-        elbow=np.array(elbow or [0.0] * 6),
-        F_joints=np.array(vector(felt, 3)),
-        current=np.zeros(n),
+        tcp=_zeros(6) if tcp is None else np.array(tcp),
+        elbow=_zeros(6) if elbow is None else np.array(elbow),
+        F_joints=_vector(felt, 3),
+        current=_zeros(n),
         load_mass=load_mass,
-        friction=np.array(vector(friction, n)),
+        friction=_vector(friction, n),
         energy=energy,
-        tau_hand=np.array(vector(tau_hand, n)),
-        F_link=np.array(vector(link, 3)),
+        tau_hand=_vector(tau_hand, n),
+        F_link=_vector(link, 3),
     )
+
+
+def _fixed(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Shared by all estimates: a test that writes into it fails."""
+    values.flags.writeable = False
+    return values
+
+
+@cache
+def _zeros(length: int) -> NDArray[np.float64]:
+    return _fixed(np.zeros(length))
+
+
+UNTURNED, AT_REST = _fixed(np.eye(3)), _fixed(np.array([0.0, 0.0, 9.81]))
+
+
+def _listed(value: float | list[float], length: int) -> list[float]:
+    return value if isinstance(value, list) else [value] + [0.0] * (length - 1)
+
+
+def _vector(value: float | list[float], length: int) -> NDArray[np.float64]:
+    return _zeros(length) if value == 0.0 else np.array(_listed(value, length))
+
+
+def _wrench(linear: float | list[float], angular: float | list[float]) -> NDArray[np.float64]:
+    return _zeros(6) if linear == angular == 0.0 else np.array(_listed(linear, 3) + _listed(angular, 3))

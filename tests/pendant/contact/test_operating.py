@@ -78,7 +78,7 @@ def test_a_program_says_what_the_robot_does(name: str, step: AnyStep, factor: fl
     use = bench.supervisor.settings.contact
     bench.step(Inputs(program=Program(steps=(step,))))
     bench.step(Inputs(commands=(Command.START_PROGRAM,)))
-    value = estimate(tau_J=[5.0, -25.0, 0.0, 0.0, 0.0, 0.0])
+    value = estimate(tau_J=[5.0, -25.0, 0.0, 0.0, 0.0, 0.0]).copy()
     value.current[:] = [0.1, 0.2, -0.4, 0.0, 0.0, 0.0]
     bench.step(value=value)
     assert bench.supervisor._run.contact_use(use, value).sensitivity == pytest.approx(1.0 / factor, rel=0.01)

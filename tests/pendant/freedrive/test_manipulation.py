@@ -152,7 +152,7 @@ def test_a_torque_that_stays_across_gravity_is_a_payload_and_one_about_it_is_not
 
 def test_without_the_flange_sensor_the_joints_judge_alone() -> None:
     """FD-3a."""
-    pushed = estimate(force=100.0, torque=20.0, acceleration=30.0, acceleration_valid=False)
+    pushed = estimate(force=100.0, torque=20.0, acceleration=30.0, acceleration_valid=False).copy()
     pushed.F_user[:] = math.nan
     watch = maintained(pushed, sensed=False)
     assert watch.step(pushed, None) is None

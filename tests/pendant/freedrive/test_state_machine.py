@@ -103,7 +103,7 @@ def test_the_deactivation_signal_leaves_every_phase_at_once(phase: Phase) -> Non
 @pytest.mark.parametrize("name", ["q", "qd", "theta", "theta_d", "tau_J", "tau_ext", "v_F"])
 def test_entry_is_refused_and_free_drive_stopped_when_a_joint_value_is_no_number(name: str) -> None:
     """FD-12."""
-    broken = estimate()
+    broken = estimate().copy()
     getattr(broken, name)[2] = math.nan
     bench = Bench()
     bench.run(60)
@@ -230,7 +230,7 @@ def test_what_the_sensor_drifts_by_is_taken_off_only_while_nobody_moves_the_arm(
 
 def test_any_number_of_joints() -> None:
     supervisor = Supervisor(apply(Settings(), {"sequence.on": False}), 7)
-    value = estimate(n=7)
+    value = estimate(n=7).copy()
     value.qd[6] = 0.02
     for _ in range(501):
         decision = supervisor.step(value, HOLD)

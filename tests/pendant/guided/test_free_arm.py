@@ -171,7 +171,7 @@ def test_the_way_to_a_singularity_is_told_where_a_lock_may_have_to_give_way(lock
 
 
 MOVING = {"speed": [0.0, 0.0, 0.03]}
-BENT = estimate(theta=[2.98] + [0.0] * 5, **MOVING)  # in the stiff zone before its limit
+BENT = estimate(theta=[2.98] + [0.0] * 5, **MOVING).copy()  # in the stiff zone before its limit
 BENT.theta_d[0] = 0.1
 AFTER = round(ALONE / TICK) + 1  # ticks
 

@@ -463,7 +463,7 @@ def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: flo
     alone = UnintendedMotion(Settings().unexplained, reference(start, None))
     hand, told = UserForce(start, ZEROS, SENSOR.offset_force), None
     for tick in range(1, 1001):
-        value = at(0.0001 * tick, 0.05, turns=turns)
+        value = at(0.0001 * tick, 0.05, turns=turns).copy()
         value.F_user[0] = force
         hand.step(value, True, MOVES)
         slack = Slack(0.0 if force > LIGHT else force - 0.95, 0.0)  # with it less than a hand's force

@@ -50,7 +50,7 @@ def test_in_the_first_tick_already_the_arm_may_be_too_far() -> None:
 def test_what_hangs_at_the_flange_is_known_beyond_what_may_be_drift(axis: int, usual: float, led: bool) -> None:
     """5 N, and 2 N that may be the sensor's: up to there a light hand leads the arm, with what is beyond the drift."""
     felt, force = Felt(), [usual if k == axis else 0.0 for k in range(3)]
-    value = at(0.0, 0.0, turns=1.0)
+    value = at(0.0, 0.0, turns=1.0).copy()
     value.v_F[axis] = 0.1
     felt.see(value, (force[0], force[1], force[2]), Slack(2.0, 0.2))
     assert felt.alone.led is led

@@ -140,7 +140,7 @@ def test_it_is_told_alike_however_base_flange_and_forces_lie(
     offset = first.R_BF.T @ (before - payload * up)
     joints_feel, sensor_feels = felt * unit(), force * unit()
     for tick in range(75):
-        now = estimate()
+        now = estimate().copy()
         now.R_BF, now.v_F[:3] = attitude(), (0.9 if tick % 3 else 1.1) * MOVES * unit()
         now.F_joints = first.F_joints + joints_feel
         change = sensor_feels + 0.2 * unit()

@@ -61,7 +61,7 @@ def test_a_torque_against_the_turn_pays_for_nothing_and_is_not_owed_twice() -> N
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
 def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, share: float, paid: bool) -> None:
     """0.05 m/s along it."""
-    value = moving()
+    value = moving().copy()
     value.v_F[:3] = [0.05 * part for part in way]
     needed = PAYS * SPEED / 0.05
     work = Work()
@@ -76,7 +76,7 @@ def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, sha
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
 def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, share: float, paid: bool) -> None:
     """A tool that is led at its end turns the flange, at 0.5 rad/s."""
-    value = moving()
+    value = moving().copy()
     value.v_F[3:] = [0.5 * part for part in way]
     needed = PAYS * SPEED / 0.5
     work = Work()
@@ -181,7 +181,7 @@ def test_the_torque_of_a_hand_must_have_a_value_for_each_joint(n: int) -> None:
 
 
 def test_a_hand_on_a_link_and_one_at_the_flange_pay_together() -> None:
-    value = moving(0.6 * PAYS)
+    value = moving(0.6 * PAYS).copy()
     value.v_F[:3] = [0.05, 0.0, 0.0]
     work = Work()
     work.begin(value)

@@ -119,7 +119,7 @@ def test_no_payload_is_wrong_by_what_a_right_one_may_seem_to_be(margin: float, h
 
 
 def test_a_motor_is_judged_by_its_rated_torque() -> None:
-    value = estimate()
+    value = estimate().copy()
     value.tau_m[1], value.tau_m[4] = -60.0, 13.0
     assert PARAMETERS["motor_torque"].read(view(value), 0.5) == (13.0, "wrist_2", 14.0)
     value.tau_m[1] = -72.0
@@ -146,7 +146,7 @@ def test_limits_carry_reaction_and_time() -> None:
 
 
 def test_a_reference_is_what_is_so_now() -> None:
-    value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    value = estimate(position=[1.0, 2.0, 3.0], force=[4.0, 5.0, 6.0], torque=7.0, tau_ext=[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).copy()
     value.q[2] = 0.5
     torques, angles = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (0.0, 0.0, 0.5, 0.0, 0.0, 0.0)
     assert reference(value, tuple(value.F_user.tolist())) == EntryValues(

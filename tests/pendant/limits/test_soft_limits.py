@@ -106,7 +106,7 @@ def test_on_the_way_out_they_fall_to_the_end_of_the_way_and_the_way_back_is_free
         place = [start + gone * whole * axis for start, axis in zip(ORIGIN, way, strict=True)]
         out, across = [0.1 * axis for axis in way], [0.1 * axis for axis in (way[2], way[0], way[1])]
         for motion, share in ((out, left), ([-value for value in out], 1.0), (across, 1.0)):
-            now = estimate(position=place, speed=motion)
+            now = estimate(position=place, speed=motion).copy()
             now.elbow[3:] = (0.0, 0.0, -0.2)
             module.step(now)
             assert limits(module)[1:] == pytest.approx((share * speed, share * 3.0))

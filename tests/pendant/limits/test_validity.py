@@ -15,7 +15,7 @@ USED = ["q", "qd", "theta", "theta_d", "tau_J", "tau_ext", "v_F"]
 @pytest.mark.parametrize("name", USED)
 def test_joint_values_must_be_valid_and_finite(name: str, bad: float) -> None:
     """FD-12."""
-    value = estimate()
+    value = estimate().copy()
     assert joints_ok(value)
     array = getattr(value, name)
     for index in range(len(array)):
@@ -29,7 +29,7 @@ def test_joint_values_must_be_valid_and_finite(name: str, bad: float) -> None:
 
 
 def test_infinities_do_not_cancel() -> None:
-    value = estimate()
+    value = estimate().copy()
     value.q[0], value.q[1] = math.inf, -math.inf
     assert not joints_ok(value)
 
@@ -59,7 +59,7 @@ def test_one_joint_at_the_limit_or_unknown_begins_the_count_again(joint: int, sp
     still = Stillness()
     for _ in range(70):
         still.step(estimate(), 0.01)
-    moving = estimate()
+    moving = estimate().copy()
     moving.qd[joint] = speed
     still.step(moving, 0.01)
     assert still.count == 0
@@ -72,7 +72,7 @@ def test_one_joint_at_the_limit_or_unknown_begins_the_count_again(joint: int, sp
 
 def test_the_limit_is_each_joints_own() -> None:
     """Together they may be as fast as they like."""
-    still, creeping = Stillness(), estimate()
+    still, creeping = Stillness(), estimate().copy()
     creeping.qd[:] = 0.009
     for count in range(1, 5):
         still.step(creeping, 0.01)
@@ -93,7 +93,7 @@ def test_the_mean_is_over_the_last_window(count: int) -> None:
     wrenches = rng.normal(0.0, 5.0, (count, 6))
     mean = WrenchMean()
     for wrench in wrenches:
-        value = estimate()
+        value = estimate().copy()
         value.F_user[:] = wrench
         assert mean.step(value)
     np.testing.assert_allclose(mean.mean(), wrenches[-50:].mean(axis=0), rtol=1e-12, atol=1e-12)

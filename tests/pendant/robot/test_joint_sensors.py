@@ -34,7 +34,7 @@ def test_each_loss_and_return_is_told_once() -> None:
 
 
 def test_a_motion_goes_on_with_the_motor_angles_but_nothing_else_does() -> None:
-    seen = estimate(joints_valid=False)
+    seen = estimate(joints_valid=False).copy()
     assert not motion_ok(seen)
     seen.degraded = True
     assert motion_ok(seen)
@@ -60,7 +60,7 @@ def test_a_program_goes_on_degraded_and_stops_without_a_motor_angle() -> None:
 
 
 def test_a_copy_keeps_what_was_lost() -> None:
-    seen = estimate(joints_valid=False)
+    seen = estimate(joints_valid=False).copy()
     seen.degraded, seen.lost = True, (("current", 2),)
     kept = seen.copy()
     seen.degraded, seen.lost = False, ()

@@ -48,7 +48,7 @@ def placed(
     """The arm stands in a posture with a load that the controller does not know of, and a sensor with an offset [N]."""
     origins, turns = shape.places(q[None])
     R = turns[0, -1]
-    value = estimate(position=origins[0, -1].tolist(), q=q.tolist())
+    value = estimate(position=origins[0, -1].tolist(), q=q.tolist()).copy()
     value.R_BF = R
     a = R.T @ [0.0, 0.0, G]
     value.w_sensor = np.concatenate([mass * a + offset, np.cross(centre, mass * a)])
