@@ -45,11 +45,10 @@ test: $(VENV)/dev.stamp
 	$(BIN)/ruff check --quiet $(ROOM) tests/$(ROOM)
 	$(BIN)/pytest -q tests/$(ROOM) tests/test_rooms.py
 else
-# What keeps one core busy goes in pairs: the environment of the wheel is filled while that of the tests is. Then what only
-# computes takes the time that others wait for a clock, a client or a browser.
+# What keeps one core busy goes in pairs: the environment of the wheel is filled while that of the tests is, and a third waits for
+# the network. Then what only computes takes the time that others wait for a clock, a client or a browser.
 test: | $(BIN)/python
-	$(MAKE) --no-print-directory -j2 --output-sync=target wheel kernels types lint contracts
-	$(MAKE) --no-print-directory pictures browser
+	$(MAKE) --no-print-directory -j3 --output-sync=target wheel kernels browser types lint contracts
 	$(MAKE) --no-print-directory -j2 --output-sync=target paced computing
 	$(MAKE) --no-print-directory pushed
 endif
@@ -104,7 +103,8 @@ e2e: $(VENV)/dev.stamp | browser
 e2e-full: $(VENV)/dev.stamp | browser
 	$(BIN)/pytest -q tests/e2e
 
-browser:
+# After `pictures`, for one alone may install.
+browser: | pictures
 	@for name in $(BROWSERS); do command -v $$name >/dev/null && exit 0; done; \
 	if [ "$$(id -u)" = 0 ] && [ -f /etc/debian_version ]; then \
 		echo "Installing Chromium for the browser tests"; \

@@ -18,9 +18,6 @@ from tools import claims_page
 
 MUTANTS = declared()
 SESSIONS = claiming()
-SAMPLE = 2
-"""Mutants of what is not compiled that are run; `make claims` runs all."""
-
 SUPPORT = Mutant(
     session="control-torque-feedback",
     claims=["C 8"],
@@ -58,9 +55,10 @@ def test_no_mutant_serves_two_claims_that_say_different_things() -> None:
     assert {change: said for change, said in texts.items() if len(said) > 1} == {}
 
 
-def test_some_mutants_are_noticed() -> None:
-    chosen = [mutant for mutant in MUTANTS if mutant.file.startswith("pendant/")][:: len(MUTANTS) // SAMPLE][:SAMPLE]
-    assert [trial.seen for trial in run_mutants(chosen) if not trial.noticed] == []
+def test_a_mutant_of_what_is_not_compiled_is_noticed() -> None:
+    """`make claims` runs all."""
+    first = next(mutant for mutant in MUTANTS if mutant.file.startswith("pendant/"))
+    assert [trial.seen for trial in run_mutants([first]) if not trial.noticed] == []
 
 
 def test_what_is_called_is_compiled_again() -> None:
