@@ -117,8 +117,6 @@ class Periods:
             pressed: the user's force where it is more than can be wrong of it: it counts though it does not change.
         """
         anew, registered = self._anew, self._registered
-        if around.shaken:
-            pressed = None
         self._anew = self._registered = False
         if self.phase is _HELD:
             return self._hold(around, settings, gate.ended, wrench)
@@ -168,7 +166,7 @@ class Periods:
         self._left -= 1
         maintained = self._maintained
         assert maintained is not None
-        excess = pressed if around.shaken else maintained.step(around.estimate, wrench) or pressed
+        excess = None if around.shaken else maintained.step(around.estimate, wrench) or pressed
         events: list[Event] = []
         if excess is not None and not self._stirred:
             events.append(Event(Kind.MANIPULATION, tick, dict(excess._asdict())))
