@@ -101,8 +101,7 @@ class SettingsTab:
 
         @self.load.on_upload
         async def _(_: viser.GuiEvent) -> None:
-            with self._lock, self._tab:
-                self.read(self.load.value.name, self.load.value.content)
+            self.read(self.load.value.name, self.load.value.content)
 
         @self.undo.on_click
         async def _(_: viser.GuiEvent) -> None:
@@ -117,11 +116,12 @@ class SettingsTab:
             self.message.show(svg.note("File refused", str(refusal), Colour.AMBER))
             return
         title = preset.title if preset.title not in presets() else f"{preset.title} (file)"
-        self._presets = dict(presets()) | {title: preset}
-        self.preset.options = tuple(self._presets)
-        self.preset.value = title
-        self.message.show(svg.note("File loaded", "Below is what it would change.", Colour.GREEN))
-        self._refresh(self._loop.settings)
+        with self._lock:  # the new choice makes another thread fill the tab
+            self._presets = dict(presets()) | {title: preset}
+            self.preset.options = tuple(self._presets)
+            self.preset.value = title
+            self.message.show(svg.note("File loaded", "Below is what it would change.", Colour.GREEN))
+            self._refresh(self._loop.settings)
 
     def show(self, snapshot: Snapshot, fresh: list[Event]) -> bool:
         """Bring the controls up to date with the settings that hold; True if anything changed."""

@@ -1,6 +1,7 @@
 """Settings as controls."""
 
 from collections.abc import Callable
+from threading import Thread
 
 import pytest
 
@@ -190,8 +191,7 @@ def test_settings_are_saved_as_a_file_that_lists_its_changes_before_they_are_tak
     content = as_file(loop.settings)
     loop.settings = Settings()
     tab.view.value, tab._chosen = VIEWS[1], VIEWS[1]
-    with tab._lock:  # as the page does: the view that was just chosen is filled on viser's event loop
-        tab.read("mine.yaml", content)
+    tab.read("mine.yaml", content)
     assert tab.preset.value == "Saved"
     assert "<td>7 s</td>" in tab.listed.shown
     loop.advance()
@@ -224,3 +224,15 @@ def test_a_file_named_as_a_shipped_preset_stands_beside_it(still: Served) -> Non
     tab.read("mine.yaml", b"title: Classroom\ntext: mine\nsettings: {}")
     assert tab.preset.value == "Classroom (file)"
     assert tab.preset.options[-1] == "Classroom (file)"
+
+
+def test_a_file_is_not_read_while_the_controls_are_made(still: Served) -> None:
+    tab = still.docks.settings
+    before = tab.preset.options
+    reader = Thread(target=tab.read, args=("mine.yaml", b"title: Mine\ntext: mine\nsettings: {}"))
+    with tab._lock:
+        reader.start()
+        reader.join(0.2)
+        assert tab.preset.options == before
+    reader.join()
+    assert tab.preset.options[-1] == "Mine"
