@@ -94,6 +94,7 @@ class EndingWatch:
         driven: bool,
         slack: Slack = SURE,
         steady: bool = False,
+        changes: bool = False,
     ) -> Ending | None:
         """One tick; its joint values are finite.
 
@@ -104,6 +105,7 @@ class EndingWatch:
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
             steady: what it feels may be its own error altogether.
+            changes: what it feels changed lately as only a hand changes it.
         """
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
         stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
@@ -128,7 +130,7 @@ class EndingWatch:
             return None
         use_wrench = baseline is not None
         values = self._unintended.step(
-            estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque, steady=steady
+            estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque, steady=steady, changes=changes
         )
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 

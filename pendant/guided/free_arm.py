@@ -83,7 +83,7 @@ class FreeArm:
         self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
         self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
-        self._steady = SteadyWrench(bias.sensor, ticks(settings.unexplained.time))
+        self._steady = SteadyWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -137,7 +137,8 @@ class FreeArm:
         driven = around.shaken or self.caught or self._zones.pushing
         slack = bias.slack(estimate)
         steady = self._is_steady(around, settings, driven)
-        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack, steady=steady)
+        changes = self._steady.changes
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack, steady=steady, changes=changes)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful or steady
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         self.pressed = self._pressed(settings, tick)

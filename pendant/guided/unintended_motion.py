@@ -94,6 +94,7 @@ class UnintendedMotion:
         slack: Slack = SURE,
         torque: Vector = ORIGIN,
         steady: bool = False,
+        changes: bool = False,
     ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 
@@ -105,10 +106,11 @@ class UnintendedMotion:
             slack: what may be the sensor's drift.
             torque: of the hand at the flange, axes of B [N·m].
             steady: what the flange sensor feels may be its own error altogether.
+            changes: what it feels changed lately as only a hand changes it.
         """
         x, y, z = hand.user
         least = self._on.force + slack.force
-        feels = not steady and x * x + y * y + z * z >= least * least
+        feels = changes or (not steady and x * x + y * y + z * z >= least * least)
         caused = driven or (feels if use_wrench else estimate.joints_feel is JointsFeel.HAND)
         wrench, usual = NO_WRENCH, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force and not steady:

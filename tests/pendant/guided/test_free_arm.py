@@ -327,6 +327,18 @@ def test_who_is_known_to_move_the_arm_is_no_error_of_the_sensor(why: str, force:
     assert free.arm.doubtful is doubtful
 
 
+@pytest.mark.parametrize(("turns", "ends"), [(0, True), (100, False), (400, True)])
+def test_a_hand_that_turns_round_leads_an_arm_whose_sensor_may_have_drifted_by_more(turns: int, ends: bool) -> None:
+    """FD-19: of 5 N after ten minutes. It pushes the other way every so many ticks; 0: never."""
+    free = Free(unexplained__time=0.3)
+    free.tick = 300_000
+    told = free.during(60, estimate())
+    for tick in range(1, 700):
+        told += free.see(drifting(tick, -5.0 if turns and tick // turns % 2 else 5.0))
+    assert [event.kind for event in told] == ([Kind.STOPPED_MOTION] * len(told))
+    assert bool(told) is ends
+
+
 @pytest.mark.parametrize(
     ("why", "force", "pressed"),
     [

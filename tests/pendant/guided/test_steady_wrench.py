@@ -13,6 +13,7 @@ from pendant.tick.pose import Wrench
 from tests.pendant.estimates import SENSOR, estimate
 
 NEEDED = 3 * OFTEN
+FORCE = 1.0  # of a hand at least [N]
 WRENCH: Wrench = (1.0, -2.0, 2.0, 0.1, 0.2, -0.2)  # 3 N, 0.3 N·m
 WRONG = Slack(3.5, 0.4)
 NOISE = FALSE_ALARM * window_noise(SENSOR, estimate())  # [N]
@@ -20,7 +21,7 @@ FAR = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # R_BF aft
 
 
 def seen(*wrenches: Wrench, moves: bool = True, wrong: Slack = WRONG, load: float = 0.0) -> SteadyWrench:
-    watch = SteadyWrench(SENSOR, NEEDED)
+    watch = SteadyWrench(SENSOR, NEEDED, FORCE)
     for wrench in wrenches:
         watch.step(wrench, estimate(load_mass=load), moves=moves, wrong=wrong)
     return watch
@@ -37,7 +38,7 @@ def test_it_takes_as_long_as_an_arm_may_move_alone(windows: int, steady: bool) -
 
 @pytest.mark.parametrize(("needed", "windows"), [(1, 2), (OFTEN, 2), (OFTEN + 1, 3), (2 * OFTEN, 3), (2 * OFTEN + 1, 4)])
 def test_a_window_that_has_begun_counts(needed: int, windows: int) -> None:
-    watch = SteadyWrench(SENSOR, needed)
+    watch = SteadyWrench(SENSOR, needed, FORCE)
     count = 0
     while not watch.steady:
         watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
@@ -46,7 +47,7 @@ def test_a_window_that_has_begun_counts(needed: int, windows: int) -> None:
 
 
 def test_a_window_ends_every_so_many_ticks() -> None:
-    watch = SteadyWrench(SENSOR, NEEDED)
+    watch = SteadyWrench(SENSOR, NEEDED, FORCE)
     assert [tick for tick in range(1, 3 * OFTEN + 1) if watch.due()] == [OFTEN, 2 * OFTEN, 3 * OFTEN]
 
 
@@ -68,7 +69,7 @@ def test_a_load_that_turns_adds_what_the_gain_makes_of_it(share: float, steady: 
     load = 2.0
     noise = FALSE_ALARM * window_noise(SENSOR, estimate(load_mass=load))
     by = share * (noise + SENSOR.gain * load * GRAVITY * math.sqrt(2.0)) * (LEVER if axis >= 3 else 1.0)
-    watch, wide = SteadyWrench(SENSOR, OFTEN), Slack(9.0, 9.0)
+    watch, wide = SteadyWrench(SENSOR, OFTEN, FORCE), Slack(9.0, 9.0)
     watch.step(WRENCH, estimate(load_mass=load), moves=True, wrong=wide)
     after = estimate(load_mass=load)
     after.R_BF = FAR
@@ -106,3 +107,42 @@ def test_what_is_forgotten_begins_with_the_next_window() -> None:
     for count in range(1, 5):
         watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
         assert watch.steady is (count == 4)
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize("moves", [False, True])
+@pytest.mark.parametrize(("share", "changes"), [(-1.01, True), (-0.99, False), (0.99, False), (1.01, True)])
+def test_one_of_two_wrenches_is_a_hands_where_half_their_difference_is(
+    axis: int, moves: bool, share: float, changes: bool
+) -> None:
+    """However far the sensor may have drifted meanwhile, and beside noise."""
+    by = share * (2.0 * FORCE + NOISE) * (LEVER if axis >= 3 else 1.0)
+    assert seen(WRENCH, changed(axis, by), moves=moves, wrong=Slack(99.0, 99.0)).changes is changes
+
+
+@pytest.mark.parametrize(("between", "changes"), [(0, True), (2, True), (3, False)])
+def test_a_change_counts_for_as_long_as_an_arm_may_move_alone(between: int, changes: bool) -> None:
+    far = changed(1, 9.0)
+    assert seen(*[WRENCH] * 9, far, *[far] * between).changes is changes
+
+
+@pytest.mark.parametrize(("share", "changes"), [(0.99, False), (1.01, True)])
+def test_what_the_gain_makes_of_a_load_that_turns_is_no_hands(share: float, changes: bool) -> None:
+    load = 2.0
+    noise = FALSE_ALARM * window_noise(SENSOR, estimate(load_mass=load))
+    by = share * (2.0 * FORCE + noise + SENSOR.gain * load * GRAVITY * math.sqrt(2.0))
+    watch = SteadyWrench(SENSOR, NEEDED, FORCE)
+    watch.step(WRENCH, estimate(load_mass=load), moves=True, wrong=WRONG)
+    after = estimate(load_mass=load)
+    after.R_BF = FAR
+    watch.step(changed(0, by), after, moves=True, wrong=WRONG)
+    assert watch.changes is changes
+
+
+def test_with_what_is_forgotten_nothing_is_compared() -> None:
+    watch = seen(WRENCH, changed(1, 9.0))
+    assert watch.changes
+    watch.forget()
+    assert not watch.changes
+    watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
+    assert not watch.changes

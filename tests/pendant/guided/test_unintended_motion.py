@@ -471,3 +471,20 @@ def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: flo
         if steady:
             assert not alone.led
     assert (told is not None) is steady
+
+
+@pytest.mark.parametrize(
+    ("use_wrench", "changes", "steady", "ends"),
+    [(True, False, False, True), (True, True, False, False), (True, True, True, False), (False, True, False, True)],
+)
+def test_who_pushes_less_than_the_sensor_may_have_drifted_by_is_known_by_a_change(
+    use_wrench: bool, changes: bool, steady: bool, ends: bool
+) -> None:
+    """Of the flange sensor: the joints do not tell it."""
+    start = at(0.0, 0.0)
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
+    hand, told, slack = UserForce(start, ZEROS, SENSOR.offset_force), None, Slack(7.5, 0.5)
+    for tick in range(1, 1001):
+        value = at(0.0001 * tick, 0.05)
+        told = told or alone.step(value, hand, use_wrench=use_wrench, driven=False, slack=slack, steady=steady, changes=changes)
+    assert (told is not None) is ends
