@@ -31,6 +31,7 @@ TOPICS = {
     ),
     "Free-drive ends": (
         "left-alone",
+        "kept-by-press",
         "short-press",
         "too-fast",
         "sensor-fails",
