@@ -150,7 +150,9 @@ class FreeArm:
     def _is_steady(self, around: Surroundings, settings: Settings, driven: bool) -> bool:
         """One tick: what the flange sensor feels may be its own error, and nobody is felt on a link."""
         bias, steady, estimate = self._bias, self._steady, around.estimate
-        if driven or not (bias.used and settings.unexplained.sensor) or self._hand.by_joints:
+        x, y, z = estimate.F_link.tolist()
+        linked = norm((x, y, z)) >= settings.unexplained.force
+        if driven or linked or not (bias.used and settings.unexplained.sensor):
             steady.forget()
         elif steady.due():
             vx, vy, vz = estimate.v_F.tolist()[:3]

@@ -7,12 +7,14 @@ the torque of a joint has changed by
     change = hand + sum of shares x change of causes + sum of zero's change x its levers + what the model leaves,
 
 so its error has the variance of these shares with the change of their causes, of the zero's walk since entry, and of the rest. A
-hand is there where a joint's change is more than `CONTACT` deviations of that. What was felt at entry is no hand's.
+hand is there where a joint's change is more than `CONTACT` deviations of that, and only what is beyond is the hand's: that error
+stays what it is for as long as the arm is there, and would lead it. What was felt at entry is no hand's.
 
-Far from there little of a hand would be left. But a hand comes faster than the arm's posture changes: a change against what was
-felt lately, while nothing was a hand's, is told in the same way. An arm at rest is followed, too, as long as the change since
-entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What was felt lately tells better
-than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it leads the arm.
+Far from there little of a hand is left. But a hand comes faster than the arm's posture changes: a change against what was
+felt lately, while nothing was a hand's, is told in the same way, and is a hand's as a whole. An arm at rest is followed, too, as
+long as the change since entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What was
+felt lately tells better than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it leads
+the arm.
 """
 
 import numpy as np
@@ -32,6 +34,8 @@ from sim.rigid_body.newton_euler import NewtonEuler
 from sim.sensing.calibration import MOTOR_CONSTANT
 
 Array = NDArray[np.float64]
+
+ENTRY, LATELY = range(2)
 
 LASTS = ticks(KEEPS)
 """Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
@@ -89,18 +93,18 @@ def _update(memory, known, model, told) -> None:
     bias, qd, by_deflection = told
     if own.ticks[0] == 0:
         own.felt[:] = errors.felt
-        _keep(own, bias, 0)
-        _keep(own, bias, 1)
+        _keep(own, bias, ENTRY)
+        _keep(own, bias, LATELY)
     own.ticks += 1
-    away = _feel(own, known, (bias, by_deflection), 0)
+    away = _feel(own, known, (bias, by_deflection), ENTRY)
     torque = own.torque.copy()
-    lately = _feel(own, known, (bias, by_deflection), 1)
+    lately = _feel(own, known, (bias, by_deflection), LATELY)
     stands = True
     for speed in qd:
         stands = stands and abs(speed) < STANDING
     if not away and (stands or not lately):
-        own.felt[1] += FOLLOW * (errors.felt - own.felt[1])
-        _keep(own, bias, 1)
+        own.felt[LATELY] += FOLLOW * (errors.felt - own.felt[LATELY])
+        _keep(own, bias, LATELY)
     own.lasts = LASTS if lately or away else max(own.lasts - 1, 0)
     if not lately and (away or _power(torque, qd) > _power(own.torque, qd)):
         own.torque[:] = torque
@@ -144,6 +148,7 @@ def _feel(own, known, told, when) -> bool:
             lever = errors.felt[i, 2 + k]
             left += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
             wrong += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
-        own.torque[i] = left
-        found = found or left * left > CONTACT**2 * wrong
+        beyond = max(abs(left) - CONTACT * np.sqrt(wrong), 0.0)
+        own.torque[i] = left if when == LATELY else np.copysign(beyond, left)
+        found = found or beyond > 0.0
     return found

@@ -317,12 +317,13 @@ def test_what_does_not_change_while_the_arm_moves_brakes_it_and_is_the_sensors()
         ("the sensor is not watched", 2.0, False),
         ("a wall or shaking moves it", 2.0, False),
         ("a hand is on a link", 2.0, False),
+        ("less than a hand is on a link", 2.0, True),
     ],
 )
 def test_who_is_known_to_move_the_arm_is_no_error_of_the_sensor(why: str, force: float, doubtful: bool) -> None:
     free = Free(unexplained__motion=False, unexplained__time=0.3, unexplained__sensor=why != "the sensor is not watched")
     free.tick = 60_000
-    link = [6.0, 0.0, 0.0] if why == "a hand is on a link" else 0.0
+    link = {"a hand is on a link": [-1.01, 0.0, 0.0], "less than a hand is on a link": [0.99, 0.0, 0.0]}.get(why, 0.0)
     free.during(300, drifting(0, force, link=link), shaken=why == "a wall or shaking moves it")
     assert free.arm.doubtful is doubtful
 
