@@ -96,6 +96,6 @@ class SteadyWrench:
         return False
 
     def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:
-        """Noise and gain explain how far apart the two are."""
-        error = window_error(self._sensor, estimate, self._weight)
+        """Noise and gain explain how far apart the two are; as the arm brakes, it may be as far as no hand's force is."""
+        error = window_error(self._sensor, estimate, self._weight) + self._force * self.steady
         return math.dist(apart[:3], first[:3]) <= error and math.dist(apart[3:], first[3:]) <= LEVER * error

@@ -110,7 +110,7 @@ class UnintendedMotion:
         """
         x, y, z = hand.user
         least = self._on.force + slack.force
-        feels = changes or (not steady and x * x + y * y + z * z >= least * least)
+        feels = not steady and x * x + y * y + z * z >= least * least
         caused = driven or (feels if use_wrench else estimate.joints_feel is JointsFeel.HAND)
         wrench, usual = NO_WRENCH, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force and not steady:
@@ -119,6 +119,11 @@ class UnintendedMotion:
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench)
         if way is None:
+            return None
+        if changes and use_wrench:
+            # Who was there a moment ago may be there: nothing helps, and it ends as far from here.
+            self._ticks, self._helped = 0, 0.0
+            self._whole.begin(estimate)
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 

@@ -94,7 +94,9 @@ def test_until_it_changes_it_stays_also_while_the_arm_rests() -> None:
     for _ in range(5):
         watch.step(WRENCH, estimate(), moves=False, wrong=WRONG)
         assert watch.steady
-    watch.step(changed(1, 3.0 * NOISE), estimate(), moves=False, wrong=WRONG)
+    watch.step(changed(1, 0.99 * (FORCE + NOISE)), estimate(), moves=False, wrong=WRONG)
+    assert watch.steady, "by less than a hand's force, as the arm brakes"
+    watch.step(changed(1, 1.01 * (FORCE + NOISE)), estimate(), moves=False, wrong=WRONG)
     assert not watch.steady
     watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
     assert not watch.steady

@@ -473,18 +473,33 @@ def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: flo
     assert (told is not None) is steady
 
 
-@pytest.mark.parametrize(
-    ("use_wrench", "changes", "steady", "ends"),
-    [(True, False, False, True), (True, True, False, False), (True, True, True, False), (False, True, False, True)],
-)
-def test_who_pushes_less_than_the_sensor_may_have_drifted_by_is_known_by_a_change(
-    use_wrench: bool, changes: bool, steady: bool, ends: bool
-) -> None:
-    """Of the flange sensor: the joints do not tell it."""
+@pytest.mark.parametrize("use_wrench", [True, False])
+@pytest.mark.parametrize("steady", [True, False])
+def test_who_pushes_less_than_the_sensor_may_have_drifted_by_is_known_by_a_change(use_wrench: bool, steady: bool) -> None:
+    """For 700 ticks the flange sensor feels one; the joints do not tell it. Nothing helps meanwhile: the hand may have gone."""
     start = at(0.0, 0.0)
     alone = UnintendedMotion(Settings().unexplained, reference(start, None))
-    hand, told, slack = UserForce(start, ZEROS, SENSOR.offset_force), None, Slack(7.5, 0.5)
-    for tick in range(1, 1001):
-        value = at(0.0001 * tick, 0.05)
-        told = told or alone.step(value, hand, use_wrench=use_wrench, driven=False, slack=slack, steady=steady, changes=changes)
-    assert (told is not None) is ends
+    hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(7.5, 0.5)
+    for tick in range(1, 2000):
+        changes = tick <= 700
+        told = alone.step(
+            at(0.0001 * tick, 0.05), hand, use_wrench=use_wrench, driven=False, slack=slack, steady=steady, changes=changes
+        )
+        assert not (told and changes and use_wrench)
+        if told is not None:
+            break
+        assert alone.doubtful or tick < 80
+    assert (700 < tick <= 700 + 151) if use_wrench else tick == 151
+
+
+def test_after_a_change_an_arm_that_was_at_rest_goes_as_far_from_there() -> None:
+    start = at(0.0, 0.0)
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
+    hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(7.5, 0.5)
+    for tick in range(1, 2000):
+        told = alone.step(at(0.0001 * tick, 0.019), hand, use_wrench=True, driven=False, slack=slack, changes=tick <= 700)
+        if told is not None:
+            break
+    assert told is not None
+    assert 700 < tick <= 700 + 151
+    assert told["distance"] <= 1000.0 * AWAY + 0.2
