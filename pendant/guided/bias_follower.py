@@ -42,7 +42,7 @@ class BiasFollower:
         lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_rested", "_sensor", "_taken", "_weight", "lately")
+    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "_taken", "_weight", "lately")
 
     def __init__(self, sensor: SensorSpec, tick: int = 0, weight: Vector = ORIGIN) -> None:
         """
@@ -54,7 +54,6 @@ class BiasFollower:
         self._sensor = sensor
         self._quiet, self._weight = tick, weight  # when it was last followed
         self._count = 0
-        self._rested = BEGINS  # windows since the arm was moved
         self._followed: Wrench | None = None
         self._taken: Wrench = ZEROS  # what was subtracted since the arm last came to rest, axes of F [N, N·m]
         self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
@@ -75,15 +74,6 @@ class BiasFollower:
         self._count = 0
         self.restart()
 
-    def moved(self) -> None:
-        """The arm moves in this tick."""
-        self._rested = 0
-
-    def rested(self) -> bool:
-        """One window; whether the arm has rested for as long as a touch: a hand that turns round lets it rest for less."""
-        self._rested += 1
-        return self._rested > BEGINS
-
     def drifted(self, tick: int) -> Slack:
         """By so much it may have drifted since the arm came to rest."""
         return drift(self._sensor, tick - self._quiet)
@@ -94,7 +84,7 @@ class BiasFollower:
         return Slack(max(force, norm((x, y, z))), max(torque, norm((a, b, c))))
 
     def begin(self, apart: Wrench, estimate: Estimate) -> Wrench | None:
-        """The arm has come to rest, and feels in the tick of the estimate so much beyond the baseline, axes of F [N, N·m].
+        """The arm has come to rest in the tick of the estimate, and feels so much beyond the baseline, axes of F [N, N·m].
 
         What was subtracted at the last rest may have been a hand's: it may come back, but nothing beside it. Else a hand that
         is taken for drift would make it likelier that it is at the next rest.

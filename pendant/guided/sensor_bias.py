@@ -116,8 +116,6 @@ class SensorBias:
         if estimate.step_odds >= KNOWN and estimate.step_force >= least:
             self.leave()
             return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.step_force})
-        if not still:
-            self._drift.moved()
         if not waits:
             self._drift.pause()
             # A sensor that has drifted far seems to be a hand as well, but moves nothing.
@@ -127,8 +125,6 @@ class SensorBias:
         elif self._drift.due():
             now = mean.mean()
             if not self._drift.begun:
-                if not (self._drift.rested() or steady):
-                    return None
                 meanwhile = self._meanwhile(estimate, now, steady)
                 if meanwhile is None:
                     return None

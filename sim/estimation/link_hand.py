@@ -7,14 +7,14 @@ the torque of a joint has changed by
     change = hand + sum of shares x change of causes + sum of zero's change x its levers + what the model leaves,
 
 so its error has the variance of these shares with the change of their causes, of the zero's walk since entry, and of the rest. A
-hand is there where a joint's change is more than `CONTACT` deviations of that, and only what is beyond is the hand's: that error
-stays what it is for as long as the arm is there, and would lead it. What was felt at entry is no hand's.
+hand is there where a joint's change is more than `CONTACT` deviations of that. Its force is made of what is beyond alone: that
+error stays what it is for as long as the arm is there, and would lead it. What was felt at entry is no hand's.
 
-Far from there little of a hand is left. But a hand comes faster than the arm's posture changes: a change against what was
-felt lately, while nothing was a hand's, is told in the same way, and is a hand's as a whole. An arm at rest is followed, too, as
-long as the change since entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What was
-felt lately tells better than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it leads
-the arm.
+Far from there little of that force is left. But a hand comes faster than the arm's posture changes: a change against what was
+felt lately, while nothing was a hand's, is told in the same way, and makes a force as a whole. An arm at rest is followed, too,
+as long as the change since entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What
+was felt lately tells better than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it
+leads the arm.
 """
 
 import numpy as np
@@ -63,6 +63,7 @@ class LinkHand:
             ticks="2i8",  # since then
             lasts="i8",  # ticks for which who was felt may be there still
             torque=(arm.n,),
+            sure=(arm.n,),  # what of it is beyond the errors
             force=(3,),
         )
         self._own = self._record[0]
@@ -97,7 +98,7 @@ def _update(memory, known, model, told) -> None:
         _keep(own, bias, LATELY)
     own.ticks += 1
     away = _feel(own, known, (bias, by_deflection), ENTRY)
-    torque = own.torque.copy()
+    torque, sure = own.torque.copy(), own.sure.copy()
     lately = _feel(own, known, (bias, by_deflection), LATELY)
     stands = True
     for speed in qd:
@@ -110,8 +111,10 @@ def _update(memory, known, model, told) -> None:
         own.torque[:] = torque
     if own.lasts == 0:
         own.torque[:] = 0.0
-    if lately or away:
+    if lately:
         best_force(jacobian, own.torque, own.force)
+    elif away:
+        best_force(jacobian, sure, own.force)
     else:
         own.force[:] = 0.0
 
@@ -133,7 +136,7 @@ def _power(torque, qd):
 
 @kernel
 def _feel(own, known, told, when) -> bool:
-    """Whether a hand is felt against what was felt then; `torque` becomes what it would be."""
+    """Whether a hand is felt against what was felt then; `torque` becomes what it would be, `sure` what of it no error is."""
     momentum, errors, felt = known[0][0], known[1][0], own.felt[when]
     bias, by_deflection = told
     found, change = False, np.empty(1 + CAUSES)
@@ -148,7 +151,7 @@ def _feel(own, known, told, when) -> bool:
             lever = errors.felt[i, 2 + k]
             left += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
             wrong += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
-        beyond = max(abs(left) - CONTACT * np.sqrt(wrong), 0.0)
-        own.torque[i] = left if when == LATELY else np.copysign(beyond, left)
-        found = found or beyond > 0.0
+        own.torque[i] = left
+        own.sure[i] = np.copysign(max(abs(left) - CONTACT * np.sqrt(wrong), 0.0), left)
+        found = found or own.sure[i] != 0.0
     return found

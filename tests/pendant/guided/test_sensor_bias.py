@@ -22,7 +22,6 @@ from tests.pendant.estimates import HAND, MOVES, SENSOR, estimate
 from tests.pendant.freedrive.test_state_machine import Bench
 
 WINDOW = 0.1  # [s]
-WINDOW_TICKS = 50
 TURNED = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # R_BF after 90° about z
 
 
@@ -314,28 +313,6 @@ def test_a_hand_that_was_taken_for_drift_makes_no_other_likelier(force: tuple[fl
     at_rest(drift, 0, *[-0.1 * k for k in range(7)])
     drift.pause()
     assert drift.begin((*force, 0.0, 0.0, 0.0, 0.0), estimate()) is None
-
-
-def test_an_arm_that_rests_for_less_than_a_touch_is_not_followed() -> None:
-    """A hand that turns round; at entry the arm has rested."""
-    drift = BiasFollower(SENSOR)
-    assert drift.rested()
-    drift.moved()
-    assert [drift.rested() for _ in range(BEGINS + 2)] == [False] * BEGINS + [True] * 2
-
-
-@pytest.mark.parametrize(("ticks", "follows"), [(WINDOW_TICKS * BEGINS, False), (WINDOW_TICKS * (BEGINS + 1), True)])
-@pytest.mark.parametrize("steady", [False, True])
-def test_an_arm_that_a_hand_moved_is_followed_after_as_long_as_a_touch(ticks: int, follows: bool, steady: bool) -> None:
-    """But at once where the wrench was steady while it moved."""
-    zero, mean, hand = SensorBias(SENSOR), WrenchMean(), UserForce(estimate(), (0.0,) * 6, SENSOR.offset_force)
-    zero.begin(estimate(), True, mean)
-    value = estimate(tick=5000, force=0.05)
-    for tick in range(50 + ticks):
-        mean.step(value)
-        moves = tick < 50
-        zero.step(value, hand, mean, waits=not moves, still=not moves, force=HAND, steady=steady and not moves)
-    assert (zero.baseline[0] != 0.0) == (follows or steady)
 
 
 def test_what_is_added_again_was_not_subtracted() -> None:
