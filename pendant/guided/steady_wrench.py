@@ -72,7 +72,9 @@ class SteadyWrench:
         """
         self.changes = self._changes(apart, estimate)
         self._lately.append((apart, load_weight(estimate)))
-        if math.hypot(*apart[:3]) > wrong.force or math.hypot(*apart[3:]) > wrong.torque or not (moves or self.steady):
+        noise = FALSE_ALARM * window_noise(self._sensor, estimate)
+        hand = math.hypot(*apart[:3]) > wrong.force + noise or math.hypot(*apart[3:]) > wrong.torque + LEVER * noise
+        if hand or not (moves or self.steady):
             self._begin()
             return
         first = self._first

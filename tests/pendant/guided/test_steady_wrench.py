@@ -82,6 +82,8 @@ def test_a_load_that_turns_adds_what_the_gain_makes_of_it(share: float, steady: 
     [(Slack(3.0001, 0.3001), True), (Slack(2.9999, 9.0), False), (Slack(9.0, 0.2999), False)],
 )
 def test_more_than_the_bias_may_be_wrong_by_is_a_hands(wrong: Slack, steady: bool) -> None:
+    """Beside noise."""
+    wrong = Slack(wrong.force - NOISE, wrong.torque - LEVER * NOISE)
     assert seen(*[WRENCH] * 5, wrong=wrong).steady is steady
 
 
