@@ -16,7 +16,7 @@ from collections import deque
 from pendant.guided.bias_follower import Slack
 from pendant.limits.validity import WINDOW
 from pendant.sensor.odds import HALF
-from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_error, window_noise
+from pendant.sensor.sensor_errors import LEVER, gain_error, load_weight, noise_error, window_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
@@ -70,9 +70,9 @@ class SteadyWrench:
             moves: the arm does.
             wrong: of the bias at most.
         """
-        self.changes = self._changes(apart, estimate)
-        self._lately.append((apart, load_weight(estimate)))
-        noise = FALSE_ALARM * window_noise(self._sensor, estimate)
+        noise, weight = noise_error(self._sensor, estimate), load_weight(estimate)
+        self.changes = self._changes(apart, estimate, noise)
+        self._lately.append((apart, weight))
         hand = math.hypot(*apart[:3]) > wrong.force + noise or math.hypot(*apart[3:]) > wrong.torque + LEVER * noise
         if hand or not (moves or self.steady):
             self._begin()
@@ -83,14 +83,14 @@ class SteadyWrench:
             self.steady = self._windows >= self._needed
             return
         self._begin()
-        self._first, self._weight = apart, load_weight(estimate)
+        self._first, self._weight = apart, weight
 
     def _begin(self) -> None:
         self._first, self._windows, self.steady = None, 0, False
 
-    def _changes(self, apart: Wrench, estimate: Estimate) -> bool:
-        """Half of the change is a hand's force, for noise and gain do not explain it."""
-        least = self._force / HALF + FALSE_ALARM * window_noise(self._sensor, estimate)
+    def _changes(self, apart: Wrench, estimate: Estimate, noise: float) -> bool:
+        """Half of the change is a hand's force, for `noise` [N] and gain do not explain it."""
+        least = self._force / HALF + noise
         for then, weight in self._lately:
             change = max(math.dist(apart[:3], then[:3]), math.dist(apart[3:], then[3:]) / LEVER)
             if change > least and change > least + gain_error(self._sensor, estimate, weight):

@@ -19,6 +19,11 @@ def window_noise(sensor: SensorSpec, estimate: Estimate) -> float:
     return math.hypot(sensor.noise_force, sensor.noise_acceleration * estimate.load_mass) / math.sqrt(WINDOW)
 
 
+def noise_error(sensor: SensorSpec, estimate: Estimate) -> float:
+    """Of a window's mean force at most, by noise, in all axes together [N]."""
+    return FALSE_ALARM * window_noise(sensor, estimate)
+
+
 def load_weight(estimate: Estimate) -> Vector:
     """Of the configured load, axes of F [N]."""
     g, mass = estimate.g_B.tolist(), estimate.load_mass
@@ -33,4 +38,4 @@ def gain_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
 
 def window_error(sensor: SensorSpec, estimate: Estimate, before: Vector) -> float:
     """Of a window's mean force at most, since the load's weight was `before` [N]: gain, and noise in all axes together."""
-    return gain_error(sensor, estimate, before) + FALSE_ALARM * window_noise(sensor, estimate)
+    return gain_error(sensor, estimate, before) + noise_error(sensor, estimate)

@@ -13,7 +13,7 @@ from pendant.limits.residual import PayloadError, mass_error, split, upward
 from pendant.limits.settings import ActivationLimits
 from pendant.limits.validity import WINDOW, WrenchMean, in_flange
 from pendant.sensor.payload_known import PayloadKnown
-from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, window_noise
+from pendant.sensor.sensor_errors import FALSE_ALARM, LEVER, gain_error, load_weight, noise_error, window_noise
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
@@ -153,7 +153,7 @@ class Taring:
     def _pulled(self, estimate: Estimate, present: Wrench, reference: Wrench) -> str:
         """What pulls or twists at the arm beyond what noise explains, in words, or ""."""
         force, torque = math.dist(present[:3], reference[:3]), math.dist(present[3:], reference[3:])
-        if force > LEAST_PULL + FALSE_ALARM * window_noise(self._sensor, estimate):
+        if force > LEAST_PULL + noise_error(self._sensor, estimate):
             return f"{force:.1f} N"
         noise = math.hypot(self._sensor.noise_torque, LEVER * self._sensor.noise_acceleration * estimate.load_mass)
         return f"{torque:.2f} N·m" if torque > LEAST_TWIST + FALSE_ALARM * noise / math.sqrt(WINDOW) else ""

@@ -40,7 +40,6 @@ class Free:
         off = {"walls.tether": False, "unexplained.time": ALONE}
         self.settings = apply(Settings(), off | {name.replace("__", "."): value for name, value in changes.items()})
         self.zero, self.mean, self.payload, self.tick = SensorBias(SENSOR), WrenchMean(), payload, 0
-        self.still = Stillness()
         self.zero.begin(estimate(), sensor, self.mean)
         containment, zones = Containment(borders, {}), JointZones(RATED, RANGES)
         self.arm = FreeArm(
@@ -56,8 +55,7 @@ class Free:
     def around(self, value: Estimate, shaken: bool = False) -> Surroundings:
         value.tick = self.tick
         ok = self.mean.step(value)
-        self.still.step(value, 0.01)
-        return Surroundings(value, Mode.FREE_DRIVE, ok, self.still, self.mean, shaken=shaken, payload=self.payload)
+        return Surroundings(value, Mode.FREE_DRIVE, ok, Stillness(), self.mean, shaken=shaken, payload=self.payload)
 
     def see(self, value: Estimate, waits: bool = False, shaken: bool = False) -> list[Event]:
         self.tick += 1
