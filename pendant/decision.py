@@ -6,6 +6,7 @@ from pendant.contact.contact_change import Contact
 from pendant.events.event import Event
 from pendant.freedrive.adaptive_gravity import Balance
 from pendant.freedrive.periods import Remaining
+from pendant.guided.bias_follower import SURE, Slack
 from pendant.guided.force_covariance import TakenForce
 from pendant.guided.pull import PullCauses
 from pendant.haptics import Shake
@@ -52,6 +53,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)
     locks: AxisLocks | None = None  # what free-drive keeps of the tool's pose and of the joints' angles (FD-4)
     singularity: Nearness | None = None  # in free-drive (FD-4)
+    slack: Slack = SURE  # of F_user beyond the baseline, what may be the sensor's drift: it helps nobody, under Law.FREE (FD-19)
     doubtful: bool = False  # it may be that nobody leads the free arm: its friction is not compensated (FD-19)
     shake: Shake | None = None  # of the last joint, under HOLD, BRAKE and FREE: haptic feedback (HF-1)
     fitting: Fitting | None = None  # tool and payload, from the next tick on

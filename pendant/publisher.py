@@ -4,6 +4,7 @@ from pendant.all_settings import Settings, limits_checksum
 from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
+from pendant.guided.bias_follower import SURE
 from pendant.haptics import Shake
 from pendant.limits.axis_locks import AxisLocks, axis_locks, locks_of, with_joints
 from pendant.motion.scripting import Scripting
@@ -96,6 +97,7 @@ class Publisher:
             shake=shake,
             zero=taring.zero,
             zero_due=taring.due,
+            slack=SURE if arm is None else arm.slack,
             doubtful=doubtful,
             limits=self._checksum,
             static=robot.static,

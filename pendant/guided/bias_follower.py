@@ -1,4 +1,9 @@
-"""What the flange sensor drifts by in free-drive: followed while nobody moves the arm, in steps of the mean's window (FD-19)."""
+"""What the flange sensor drifts by in free-drive (FD-19).
+
+While nobody moves the arm, what changes is followed in steps of the mean's window. But a hand may hold the arm at rest, so what
+the sensor has drifted by while the arm was moved is known only where it rests for so long, and feels the same, that no hand is
+there. Until then all that may have come since the bias was last known is an uncertainty of what it tells: its `Slack`.
+"""
 
 import math
 from collections import deque
@@ -7,10 +12,11 @@ from typing import NamedTuple
 
 from pendant.limits.parameters import ZEROS
 from pendant.limits.validity import WINDOW
-from pendant.sensor.hand_model import SLOWEST, TOUCH, TREMOR
+from pendant.sensor.hand_model import SLOWEST, STEADY, TOUCH, TREMOR
 from pendant.sensor.odds import HALF
-from pendant.sensor.sensor_errors import LEVER, load_weight, window_error
+from pendant.sensor.sensor_errors import CENTRE, LEVER, load_weight, window_error
 from pendant.sensor.sensor_spec import SensorSpec
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, Wrench, dot, norm
@@ -19,8 +25,16 @@ BEGINS = TOUCH // WINDOW
 """Windows of the mean for which a hand may push before the arm is seen to move: as long as a touch."""
 
 
+OFTEN = WINDOW // 5
+"""Ticks from one look at what changes slowly to the next one."""
+
+
+STILL = ticks(STEADY) // WINDOW
+"""Windows in which a hand that holds the arm would be known by its tremor."""
+
+
 class Slack(NamedTuple):
-    """What the sensor may have drifted by itself since that was last followed: an uncertainty of what it tells."""
+    """What the sensor may tell without a hand, since that was last followed: an uncertainty of what it tells."""
 
     force: float  # [N]
     torque: float  # [N·m]
@@ -29,10 +43,13 @@ class Slack(NamedTuple):
 SURE = Slack(0.0, 0.0)
 
 
-def drift(sensor: SensorSpec, ticks: int) -> Slack:
-    """Of a good sensor in so many ticks at most, each axis."""
-    seconds = TICK * ticks
-    return Slack(sensor.drift_force * seconds, sensor.drift_torque * seconds)
+def drift(sensor: SensorSpec, time: int) -> Slack:
+    """Of a good sensor in so many ticks at most, all three axes together: each goes from nothing to its largest bias.
+
+    It does so as fast as the fastest of such sensors warms up. Six in 1,000 that were switched on just before go further.
+    """
+    force, torque, gone = sensor.offset_force, sensor.offset_torque, -math.expm1(-TICK * time / sensor.quickest)
+    return Slack(gone * norm((force, force, force)), gone * norm((torque, torque, torque)))
 
 
 class BiasFollower:
@@ -42,7 +59,21 @@ class BiasFollower:
         lately: what was subtracted in the last windows, axes of F [N, N·m].
     """
 
-    __slots__ = ("_began", "_count", "_felt", "_followed", "_quiet", "_sensor", "_taken", "_weight", "lately")
+    __slots__ = (
+        "_began",
+        "_count",
+        "_felt",
+        "_first",
+        "_followed",
+        "_quiet",
+        "_rested",
+        "_sensor",
+        "_slack",
+        "_slack_at",
+        "_taken",
+        "_weight",
+        "lately",
+    )
 
     def __init__(self, sensor: SensorSpec, tick: int = 0, weight: Vector = ORIGIN) -> None:
         """
@@ -52,10 +83,12 @@ class BiasFollower:
             weight: of the load, axes of F [N].
         """
         self._sensor = sensor
-        self._quiet, self._weight = tick, weight  # when it was last followed
+        self._quiet, self._weight = tick, weight  # when it was last known
         self._count = 0
         self._followed: Wrench | None = None
-        self._taken: Wrench = ZEROS  # what was subtracted since the arm last came to rest, axes of F [N, N·m]
+        self._taken: Wrench = ZEROS  # what was subtracted since then, axes of F [N, N·m]
+        self._rested, self._first = 0, ORIGIN  # windows at rest that felt the same, and the force of the first, axes of F [N]
+        self._slack, self._slack_at = SURE, tick  # as told last, and when
         self._began: Vector = ORIGIN  # the force of the first window, axes of B [N]
         self._felt: Vector = ORIGIN  # by the joints in it [N]
         self.lately: deque[Wrench] = deque(maxlen=BEGINS)
@@ -67,7 +100,7 @@ class BiasFollower:
 
     def restart(self) -> None:
         """The arm may be moved, held by a hand, or the sensor is not used."""
-        self._followed = None
+        self._followed, self._rested = None, 0
 
     def pause(self) -> None:
         """The same, and the next window begins with the next tick in which nobody moves the arm."""
@@ -75,38 +108,44 @@ class BiasFollower:
         self.restart()
 
     def drifted(self, tick: int) -> Slack:
-        """By so much it may have drifted since the arm came to rest."""
+        """By so much it may have drifted since it was last known."""
         return drift(self._sensor, tick - self._quiet)
 
-    def slack(self, tick: int) -> Slack:
-        """At this tick: it may have drifted since the arm came to rest, or what was subtracted then was a hand's."""
-        (force, torque), (x, y, z, a, b, c) = self.drifted(tick), self._taken
-        return Slack(max(force, norm((x, y, z))), max(torque, norm((a, b, c))))
+    def slack(self, estimate: Estimate) -> Slack:
+        """It may have drifted since it was last known, and what was subtracted since then may have been a hand's.
 
-    def begin(self, apart: Wrench, estimate: Estimate) -> Wrench | None:
-        """The arm has come to rest in the tick of the estimate, and feels so much beyond the baseline, axes of F [N, N·m].
-
-        What was subtracted at the last rest may have been a hand's: it may come back, but nothing beside it. Else a hand that
-        is taken for drift would make it likelier that it is at the next rest.
-
-        Returns:
-            What of it the sensor drifted by while the arm was moved; None while a hand holds the arm, for it is more than this,
-            drift, noise and gain explain.
+        Where the load has turned since, the sensor's gain makes a force of it, and its centre a torque, which is not known
+        exactly. All that changes slowly.
         """
-        slack, back = self.drifted(estimate.tick), self._back(apart)
-        x, y, z, a, b, c = added(apart, back, -1.0)
-        if norm((x, y, z)) > slack.force + window_error(self._sensor, estimate, self._weight):
-            return None
-        self._quiet, self._weight = estimate.tick, load_weight(estimate)
-        self._taken = taken = added(back, (*within((x, y, z), slack.force), *within((a, b, c), slack.torque)))
-        return taken
+        if estimate.tick - self._slack_at >= OFTEN:
+            self._slack_at = estimate.tick
+            (force, torque), (x, y, z, a, b, c) = self.drifted(estimate.tick), self._taken
+            turned = math.dist(load_weight(estimate), self._weight)
+            gain = self._sensor.gain * turned
+            force, torque = force + norm((x, y, z)) + gain, torque + norm((a, b, c)) + LEVER * gain + CENTRE * turned
+            self._slack = Slack(force, torque)
+        return self._slack
 
-    def _back(self, apart: Wrench) -> Wrench:
-        """What of what was subtracted at the last rest was a hand's, as far as that explains what is felt now."""
-        x, y, z = self._taken[:3]
-        size = x * x + y * y + z * z
-        share = min(max(-dot((x, y, z), (apart[0], apart[1], apart[2])) / size, 0.0), 1.0) if size > 0.0 else 0.0
-        return added(ZEROS, self._taken, -share)
+    def held(self, apart: Wrench, estimate: Estimate) -> bool:
+        """The arm comes to rest in the tick of the estimate, and feels so much beyond the baseline, axes of F [N, N·m].
+
+        A hand holds it: this is more than drift, noise, gain, and what was subtracted and was a hand's explain.
+        """
+        x, y, z = added(apart, self._taken)[:3]
+        return norm((x, y, z)) > self.drifted(estimate.tick).force + window_error(self._sensor, estimate, self._weight)
+
+    def rested(self, apart: Wrench) -> bool:
+        """One window at rest. It has felt the same for so long that nobody holds it, for a hand trembles."""
+        if self._rested == 0 or math.dist(apart[:3], self._first) > TREMOR:
+            x, y, z = apart[:3]
+            self._rested, self._first = 0, (x, y, z)
+        self._rested += 1
+        return self._rested > STILL
+
+    def know(self, estimate: Estimate) -> None:
+        """What is felt in this tick was all subtracted, and is the sensor's."""
+        self._quiet, self._weight = estimate.tick, load_weight(estimate)
+        self._taken, self._rested = ZEROS, 0
 
     def give_back(self) -> list[Wrench]:
         """What was subtracted lately was a hand's force, axes of F [N, N·m]."""

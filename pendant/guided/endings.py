@@ -10,6 +10,7 @@ from typing import NamedTuple
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
 from pendant.guided.bias_follower import SURE, Slack
+from pendant.guided.steady_wrench import SteadyWrench
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
@@ -56,6 +57,7 @@ class EndingWatch:
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         held: float,
+        wrench: SteadyWrench,
     ) -> None:
         """
         Args:
@@ -64,13 +66,14 @@ class EndingWatch:
             joints: names, base to flange.
             rated: torque of each joint [N·m].
             held: configured payload without the tool, what may drop [kg].
+            wrench: what the flange sensor feels, and whether it changes.
         """
         self._monitor = Monitor(settings.limits.operation)
         self._joints, self._rated = joints, rated
         self._since: EntryValues = reference(estimate, None)
         self._soft = SoftLimits(settings, estimate)
         self._on = settings.unexplained
-        self._unintended = UnintendedMotion(self._on, self._since)
+        self._unintended = UnintendedMotion(self._on, self._since, wrench)
         self._held = held
         self.suspect = False
         self.damping: Damping | None = None
@@ -93,8 +96,6 @@ class EndingWatch:
         baseline: Wrench | None,
         driven: bool,
         slack: Slack = SURE,
-        steady: bool = False,
-        changes: bool = False,
     ) -> Ending | None:
         """One tick; its joint values are finite.
 
@@ -104,8 +105,6 @@ class EndingWatch:
             baseline: the part of F_user that is the sensor's bias, axes of F [N, N·m]; None where the flange sensor is not used.
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
-            steady: what it feels may be its own error altogether.
-            changes: what it feels changed lately as only a hand changes it.
         """
         odds = estimate.lost_odds if self._on.payload and baseline is not None else -math.inf
         stepped = estimate.step_odds if self._on.sensor and baseline is not None else -math.inf
@@ -129,9 +128,7 @@ class EndingWatch:
         if not self._on.motion:
             return None
         use_wrench = baseline is not None
-        values = self._unintended.step(
-            estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque, steady=steady, changes=changes
-        )
+        values = self._unintended.step(estimate, hand, use_wrench=use_wrench, driven=driven, slack=slack, torque=torque)
         return None if values is None else Ending(Kind.STOPPED_MOTION, values)
 
 

@@ -4,6 +4,7 @@ from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
+from pendant.guided.bias_follower import SURE
 from pendant.guided.endings import EndingWatch
 from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
@@ -34,6 +35,7 @@ class FreeArm:
         singularity: how near the arm is to one (FD-4).
         pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
         taken: what it takes for the user's force; None in the tick of entry.
+        slack: what of the wrench at the flange may be the sensor's drift, which must not drive the arm (FD-19).
         suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
@@ -53,6 +55,7 @@ class FreeArm:
         "pressed",
         "pull",
         "singularity",
+        "slack",
         "suspect",
         "taken",
         "user",
@@ -82,8 +85,8 @@ class FreeArm:
         estimate = around.estimate
         self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
-        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload)
-        self._steady = SteadyWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
+        self._steady = wrench = SteadyWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
+        self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload, wrench=wrench)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
         self.user: Vector = ORIGIN
@@ -91,6 +94,7 @@ class FreeArm:
         self.damping: Damping | None = None
         self._hung = upward_in_flange(estimate)
         self.taken: TakenForce | None = None
+        self.slack = SURE
         self.pull = PullCauses(HandFelt.NOBODY)
         self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
@@ -135,10 +139,9 @@ class FreeArm:
         self.singularity = self._singularity.status
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        slack = bias.slack(estimate)
+        self.slack = slack = bias.slack(estimate) if bias.used else SURE
         steady = self._is_steady(around, settings, driven)
-        changes = self._steady.changes
-        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack, steady=steady, changes=changes)
+        ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful or steady
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         self.pressed = self._pressed(settings, tick)

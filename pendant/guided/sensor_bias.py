@@ -69,17 +69,12 @@ class SensorBias:
 
     def slack(self, estimate: Estimate) -> Slack:
         """Of what is told at the flange now."""
-        return self._drift.slack(estimate.tick)
+        return self._drift.slack(estimate)
 
     def wrong(self, tick: int) -> Slack:
         """The bias at most: nothing of what was subtracted may be the sensor's, and it may have drifted meanwhile."""
-        (force, torque), (x, y, z, a, b, c) = self._most(tick), self.drifted or ZEROS
+        (force, torque), (x, y, z, a, b, c) = drift(self.sensor, tick - self._since), self.drifted or ZEROS
         return Slack(norm((x, y, z)) + force, norm((a, b, c)) + torque)
-
-    def _most(self, tick: int) -> Slack:
-        """A good sensor has drifted by so much since the beginning, in all axes together."""
-        force, torque = drift(self.sensor, tick - self._since)
-        return Slack(norm((force, force, force)), norm((torque, torque, torque)))
 
     def apart(self, estimate: Estimate, mean: Wrench) -> Wrench:
         """A mean of F_user without the bias, axes of F [N, N·m]."""
@@ -124,11 +119,15 @@ class SensorBias:
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
             now = mean.mean()
+            apart = self.apart(estimate, now)
             if not self._drift.begun:
-                meanwhile = self._meanwhile(estimate, now, steady)
-                if meanwhile is None:
+                if steady:
+                    self._know(apart, estimate, hand)
+                elif self._drift.held(apart, estimate):
                     return None
-                self._take_off(meanwhile, hand)
+            elif self._drift.rested(apart):
+                gone, most = self.drifted or ZEROS, drift(self.sensor, estimate.tick - self._since)
+                self._know((*_grown(gone[:3], apart[:3], most.force), *_grown(gone[3:], apart[3:], most.torque)), estimate, hand)
             gone = self._drift.step(now, self._felt, least)
             if gone is not None:
                 gone = in_flange(estimate, gone)
@@ -143,17 +142,10 @@ class SensorBias:
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
 
-    def _meanwhile(self, estimate: Estimate, mean: Wrench, steady: bool) -> Wrench | None:
-        """As `BiasFollower.begin`; all of a `steady` wrench is the sensor's."""
-        apart = self.apart(estimate, mean)
-        if steady:
-            self._drift = BiasFollower(self.sensor, estimate.tick, load_weight(estimate))
-            return apart
-        taken, most = self._drift.begin(apart, estimate), self._most(estimate.tick)
-        if taken is None:
-            return None
-        gone = self.drifted or ZEROS
-        return (*_grown(gone[:3], taken[:3], most.force), *_grown(gone[3:], taken[3:], most.torque))
+    def _know(self, gone: Wrench, estimate: Estimate, hand: UserForce) -> None:
+        """So much, axes of F [N, N·m], is all that the sensor has drifted by since its bias was last known."""
+        self._take_off(gone, hand)
+        self._drift.know(estimate)
 
     def _take_off(self, gone: Wrench, hand: UserForce) -> Wrench:
         """So much, axes of F [N, N·m], is an offset of the sensor. Returns what it drifted by in all."""
@@ -166,7 +158,7 @@ class SensorBias:
 def _grown(gone: tuple[float, ...], more: tuple[float, ...], most: float) -> Vector:
     """What of `more` comes to `gone`, so that the sum is at most so large, or as `gone` was.
 
-    Else many short rests, in each of which a hand was taken for drift, would add up to what no good sensor drifts by.
+    Else rests in which a hand was taken for drift would add up to what no good sensor drifts by.
     """
     x, y, z = within([a + b for a, b in zip(gone, more, strict=True)], max(most, math.hypot(*gone)))
     return x - gone[0], y - gone[1], z - gone[2]

@@ -7,22 +7,21 @@ is known by that. An error stays what it is until the arm rests: then it is know
 
 What did change in that time has two values x and y of which one at least is a hand's, however wrong the bias b is: of
 |x - b| and |y - b| the larger is half of |x - y| or more. So a hand that turns round is known after minutes, too, in which the
-sensor may have drifted by more than that hand pushes.
+sensor may have drifted by more than that hand pushes. The same holds since an arm went on its own: who changes less than that
+while it goes as far as it may alone cannot be told from an error.
 """
 
 import math
 from collections import deque
+from operator import sub
 
-from pendant.guided.bias_follower import Slack
-from pendant.limits.validity import WINDOW
+from pendant.guided.bias_follower import OFTEN, Slack
+from pendant.limits.parameters import ZEROS
 from pendant.sensor.odds import HALF
 from pendant.sensor.sensor_errors import LEVER, gain_error, load_weight, noise_error, window_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
-
-OFTEN = WINDOW // 5
-"""Ticks from one window's end to the next one's: the windows overlap, so that a hand that lets go is missed soon."""
 
 
 class SteadyWrench:
@@ -31,9 +30,25 @@ class SteadyWrench:
     Attributes:
         steady: it has not changed for so long, while the arm moved.
         changes: within that time it changed as only a hand changes it.
+        turned: it did since the way began (`begin_way`).
     """
 
-    __slots__ = ("_count", "_first", "_force", "_lately", "_needed", "_sensor", "_weight", "_windows", "changes", "steady")
+    __slots__ = (
+        "_count",
+        "_first",
+        "_force",
+        "_high",
+        "_lately",
+        "_low",
+        "_needed",
+        "_sensor",
+        "_way_weight",
+        "_weight",
+        "_windows",
+        "changes",
+        "steady",
+        "turned",
+    )
 
     def __init__(self, sensor: SensorSpec, needed: int, force: float) -> None:
         """
@@ -48,10 +63,17 @@ class SteadyWrench:
         self._first: Wrench | None = None  # window since which it is the same, axes of F [N, N·m]
         self._weight: Vector = ORIGIN  # of the load in it, axes of F [N]
         self._windows = 0  # that were the same as it
-        self.steady = self.changes = False
+        self._low: Wrench | None = None  # the least of each axis since the way began, axes of F [N, N·m]; None: no window yet
+        self._high: Wrench = ZEROS  # the most
+        self._way_weight: Vector = ORIGIN  # of the load as it began, axes of F [N]
+        self.steady = self.changes = self.turned = False
+
+    def begin_way(self) -> None:
+        """An arm goes on its own from here."""
+        self._low, self.turned = None, False
 
     def due(self) -> bool:
-        """One tick; whether a window ends with it."""
+        """One tick; whether a window ends with it. Windows overlap, so that a hand that lets go is missed soon."""
         self._count = (self._count + 1) % OFTEN
         return self._count == 0
 
@@ -60,6 +82,7 @@ class SteadyWrench:
         self._begin()
         self._lately.clear()
         self.changes = False
+        self.begin_way()
 
     def step(self, apart: Wrench, estimate: Estimate, *, moves: bool, wrong: Slack) -> None:
         """One window.
@@ -73,6 +96,7 @@ class SteadyWrench:
         noise, weight = noise_error(self._sensor, estimate), load_weight(estimate)
         self.changes = self._changes(apart, estimate, noise)
         self._lately.append((apart, weight))
+        self.turned = self._turns(apart, estimate, noise, weight)
         hand = math.hypot(*apart[:3]) > wrong.force + noise or math.hypot(*apart[3:]) > wrong.torque + LEVER * noise
         if hand or not (moves or self.steady):
             self._begin()
@@ -96,6 +120,18 @@ class SteadyWrench:
             if change > least and change > least + gain_error(self._sensor, estimate, weight):
                 return True
         return False
+
+    def _turns(self, apart: Wrench, estimate: Estimate, noise: float, weight: Vector) -> bool:
+        """The same since the way began: of its windows the extremes of each axis are kept. The load's weight is so [N] now."""
+        low, high = self._low, self._high
+        if low is None:
+            self._low = self._high = apart
+            self._way_weight = weight
+            return False
+        self._low, self._high = low, high = tuple(map(min, low, apart)), tuple(map(max, high, apart))
+        x, y, z, a, b, c = map(sub, high, low)
+        change, least = max(x, y, z, max(a, b, c) / LEVER), self._force / HALF + noise
+        return change > least and change > least + gain_error(self._sensor, estimate, self._way_weight)
 
     def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:
         """Noise and gain explain how far apart the two are; as the arm brakes, it may be as far as no hand's force is."""

@@ -5,8 +5,9 @@ import math
 from pendant.events.event import Values
 from pendant.guided.bias_follower import SURE, Slack
 from pendant.guided.settings import Unexplained
+from pendant.guided.steady_wrench import SteadyWrench
 from pendant.guided.user_force import UserForce
-from pendant.guided.work import Work
+from pendant.guided.work import NO_WRENCH, Forces, Work
 from pendant.limits.parameters import EntryValues
 from pendant.sensor.hand_model import LIGHT
 from pendant.sensor.odds import HALF
@@ -64,17 +65,19 @@ class UnintendedMotion:
         "_stretch",
         "_ticks",
         "_whole",
+        "_wrench",
         "doubtful",
         "led",
     )
 
-    def __init__(self, on: Unexplained, since: EntryValues) -> None:
+    def __init__(self, on: Unexplained, since: EntryValues, wrench: SteadyWrench) -> None:
         """
         Args:
             on: settings.
             since: what held at entry.
+            wrench: what the flange sensor feels, and whether it changes.
         """
-        self._on, self._allowed = on, ticks(on.time)
+        self._on, self._allowed, self._wrench = on, ticks(on.time), wrench
         self._ticks = 0  # of the stretch
         self._caused = False  # a hand is felt in it, or a wall or another device drives the arm
         self._doubted = 0  # ticks of the doubt
@@ -93,8 +96,6 @@ class UnintendedMotion:
         driven: bool,
         slack: Slack = SURE,
         torque: Vector = ORIGIN,
-        steady: bool = False,
-        changes: bool = False,
     ) -> Values | None:
         """One tick; its joint values are finite. Returns what is told of a motion that has lasted too long, or None.
 
@@ -105,32 +106,37 @@ class UnintendedMotion:
             driven: a wall or another device moves the arm, or holds it.
             slack: what may be the sensor's drift.
             torque: of the hand at the flange, axes of B [N·m].
-            steady: what the flange sensor feels may be its own error altogether.
-            changes: what it feels changed lately as only a hand changes it.
         """
+        steady = self._wrench.steady
         x, y, z = hand.user
         least = self._on.force + slack.force
-        feels = not steady and x * x + y * y + z * z >= least * least
-        caused = driven or (feels if use_wrench else estimate.joints_feel is JointsFeel.HAND)
-        wrench, usual = NO_WRENCH, norm(hand.usual)
+        if use_wrench:
+            caused = driven or (not steady and x * x + y * y + z * z >= least * least and hand.surely(least))
+        else:
+            caused = driven or estimate.joints_feel is JointsFeel.HAND
+        wrench, usual = NO_WRENCHES, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force and not steady:
-            wrench = _beyond(hand.usual, usual, slack.force), _beyond(torque, norm(torque), slack.torque)
+            (force, drifts), (turn, drifts_turn) = (
+                _split(hand.usual, usual, slack.force),
+                _split(torque, norm(torque), slack.torque),
+            )
+            wrench = (force, turn), (drifts, drifts_turn)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench)
         if way is None:
             return None
-        if changes and use_wrench:
+        if self._wrench.changes and use_wrench:
             # Who was there a moment ago may be there: nothing helps, and it ends as far from here.
-            self._ticks, self._helped = 0, 0.0
-            self._whole.begin(estimate)
+            self._ticks = 0
+            self._begin(estimate)
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
     def _too_long(
-        self, estimate: Estimate, wrench: tuple[Vector, Vector], *, speed: float, caused: bool, use_wrench: bool
+        self, estimate: Estimate, wrench: tuple[Forces, Forces], *, speed: float, caused: bool, use_wrench: bool
     ) -> Way | None:
-        """One tick with this wrench of a hand at the flange [N, N·m], which has this speed [m/s].
+        """One tick with this wrench of a hand at the flange, and this drift [N, N·m]; the flange has this speed [m/s].
 
         Returns which way is too long.
         """
@@ -153,7 +159,7 @@ class UnintendedMotion:
         if not (moves or self._at_rest):
             self._at_rest, self._helped = True, 0.0
             if use_wrench:
-                whole.begin(estimate)
+                self._begin(estimate)
         too_long, far = self._since_rest(estimate, wrench) if use_wrench else self._unfelt(estimate, moves)
         if too_long is not None:
             return too_long
@@ -169,11 +175,13 @@ class UnintendedMotion:
         waits = self._doubted < HALF * self._allowed
         return stretch if moves and not (self.led or waits) and self._lasts(1.0) else None
 
-    def _since_rest(self, estimate: Estimate, wrench: tuple[Vector, Vector]) -> tuple[Way | None, bool]:
+    def _since_rest(self, estimate: Estimate, wrench: tuple[Forces, Forces]) -> tuple[Way | None, bool]:
         """The way of an arm that was at rest, if it is too long, and whether it is more than half of what is allowed."""
         whole, away = self._whole, self._on.distance
         if not self._at_rest:
             return None, False
+        if self._wrench.turned:
+            self._begin(estimate)
         whole.work.step(estimate, *wrench)
         length = whole.length(estimate)
         paid = whole.work.paid
@@ -200,6 +208,12 @@ class UnintendedMotion:
         length, away = way.length(estimate), self._on.distance
         return (way if length > away else None), fallen or length > HALF * away
 
+    def _begin(self, estimate: Estimate) -> None:
+        """From here on an arm that was at rest goes on its own, if nobody leads it."""
+        self._helped = 0.0
+        self._whole.begin(estimate)
+        self._wrench.begin_way()
+
     def _lasts(self, share: float) -> bool:
         """Nobody has led the arm for this share of the time that it has."""
         return self._stretch.work.lasts(round(share * self._allowed))
@@ -208,11 +222,11 @@ class UnintendedMotion:
         self.doubtful, self._doubted = False, 0
 
 
-NO_WRENCH = (ORIGIN, ORIGIN)
+NO_WRENCHES = (NO_WRENCH, NO_WRENCH)
 
 
-def _beyond(value: Vector, size: float, slack: float) -> Vector:
-    """What of a value of this size is certain."""
+def _split(value: Vector, size: float, slack: float) -> tuple[Vector, Vector]:
+    """What of a value of this size is certain, and what is not."""
     share = max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
-    x, y, z = value
-    return share * x, share * y, share * z
+    (x, y, z), rest = value, 1.0 - share
+    return (share * x, share * y, share * z), (rest * x, rest * y, rest * z)

@@ -75,6 +75,17 @@ class UserForce:
         """Size of the user's force as the flange sensor alone tells it [N]; 0 where it has not been used."""
         return norm(self._by_sensor)
 
+    def surely(self, least: float) -> bool:
+        """The flange sensor and the joints tell at least so much [N], whatever of what was steady along gravity is a payload's.
+
+        That may have been a hand's as well: once it has gone, what was taken off for it seems to pull the other way.
+        """
+        x, y, z = self.user
+        ux, uy, uz = self._up
+        given = min(max(-(x * ux + y * uy + z * uz), min(self._slow, 0.0)), max(self._slow, 0.0))
+        x, y, z = x + given * ux, y + given * uy, z + given * uz
+        return x * x + y * y + z * z >= least * least
+
     def shift(self, force: Vector) -> None:
         """The sensor's bias has changed by `force`, axes of F [N], which is no user force."""
         x, y, z = force

@@ -19,6 +19,11 @@ from pendant.tick.pose import ORIGIN, Vector, dot
 LEFT = 0.15
 """Share of its friction that the control law leaves to whoever leads the arm; `sim.control.free_drive_law` takes the rest off."""
 
+Forces = tuple[Vector, Vector]
+"""A force and a torque at the flange, axes of B [N, N·m]."""
+
+NO_WRENCH: Forces = (ORIGIN, ORIGIN)
+
 
 class Work:
     """What was paid of the friction that is left, over one stretch of motion.
@@ -45,19 +50,27 @@ class Work:
         self._rubbed = 0.0  # what is asked for of the friction [J]
         self.unpaid = 0.0
 
-    def step(self, estimate: Estimate, force: Vector = ORIGIN, torque: Vector = ORIGIN, *, counts: bool = True) -> None:
-        """One tick of motion, with this wrench of a hand at the flange, axes of B [N, N·m].
+    def step(self, estimate: Estimate, wrench: Forces = NO_WRENCH, drift: Forces = NO_WRENCH, *, counts: bool = True) -> None:
+        """One tick of motion.
 
         What the joints feel pays only where it `counts`: beside a flange sensor that is not used it may be the sensor's error.
+
+        Args:
+            estimate: of this tick.
+            wrench: of a hand at the flange, axes of B [N, N·m].
+            drift: what is felt there and may be the sensor's drift: the joints would feel that as a hand which does the opposite.
+            counts: what the joints feel does.
         """
         x, y, z, a, b, c = estimate.v_F.tolist()
-        done = dot(force, (x, y, z)) + dot(torque, (a, b, c))
-        rubbed = 0.0
+        (force, torque), (more, turn) = wrench, drift
+        done = rubbed = 0.0
         joints = zip(estimate.qd.tolist(), estimate.tau_hand.tolist(), estimate.friction.tolist(), strict=True)
         for speed, hand, friction in joints:
-            done += hand * speed * counts
+            done += hand * speed
             rubbed += friction * speed
-        done *= TICK
+        if done > 0.0:
+            done = max(done + min(dot(more, (x, y, z)) + dot(turn, (a, b, c)), 0.0), 0.0)
+        done = (done * counts + dot(force, (x, y, z)) + dot(torque, (a, b, c))) * TICK
         rubbed *= HALF * LEFT * TICK
         self._ticks += 1
         self._slower = self._energy - estimate.energy

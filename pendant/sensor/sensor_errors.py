@@ -10,6 +10,9 @@ from pendant.tick.pose import Vector, flat, turned_back
 FALSE_ALARM = 5.0
 """Standard deviations of a window's mean that noise may add: three axes together exceed it once in 65,000 windows."""
 
+CENTRE = 0.01
+"""So far at most is a load's centre from where it was told to be [m]: bench `payload` draws it so."""
+
 LEVER = 0.2
 """A load's centre lies within so much of the flange: a gain error of its weight seems a torque of at most so much [m]."""
 

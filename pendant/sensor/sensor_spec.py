@@ -15,6 +15,7 @@ class SensorSpec(NamedTuple):
     noise_acceleration: float = 0.1  # of the accelerometer that weighs the load [m/s²]
     gain: float = 0.014  # error in share of what is measured: 1 % of the axis, and 0.2 % of each of the two others
     warm_up: float = 600.0  # time constant with which the drift dies away [s]
+    quickest: float = 300.0  # that of the sensor which warms up fastest [s]
     walk_force: float = 0.3  # standard deviation of the bias' wandering when it is warm [N]
     walk_time: float = 1800.0  # time constant of that [s]
 

@@ -136,7 +136,8 @@ class FreeDriveLaw:
             help = self._damping.help
         if estimate.wrench_valid and decision.amplified:
             gain = help * decision.gain
-            self._hand.ask((estimate.F_user, decision.baseline, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
+            felt = estimate.F_user, decision.baseline, decision.slack
+            self._hand.ask((*felt, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
             if locks is not None:
                 constraint.project(self._hand.capped, gain, torque)
         else:

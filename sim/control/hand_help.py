@@ -32,6 +32,7 @@ class Asking(NamedTuple):
 
     F_user: Array  # (6,) axes of B [N, N·m]
     baseline: tuple[float, ...]  # of the sensor (6,) axes of F: it turns with the flange
+    slack: tuple[float, float]  # so much of force [N] and torque [N·m] may be its drift
     R: Array  # orientation of the flange (3, 3)
     jacobian: Array  # of the flange (6, n), linear first
     cap: float  # largest force that is helped [N]
@@ -82,7 +83,9 @@ class HandHelp:
         own["asked"], own["felt"], own["usual"], own["began"] = 0.0, 0.0, estimate.tau_ext, estimate.q
         own["late"] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
 
-    def ask(self, asking: tuple[Array, tuple[float, ...], Array, Array, float, float], torque: Array) -> None:
+    def ask(
+        self, asking: tuple[Array, tuple[float, ...], tuple[float, float], Array, Array, float, float], torque: Array
+    ) -> None:
         """Add to `torque` (n,) [N·m] what the hand at the flange asks for; `asking` as `Asking`."""
         _ask(self._record, asking, torque)
 
@@ -99,24 +102,36 @@ class HandHelp:
 
 @kernel
 def _ask(law, asking, torque) -> None:
-    """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange."""
+    """What the hand asks of each joint. The baseline is an offset of the sensor: it turns with the flange.
+
+    What may be drift asks for nothing. So no drift moves the arm, and who moves it has been felt.
+    """
     asking = Asking(*asking)
     own = law[0]
-    F_user, baseline, R, jacobian, cap, gain = asking
+    F_user, baseline, slack, R, jacobian, cap, gain = asking
     wrench = np.empty(6)
     for k in range(3):
         wrench[k], wrench[3 + k] = F_user[k], F_user[3 + k]
         for m in range(3):
             wrench[k] -= R[k, m] * baseline[m]
             wrench[3 + k] -= R[k, m] * baseline[3 + m]
-    size = math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
+    pull, turn = _share(wrench[:3], slack[0]), _share(wrench[3:], slack[1])
+    size = pull * math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
     share = cap / size if size > cap else 1.0
     for i in range(torque.size):
-        asked = 0.0
-        for j in range(6):
-            asked += jacobian[j, i] * wrench[j]
-        own.hand[i], own.capped[i] = asked, share * asked
+        pulled = turned = 0.0
+        for k in range(3):
+            pulled += jacobian[k, i] * wrench[k]
+            turned += jacobian[3 + k, i] * wrench[3 + k]
+        own.hand[i], own.capped[i] = pulled + turned, share * (pull * pulled + turn * turned)
         torque[i] += gain * own.capped[i]
+
+
+@kernel
+def _share(value, slack):
+    """What of a value (3,) is more than may be drift, as a share of it."""
+    size = math.sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2])
+    return max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
 
 
 @kernel

@@ -11,23 +11,26 @@ hand is there where a joint's change is more than `CONTACT` deviations of that. 
 error stays what it is for as long as the arm is there, and would lead it. What was felt at entry is no hand's.
 
 Far from there little of that force is left. But a hand comes faster than the arm's posture changes: a change against what was
-felt lately, while nothing was a hand's, is told in the same way, and makes a force as a whole. An arm at rest is followed, too,
-as long as the change since entry may be errors: so a hand that comes too slowly to be seen is forgotten once it has gone. What
-was felt lately tells better than entry. Who was felt a moment ago, and turns round, is believed whichever of both says that it
-leads the arm.
+felt lately, while nothing was a hand's, is told in the same way, and makes a force as a whole, of the joints that feel it for
+sure. An arm at rest is followed, too, as long as the change since entry may be errors: so a hand that comes too slowly to be seen
+is forgotten once it has gone. But what was felt lately may have been a hand that rested on the arm, and would seem to pull the
+other way once it has gone. So a change is a hand's only if it is one against what was felt before, too, which follows so slowly
+that no hand holds still for as long.
+
+What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
+believed whichever of both says that it leads the arm.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.sensor.hand_model import KEEPS
+from pendant.sensor.hand_model import KEEPS, STEADY
 from pendant.settings.schema import ticks
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, left_over, noise, variance
-from sim.estimation.transmission_torque import CONTACT
+from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, beyond, left_over, noise
 from sim.flange.flange_forces import best_force
 from sim.motion.references import STANDING
 from sim.rigid_body.newton_euler import NewtonEuler
@@ -35,10 +38,13 @@ from sim.sensing.calibration import MOTOR_CONSTANT
 
 Array = NDArray[np.float64]
 
-ENTRY, LATELY = range(2)
+ENTRY, LATELY, BEFORE = range(3)
 
 LASTS = ticks(KEEPS)
 """Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
+
+LONG = ticks(STEADY)
+"""Ticks of the time constant with which what was felt before follows."""
 
 
 class LinkHand:
@@ -58,10 +64,10 @@ class LinkHand:
         self._rigid, self._momentum = rigid.record, momentum
         self._known = momentum.record, momentum.errors.record
         self._record = record(
-            felt=(2, arm.n, 1 + CAUSES),  # torque and causes, smoothed, as free-drive began and lately
-            bias=(2, ZERO),  # of the flange sensor then, axes of F [N, N·m]
-            ticks="2i8",  # since then
-            lasts="i8",  # ticks for which who was felt may be there still
+            felt=(3, arm.n, 1 + CAUSES),  # torque and causes, smoothed, as free-drive began, lately and before
+            bias=(3, ZERO),  # of the flange sensor then, axes of F [N, N·m]
+            ticks="3i8",  # since then
+            lasts=f"{arm.n}i8",  # ticks for which who was felt by a joint may be there still
             torque=(arm.n,),
             sure=(arm.n,),  # what of it is beyond the errors
             force=(3,),
@@ -71,7 +77,7 @@ class LinkHand:
 
     def forget(self) -> None:
         """Free-drive is to begin, or the sensor is out: nothing is felt."""
-        self._own["ticks"] = self._own["lasts"] = 0
+        self._own["ticks"], self._own["lasts"] = 0, 0
         self.torque[:], self.force[:] = 0.0, 0.0
 
     def update(self, bias: tuple[float, ...], qd: Array, by_deflection: NDArray[np.bool_]) -> None:
@@ -94,23 +100,32 @@ def _update(memory, known, model, told) -> None:
     bias, qd, by_deflection = told
     if own.ticks[0] == 0:
         own.felt[:] = errors.felt
-        _keep(own, bias, ENTRY)
-        _keep(own, bias, LATELY)
+        for when in range(3):
+            _keep(own, bias, when)
     own.ticks += 1
+    own.ticks[BEFORE] = min(own.ticks[BEFORE], LONG)
     away = _feel(own, known, (bias, by_deflection), ENTRY)
     torque, sure = own.torque.copy(), own.sure.copy()
-    lately = _feel(own, known, (bias, by_deflection), LATELY)
-    stands = True
-    for speed in qd:
-        stands = stands and abs(speed) < STANDING
-    if not away and (stands or not lately):
-        own.felt[LATELY] += FOLLOW * (errors.felt - own.felt[LATELY])
-        _keep(own, bias, LATELY)
-    own.lasts = LASTS if lately or away else max(own.lasts - 1, 0)
+    _feel(own, known, (bias, by_deflection), BEFORE)
+    before = own.sure.copy()
+    _feel(own, known, (bias, by_deflection), LATELY)
+    lately, stands = False, True
+    for i in range(qd.size):
+        new = own.sure[i] != 0.0 and before[i] != 0.0
+        lately = lately or new
+        own.lasts[i] = LASTS if new or sure[i] != 0.0 else max(own.lasts[i] - 1, 0)
+        if own.lasts[i] == 0:
+            own.torque[i] = torque[i] = 0.0
+        stands = stands and abs(qd[i]) < STANDING
+    if not away:
+        own.felt[BEFORE] += (errors.felt - own.felt[BEFORE]) / LONG
+        for k in range(ZERO):
+            own.bias[BEFORE, k] += (bias[k] - own.bias[BEFORE, k]) / LONG
+        if stands or not lately:
+            own.felt[LATELY] += FOLLOW * (errors.felt - own.felt[LATELY])
+            _keep(own, bias, LATELY)
     if not lately and (away or _power(torque, qd) > _power(own.torque, qd)):
         own.torque[:] = torque
-    if own.lasts == 0:
-        own.torque[:] = 0.0
     if lately:
         best_force(jacobian, own.torque, own.force)
     elif away:
@@ -143,15 +158,14 @@ def _feel(own, known, told, when) -> bool:
     for i in range(own.torque.size):
         for k in range(1 + CAUSES):
             change[k] = errors.felt[i, k] - felt[i, k]
-        left = left_over(errors.shares[i], change[0], change[1:])
-        wrong = variance(errors, i, change[1:]) + noise(momentum.doubt[i], change[1])
+        rest = noise(momentum.doubt[i], change[1])
         if not by_deflection[i]:
-            wrong += (MOTOR_CONSTANT * change[1]) ** 2
+            rest += (MOTOR_CONSTANT * change[1]) ** 2
         for k in range(ZERO):
             lever = errors.felt[i, 2 + k]
-            left += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
-            wrong += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
-        own.torque[i] = left
-        own.sure[i] = np.copysign(max(abs(left) - CONTACT * np.sqrt(wrong), 0.0), left)
+            change[0] += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
+            rest += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
+        own.torque[i] = left_over(errors.shares[i], change[0], change[1:])
+        own.sure[i] = beyond(errors, i, change, rest)
         found = found or own.sure[i] != 0.0
     return found

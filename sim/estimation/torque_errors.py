@@ -154,19 +154,38 @@ def left_over(shares, torque, causes):
 
 @kernel
 def variance(own, i, causes):
-    """Of what these causes make of joint i's torque, as well as their shares are known [N²·m²]."""
-    known = 0.0
-    for k in range(CAUSES):
-        for m in range(CAUSES):
-            known += causes[k] * own.covariance[_place(i, k), _place(i, m)] * causes[m]
+    """Of what these causes make of joint i's torque, as well as their shares are known [N²·m²].
+
+    The covariance is symmetric, so half of it is read: of the joint's own causes, of the zero's, and of both.
+    """
+    P, first, known = own.covariance, ZERO + OWN * i, 0.0
+    for k in range(OWN):
+        cause, row = causes[0 if k == 0 else ZERO + k], 0.0
+        for m in range(k):
+            row += P[first + k, first + m] * causes[0 if m == 0 else ZERO + m]
+        for m in range(ZERO):
+            row += P[first + k, m] * causes[1 + m]
+        known += cause * (2.0 * row + P[first + k, first + k] * cause)
+    for k in range(ZERO):
+        row = 0.0
+        for m in range(k):
+            row += P[k, m] * causes[1 + m]
+        known += causes[1 + k] * (2.0 * row + P[k, k] * causes[1 + k])
     return max(known, 0.0)
 
 
 @kernel
-def _beyond(own, doubt, i, felt) -> bool:
-    """A torque of joint i with its causes, or a change of both, is more than these and the rest may be wrong by."""
+def beyond(own, i, felt, rest):
+    """How much of a torque of joint i is more than its causes and the rest may be wrong by [N·m]: 0 where nothing is.
+
+    `felt` is the torque and its causes, or the change of both; `rest` the variance of what they do not explain [N²·m²]. Where it
+    alone is as large, theirs is not asked for.
+    """
     left = left_over(own.shares[i], felt[0], felt[1:])
-    return left * left > CONTACT**2 * (variance(own, i, felt[1:]) + noise(doubt[i], own.causes[i, 0]))
+    if left * left <= CONTACT**2 * rest:
+        return 0.0
+    size = abs(left) - CONTACT * np.sqrt(variance(own, i, felt[1:]) + rest)
+    return np.copysign(size, left) if size > 0.0 else 0.0
 
 
 @kernel
@@ -184,13 +203,16 @@ def touched(errors, residual, doubt, by_deflection) -> bool:
 
     What is known little may be large, but it changes no more than its causes do: a hand that comes is seen by that.
     """
-    own, found = errors[0], False
+    own, found, change = errors[0], False, np.empty(1 + CAUSES)
     for i in range(residual.size):
         own.felt[i, 0] += SMOOTH * (residual[i] - own.felt[i, 0])
         for k in range(CAUSES):
             own.felt[i, 1 + k] += SMOOTH * (own.causes[i, k] - own.felt[i, 1 + k])
         if by_deflection[i] and not found:
-            found = _beyond(own, doubt, i, own.felt[i]) or _beyond(own, doubt, i, own.felt[i] - own.rest[i])
+            rest = noise(doubt[i], own.causes[i, 0])
+            for k in range(1 + CAUSES):
+                change[k] = own.felt[i, k] - own.rest[i, k]
+            found = beyond(own, i, own.felt[i], rest) != 0.0 or beyond(own, i, change, rest) != 0.0
     if not found:
         own.rest += FOLLOW * (own.felt - own.rest)
     return found

@@ -38,6 +38,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, TOUCH, TREMOR
+from pendant.sensor.sensor_errors import CENTRE
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
 from sim.sensing.calibration import WRENCH_CROSS_TALK, WRENCH_GAIN
@@ -53,8 +54,8 @@ LONGEST = 10
 SURE = 1.0 / 2.576
 """Standard deviation of the payload's mass [kg]: the activation sequence refuses 99 of 100 payloads that are wrong by 1 kg."""
 
-CENTRE = 0.006
-"""Standard deviation of the payload's centre in each direction [m]: bench `payload` draws it within 10 mm."""
+CENTRE_AXIS = CENTRE / math.sqrt(3.0)
+"""Standard deviation of the payload's centre in each direction [m]."""
 
 GAIN = WRENCH_GAIN + 2.0 * WRENCH_CROSS_TALK / 5.0
 """Error of the sensor in share of what it measures, at most."""
@@ -196,7 +197,7 @@ def payload(own, seen, change, kind):
         R, lever = loaded if kind == MORE else noise(own, own.rest, axis, 0.0), lever_of(axis)
         offset = (GAIN * weight * lever) ** 2
         if axis == 1:
-            offset += (CENTRE * weight) ** 2
+            offset += (CENTRE_AXIS * weight) ** 2
         if kind == FREED:
             offset += (own.offset * lever) ** 2
         else:

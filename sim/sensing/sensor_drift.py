@@ -115,5 +115,6 @@ def sensor_spec(arm: Arm) -> SensorSpec:
     shaken = SensorSpec().noise_acceleration if accelerometer is None else accelerometer.noise
     spec, wander = SensorSpec(*drift, *offset, *noise, shaken), force_torque.drift
     if wander is None:
-        return spec._replace(walk_force=0.0)
-    return spec._replace(warm_up=wander.warm_up, walk_force=wander.walk_force, walk_time=wander.walk_time)
+        return spec._replace(walk_force=0.0, quickest=math.inf)
+    quickest = SPREAD[0] * wander.warm_up
+    return spec._replace(warm_up=wander.warm_up, quickest=quickest, walk_force=wander.walk_force, walk_time=wander.walk_time)

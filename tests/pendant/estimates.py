@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
+from pendant.guided.steady_wrench import SteadyWrench
 from pendant.sensor.sensor_spec import SensorSpec
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 
 N = 6
@@ -114,3 +116,9 @@ def _vector(value: float | list[float], length: int) -> NDArray[np.float64]:
 
 def _wrench(linear: float | list[float], angular: float | list[float]) -> NDArray[np.float64]:
     return _zeros(6) if linear == angular == 0.0 else np.array(_listed(linear, 3) + _listed(angular, 3))
+
+
+def watched() -> SteadyWrench:
+    """What tells whether the wrench changes, as free-drive has it; nothing was felt yet."""
+    on = Settings().unexplained
+    return SteadyWrench(SENSOR, ticks(on.time), on.force)

@@ -10,6 +10,7 @@ from pendant.contact.contact_change import Contact
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind
 from pendant.freedrive.periods import Remaining
+from pendant.guided.bias_follower import SURE
 from pendant.haptics import Pattern, Shake
 from pendant.limits.axis_locks import axis_locks, locks_of
 from pendant.motion.script_requests import Guided
@@ -41,7 +42,7 @@ class Parts:
     def __init__(self, settings: Settings = SETTINGS, /, **changes: object) -> None:
         self.free = SimpleNamespace(
             phase=Phase.HELD, pull="pull",
-            arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful", taken="taken"),
+            arm=SimpleNamespace(damping="damping", singularity="singularity", doubtful="doubtful", slack="slack", taken="taken"),
             helping=True, balance="balance",
             baseline=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0), zones=(0.5, 0.6), idle=False,
             periods=lambda: PERIODS, walls=lambda: ("wall",), monitored=lambda: ("monitored",),
@@ -87,7 +88,7 @@ class Parts:
             "walls": ("wall",), "grip": "in the middle",
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
-            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "doubtful": "doubtful",
+            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "slack": "slack", "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
             "force": "force", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
         } | changes  # fmt: skip
@@ -103,6 +104,7 @@ TRIED = {
     "phase": Phase.SEQUENCE,
     "damping": None,
     "singularity": None,
+    "slack": SURE,
     "doubtful": False,
     "locks": None,
     "taken": None,
@@ -116,7 +118,7 @@ TRIED = {
         ({"helping": False}, {"gain": 0.0}),
         ({"state": ProgramState.RUNNING}, {"program": ProgramState.RUNNING}),
         ({"state": ProgramState.STOPPED}, {"program": ProgramState.STOPPED, "step": 0}),
-        ({"arm": None}, {"damping": None, "singularity": None, "doubtful": False, "taken": None}),
+        ({"arm": None}, {"damping": None, "singularity": None, "slack": SURE, "doubtful": False, "taken": None}),
         ({"idle": True}, {"periods": ()}),
         ({"mode": Mode.RUN}, {"mode": Mode.RUN, "locks": None}),
         ({"guided": Guided()}, {}),
@@ -156,7 +158,8 @@ def test_without_the_switch_no_periods_are_told() -> None:
 
 LASTING = {
     "mode": Mode.RUN, "safety": Safety.NORMAL, "phase": Phase.PERIOD, "helping": False, "baseline": (0.0,) * 6, "grip": None,
-    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other", taken="other"), "zones": (), "move": None,
+    "arm": SimpleNamespace(damping="other", singularity="other", doubtful="other", slack="other", taken="other"),
+    "zones": (), "move": None,
     "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
     "wizard": SimpleNamespace(progress="other"),

@@ -20,7 +20,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Mode
 from pendant.tick.pose import Vector, Wrench
 from pendant.tick.state import state_of
-from tests.pendant.estimates import MOVES, SENSOR, estimate
+from tests.pendant.estimates import MOVES, SENSOR, estimate, watched
 from tests.pendant.telling import whole
 
 JOINTS = ("base", "shoulder", "elbow", "wrist_1", "wrist_2", "wrist_3")
@@ -38,7 +38,8 @@ class Free:
     def __init__(self, baseline: tuple[float, ...] = ZEROS, held: float = 0.0, **changes: float | bool) -> None:
         settings = apply(Settings(), {name.replace("__", "."): value for name, value in changes.items()})
         self.hand = UserForce(estimate(), baseline, SENSOR.offset_force)
-        self.operation, self.baseline = EndingWatch(estimate(), settings, joints=JOINTS, rated=RATED, held=held), baseline
+        self.baseline = baseline
+        self.operation = EndingWatch(estimate(), settings, joints=JOINTS, rated=RATED, held=held, wrench=watched())
         self.ticks, self.slack = 0, SURE
 
     def see(self, value: Estimate, use_wrench: bool = True, driven: bool = False, drifted: Wrench = ZEROS) -> Ending | None:

@@ -284,7 +284,7 @@ def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_t
     assert (taken.doubts is not None) is sensor
     if taken.doubts is not None:
         assert taken.doubts.change == pytest.approx((20.0, 0.0, 0.0))
-        assert taken.doubts.slack == pytest.approx(SENSOR.drift_force * 50 * TICK)
+        assert taken.doubts.slack == pytest.approx(math.sqrt(3.0) * SENSOR.offset_force * 50 * TICK / SENSOR.quickest, rel=1e-3)
         assert taken.doubts.hung == (0.0, 0.0, 1.0)
     free.see(estimate(wrench_valid=False))
     assert free.arm.taken == (free.arm.user, None)

@@ -150,3 +150,45 @@ def test_with_what_is_forgotten_nothing_is_compared() -> None:
     assert not watch.changes
     watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
     assert not watch.changes
+
+
+@pytest.mark.parametrize("axis", range(6))
+@pytest.mark.parametrize(("share", "turned"), [(-1.01, True), (-0.99, False), (0.99, False), (1.01, True)])
+@pytest.mark.parametrize("between", [0, 50])
+def test_since_the_way_began_a_hands_change_is_known_however_slow_it_is(
+    axis: int, share: float, turned: bool, between: int
+) -> None:
+    by = share * (2.0 * FORCE + NOISE) * (LEVER if axis >= 3 else 1.0)
+    steps = [changed(axis, by * k / 51) for k in range(1, 51)][:between]
+    watch = seen(WRENCH, *steps, changed(axis, by), *[WRENCH] * 9, wrong=Slack(99.0, 99.0))
+    assert watch.turned is turned
+
+
+def test_it_is_compared_with_all_windows_since() -> None:
+    """Of two that are each too little off the first one."""
+    by = 0.6 * (2.0 * FORCE + NOISE)
+    assert not seen(WRENCH, changed(1, by)).turned
+    assert seen(WRENCH, changed(1, by), changed(1, -by)).turned
+
+
+@pytest.mark.parametrize("how", ["begin_way", "forget"])
+def test_where_a_way_begins_nothing_has_turned(how: str) -> None:
+    watch = seen(WRENCH, changed(1, 9.0))
+    assert watch.turned
+    getattr(watch, how)()
+    assert not watch.turned
+    watch.step(WRENCH, estimate(), moves=True, wrong=WRONG)
+    assert not watch.turned
+
+
+@pytest.mark.parametrize(("share", "turned"), [(0.99, False), (1.01, True)])
+def test_nor_does_the_gain_turn_it_where_the_load_weighs(share: float, turned: bool) -> None:
+    """The load lay across the sensor as the way began."""
+    load = 2.0
+    noise = FALSE_ALARM * window_noise(SENSOR, estimate(load_mass=load))
+    by = share * (2.0 * FORCE + noise + SENSOR.gain * load * GRAVITY * math.sqrt(2.0))
+    watch, after = SteadyWrench(SENSOR, NEEDED, FORCE), estimate(load_mass=load)
+    after.R_BF = FAR
+    watch.step(WRENCH, estimate(load_mass=load), moves=True, wrong=WRONG)
+    watch.step(changed(0, by), after, moves=True, wrong=WRONG)
+    assert watch.turned is turned

@@ -16,7 +16,7 @@ from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.state import state_of
-from tests.pendant.estimates import MOVES, SENSOR, estimate
+from tests.pendant.estimates import MOVES, SENSOR, estimate, watched
 
 ZEROS = (0.0,) * 6
 FRICTION = 8.0  # of the elbow while it turns [N·m]
@@ -41,7 +41,7 @@ class Bench:
     def __init__(self, sensor: bool = True) -> None:
         start = at(0.0, 0.0)
         self.alone, self.hand = (
-            UnintendedMotion(Settings().unexplained, reference(start, None)),
+            UnintendedMotion(Settings().unexplained, reference(start, None), watched()),
             UserForce(start, ZEROS, SENSOR.offset_force),
         )
         self.sensor, self.ticks = sensor, 0
@@ -460,14 +460,15 @@ def test_under_what_hangs_there_half_of_the_time_is_doubtful_too(ticks: int) -> 
 def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: float, turns: float) -> None:
     """Neither as a hand's force nor by the work that it would do."""
     start = at(0.0, 0.0)
-    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
-    hand, told = UserForce(start, ZEROS, SENSOR.offset_force), None
+    wrench = watched()
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None), wrench)
+    hand, told, wrench.steady = UserForce(start, ZEROS, SENSOR.offset_force), None, steady
     for tick in range(1, 1001):
         value = at(0.0001 * tick, 0.05, turns=turns).copy()
         value.F_user[0] = force
         hand.step(value, True, MOVES)
         slack = Slack(0.0 if force > LIGHT else force - 0.95, 0.0)  # with it less than a hand's force
-        told = told or alone.step(value, hand, use_wrench=True, driven=False, slack=slack, steady=steady)
+        told = told or alone.step(value, hand, use_wrench=True, driven=False, slack=slack)
         if steady:
             assert not alone.led
     assert (told is not None) is steady
@@ -477,15 +478,13 @@ def test_what_may_be_the_sensors_own_error_leads_no_arm(steady: bool, force: flo
 @pytest.mark.parametrize("steady", [True, False])
 def test_who_pushes_less_than_the_sensor_may_have_drifted_by_is_known_by_a_change(use_wrench: bool, steady: bool) -> None:
     """For 700 ticks the flange sensor feels one; the joints do not tell it. Nothing helps meanwhile: the hand may have gone."""
-    start = at(0.0, 0.0)
-    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
+    start, wrench = at(0.0, 0.0), watched()
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None), wrench)
     hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(7.5, 0.5)
     for tick in range(1, 2000):
-        changes = tick <= 700
-        told = alone.step(
-            at(0.0001 * tick, 0.05), hand, use_wrench=use_wrench, driven=False, slack=slack, steady=steady, changes=changes
-        )
-        assert not (told and changes and use_wrench)
+        wrench.steady, wrench.changes = steady, tick <= 700
+        told = alone.step(at(0.0001 * tick, 0.05), hand, use_wrench=use_wrench, driven=False, slack=slack)
+        assert not (told and wrench.changes and use_wrench)
         if told is not None:
             break
         assert alone.doubtful or tick < 80
@@ -493,13 +492,44 @@ def test_who_pushes_less_than_the_sensor_may_have_drifted_by_is_known_by_a_chang
 
 
 def test_after_a_change_an_arm_that_was_at_rest_goes_as_far_from_there() -> None:
-    start = at(0.0, 0.0)
-    alone = UnintendedMotion(Settings().unexplained, reference(start, None))
+    start, wrench = at(0.0, 0.0), watched()
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None), wrench)
     hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(7.5, 0.5)
     for tick in range(1, 2000):
-        told = alone.step(at(0.0001 * tick, 0.019), hand, use_wrench=True, driven=False, slack=slack, changes=tick <= 700)
+        wrench.changes = tick <= 700
+        told = alone.step(at(0.0001 * tick, 0.019), hand, use_wrench=True, driven=False, slack=slack)
         if told is not None:
             break
     assert told is not None
     assert 700 < tick <= 700 + 151
     assert told["distance"] <= 1000.0 * AWAY + 0.2
+
+
+@pytest.mark.parametrize(("turns_at", "ends"), [(None, 150), (100, 250), (150, 300), (160, 150)])
+def test_where_the_wrench_turns_as_only_a_hands_does_an_arm_that_was_at_rest_begins_its_way(
+    turns_at: int | None, ends: int
+) -> None:
+    start, wrench = at(0.0, 0.0), watched()
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None), wrench)
+    hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(7.5, 0.5)
+    for tick in range(1, 400):
+        wrench.turned = wrench.turned or tick == turns_at
+        if alone.step(at(STEP * tick, 0.019), hand, use_wrench=True, driven=False, slack=slack) is not None:
+            break
+        assert not wrench.turned, "its way begins, and so does what it is compared with"
+    assert tick == ends
+
+
+@pytest.mark.parametrize("taken", [3.0, -3.0, 0.0])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_what_was_taken_for_a_payload_and_was_a_hand_leads_no_arm_once_it_has_gone(way: float, taken: float) -> None:
+    """Nobody is there: the sensor has drifted by 2 N, and its force along gravity lacks what was taken for a payload's."""
+    start = at(0.0, 0.0)
+    alone = UnintendedMotion(Settings().unexplained, reference(start, None), watched())
+    hand, slack = UserForce(start, ZEROS, SENSOR.offset_force), Slack(3.0, 0.5)
+    for tick in range(1, 400):
+        hand.usual, hand.user, hand._slow = (0.0, 0.0, way * 2.0), (0.0, 0.0, way * 2.0 - taken), taken
+        led = alone.step(at(STEP * tick, 0.05), hand, use_wrench=True, driven=False, slack=slack) is None
+        if not led:
+            break
+    assert not led

@@ -186,3 +186,25 @@ def test_a_small_change_beside_a_wrong_payload_is_nobodys() -> None:
     hand = UserForce(estimate(), (0.0, 0.0, -SENSOR.offset_force - 20.0, 0.0, 0.0, 0.0), SENSOR.offset_force)
     assert after(hand, 1.0, estimate(force=[9.0, 0.0, -SENSOR.offset_force - 20.0])) == (0.0, 0.0, 0.0)
     assert after(hand, 1.0, estimate(force=[11.0, 0.0, -SENSOR.offset_force - 20.0])) == pytest.approx((11.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("up", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("across", "along", "slow", "least"),
+    [
+        (3.0, 4.0, 0.0, 5.0),
+        (3.0, 4.0, 9.0, 5.0),  # more of it were a payload's: then the force is larger
+        (3.0, 4.0, -1.0, math.hypot(3.0, 3.0)),
+        (3.0, 4.0, -9.0, 3.0),  # all along gravity may be that
+        (0.0, 4.0, -1.0, 3.0),
+        (3.0, 0.0, -9.0, 3.0),
+    ],
+)
+def test_what_was_steady_along_gravity_may_have_been_a_hands(
+    across: float, along: float, slow: float, least: float, up: float
+) -> None:
+    """So much of the force is certain, whatever of that was a payload's."""
+    hand = UserForce(estimate(), ZEROS, SENSOR.offset_force)
+    hand.user, hand._slow = (across, 0.0, up * along), up * slow
+    assert hand.surely(least - 1e-9)
+    assert not hand.surely(least + 1e-9)

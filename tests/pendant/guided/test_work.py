@@ -9,7 +9,7 @@ from pendant.guided.work import LEFT, Work
 from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.pose import Vector
+from pendant.tick.pose import ORIGIN, Vector
 from pendant.tick.state import state_of
 from tests.pendant.estimates import estimate
 
@@ -24,6 +24,11 @@ def moving(shoulder: float = 0.0, wrist: float = 0.0, way: float = 1.0, energy: 
     friction = [way * torque for torque in FRICTION]
     felt = [0.0, shoulder, 0.0, wrist, 0.0, 0.0]
     return estimate(qd=qd, tau_hand=felt, friction=friction, energy=energy)
+
+
+def scaled(size: float, way: Vector) -> Vector:
+    x, y, z = way
+    return size * x, size * y, size * z
 
 
 def done(*values: tuple[int, Estimate]) -> Work:
@@ -67,7 +72,7 @@ def test_a_hand_at_the_flange_pays_with_its_force_along_the_way(way: Vector, sha
     work = Work()
     work.begin(value)
     for _ in range(100):
-        work.step(value, (share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+        work.step(value, (scaled(share * needed, way), ORIGIN))
     assert work.paid is paid
     assert work.settled is paid
 
@@ -82,8 +87,35 @@ def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, s
     work = Work()
     work.begin(value)
     for _ in range(100):
-        work.step(value, torque=(share * needed * way[0], share * needed * way[1], share * needed * way[2]))
+        work.step(value, (ORIGIN, scaled(share * needed, way)))
     assert (work.paid, work.settled) == (paid, paid)
+
+
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)])
+@pytest.mark.parametrize(("share", "owed"), [(-0.25, 0.25), (-1.0, 1.0), (-9.0, 1.0), (0.0, 0.0), (9.0, 0.0)])
+def test_what_may_be_drift_against_the_motion_is_taken_off_what_the_joints_feel(
+    share: float, owed: float, way: Vector, turns: bool
+) -> None:
+    """They feel a drift as a hand that does the opposite. It takes no more than they feel, and adds nothing."""
+    value = moving(PAYS).copy()
+    value.v_F[3 * turns : 3 * turns + 3] = [0.05 * part for part in way]
+    drift = scaled(share * PAYS * SPEED / 0.05, way)
+    work = Work()
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, drift=(ORIGIN, drift) if turns else (drift, ORIGIN))
+    assert work.unpaid == pytest.approx(owed * 100 * TICK * PAYS * SPEED)
+
+
+def test_no_drift_makes_what_the_joints_feel_against_the_motion_worse() -> None:
+    value = moving(-PAYS).copy()
+    value.v_F[0] = 0.05
+    one, other = Work(), Work()
+    for _ in range(100):
+        one.step(value)
+        other.step(value, drift=((-5.0, 0.0, 0.0), ORIGIN))
+    assert state_of(one) == state_of(other)
 
 
 @pytest.mark.parametrize(("share", "lasts"), [(-1.0, True), (0.0, True), (0.9, True), (1.1, False)])
@@ -186,6 +218,6 @@ def test_a_hand_on_a_link_and_one_at_the_flange_pay_together() -> None:
     work = Work()
     work.begin(value)
     for _ in range(100):
-        work.step(value, (0.41 * PAYS * SPEED / 0.05, 0.0, 0.0))
+        work.step(value, ((0.41 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN))
     assert work.settled
     assert work.paid

@@ -5,6 +5,7 @@ import pytest
 from msgspec.structs import replace
 
 from pendant.all_settings import Settings, apply
+from pendant.guided.bias_follower import Slack
 from pendant.inputs import Button, Command, Inputs
 from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.tick.modes import Law, Mode, Phase
@@ -84,6 +85,29 @@ def test_the_wrench_is_amplified_through_the_jacobian_and_its_force_capped() -> 
     np.testing.assert_allclose(asked(wrench, gain=1.5), JACOBIAN.T @ (1.5 * wrench), atol=1e-9)
     size = np.linalg.norm(4.0 * wrench[:3])
     np.testing.assert_allclose(asked(4.0 * wrench), JACOBIAN.T @ (4.0 * wrench * (50.0 / size)), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("slack", "pulls", "turns"),
+    [((0.0, 0.0), 1.0, 1.0), ((5.0, 0.0), 0.75, 1.0), ((0.0, 0.5), 1.0, 0.5), ((20.1, 1.1), 0.0, 0.0)],
+)
+def test_what_may_be_the_sensors_drift_asks_for_nothing(slack: tuple[float, float], pulls: float, turns: float) -> None:
+    """FD-19: of 20 N and 1 N·m, each by itself; what is more is helped in its direction."""
+    force, torque = np.array([12.0, -16.0, 0.0]), np.array([0.6, 0.0, -0.8])
+    seen, free = estimate(q=Q, R_BF=R, F_user=np.concatenate([force, torque])), decision(Law.FREE, gain=1.5)
+    helped = law().torque(
+        seen, replace(free, slack=Slack(*slack)), JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=False
+    )
+    wanted = JACOBIAN.T @ (1.5 * np.concatenate([pulls * force, turns * torque]))
+    np.testing.assert_allclose(helped - GRAVITY, wanted, atol=1e-9)
+
+
+def test_a_force_is_capped_after_what_may_be_drift_is_off() -> None:
+    seen = estimate(q=Q, R_BF=R, F_user=np.array([80.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    for slack, force in ((10.0, 50.0), (40.0, 40.0)):
+        free = replace(decision(Law.FREE, gain=1.0), slack=Slack(slack, 0.0))
+        torque = law().torque(seen, free, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=False)
+        np.testing.assert_allclose(torque - GRAVITY, JACOBIAN[0] * force, atol=1e-9)
 
 
 def test_an_offset_of_the_sensor_turns_with_the_flange() -> None:

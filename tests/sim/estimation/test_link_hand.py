@@ -11,7 +11,7 @@ from pendant.events.event import Kind
 from pendant.sensor.hand_model import KEEPS
 from pendant.tick.modes import TICK, Mode
 from sim.arm.scenario import Scenario
-from sim.estimation.link_hand import LASTS, LinkHand
+from sim.estimation.link_hand import BEFORE, ENTRY, LASTS, LATELY, LONG, LinkHand
 from sim.estimation.momentum_observer import READY, MomentumObserver
 from sim.estimation.torque_errors import CAUSES, FOLLOW, OWN, ZERO
 from sim.estimation.transmission_torque import CONTACT
@@ -32,6 +32,10 @@ ALL = np.ones(N, dtype=np.bool_)
 POSTURE = np.array([0.3, -1.2, 1.5, -0.8, -1.2, 0.7])
 LEAST = CONTACT * DOUBT
 """A torque that is felt where nothing but the rest of the model is unsure [N·m]."""
+
+
+FOLLOWED = 10 * LONG
+"""Ticks after which what was felt before is what is felt now, all but a little."""
 
 
 class Joints:
@@ -153,7 +157,7 @@ def test_far_from_entry_a_hand_is_told_by_what_was_felt_lately() -> None:
     joints.covariance[at(1, 0), at(1, 0)] = 0.1**2
     joints.begun()
     joints.felt[1, :2] = 6.0, 60.0
-    assert not joints.tick(2000).any()
+    assert not joints.tick(FOLLOWED).any()
     joints.moving()
     joints.felt[1, 0] += 4.0
     assert joints.tick()[1] == pytest.approx(4.0, rel=0.01)
@@ -168,25 +172,61 @@ def test_who_presses_on_an_arm_at_rest_within_its_errors_is_forgotten_lately(spe
     joints.begun()
     joints.moves[4] = speed
     joints.felt[1, :2] = 6.0, 60.0
-    joints.hand._own["felt"][1, 1, :2] = 2.0, 60.0
+    joints.hand._own["felt"][LATELY:, 1, :2] = 2.0, 60.0
     assert joints.tick()[1] == pytest.approx(4.0)
-    assert joints.hand._own["felt"][1, 1, 0] == pytest.approx(2.0 + 4.0 * FOLLOW * follows)
-    assert joints.hand._own["felt"][0, 1, 0] == 0.0
+    assert joints.hand._own["felt"][LATELY, 1, 0] == pytest.approx(2.0 + 4.0 * FOLLOW * follows)
+    assert joints.hand._own["felt"][ENTRY, 1, 0] == 0.0
+
+
+def test_a_hand_that_rested_on_the_arm_seems_to_pull_the_other_way_to_nobody() -> None:
+    """It pressed for a second within the errors since entry, was followed, and goes at once; the arm moves then."""
+    joints = Joints()
+    joints.covariance[at(1, 0), at(1, 0)] = 0.1**2
+    joints.begun()
+    joints.felt[1, :2] = 6.0, 60.0
+    joints.tick(FOLLOWED)
+    joints.felt[1, 0] = 6.0 + 2.0 * LEAST
+    joints.tick(round(1.0 / TICK))
+    assert joints.hand._own["felt"][LATELY, 1, 0] == pytest.approx(6.0 + 2.0 * LEAST, rel=0.05)
+    joints.moving()
+    joints.felt[1, 0] = 6.0
+    joints.hand._own["lasts"] = 0
+    assert not joints.tick().any()
+    assert not joints.hand.force.any()
+    joints.felt[1, 0] = 6.0 + 5.0 * LEAST
+    assert joints.tick()[1] == pytest.approx(3.0 * LEAST, rel=0.05), "who leads it is known, by what is more than before"
+
+
+@pytest.mark.parametrize("k", range(ZERO))
+def test_what_is_followed_of_the_sensors_bias_is_so_before_as_well(k: int) -> None:
+    joints = Joints().begun()
+    joints.bias = tuple(2.0 * (i == k) for i in range(ZERO))
+    joints.tick(LONG)
+    assert joints.hand._own["bias"][BEFORE, k] == pytest.approx(2.0 * (1.0 - np.exp(-1.0)), rel=1e-3)
+
+
+def test_of_who_is_felt_a_joint_counts_that_feels_it_for_sure() -> None:
+    """Another one may feel an error as large as its errors are."""
+    joints = Joints().moving().begun()
+    joints.felt[0, 0], joints.felt[1, 0], joints.felt[2, 0] = 1.01 * LEAST, 0.99 * LEAST, -1.01 * LEAST
+    assert joints.tick() == pytest.approx([1.01 * LEAST, 0.0, -1.01 * LEAST, 0.0, 0.0, 0.0])
+    joints.felt[:3, 0] = 0.5 * LEAST
+    assert joints.tick() == pytest.approx([0.5 * LEAST, 0.0, 0.5 * LEAST, 0.0, 0.0, 0.0])
 
 
 def test_who_is_felt_against_entry_is_never_forgotten() -> None:
     joints = Joints().begun()
     joints.felt[0, 0] = 1.5 * LEAST
     assert joints.tick(5000)[0] == pytest.approx(1.5 * LEAST)
-    assert joints.hand._own["felt"][1, 0, 0] == 0.0
+    assert joints.hand._own["felt"][LATELY, 0, 0] == 0.0
 
 
 def test_lately_follows_what_nobody_is_felt_in() -> None:
     joints = Joints().moving().begun()
     joints.felt[0, 0] = 0.5 * LEAST
     joints.tick()
-    assert joints.hand._own["felt"][1, 0, 0] == pytest.approx(0.5 * LEAST * FOLLOW)
-    assert joints.hand._own["ticks"].tolist() == [2, 0]
+    assert joints.hand._own["felt"][LATELY, 0, 0] == pytest.approx(0.5 * LEAST * FOLLOW)
+    assert joints.hand._own["ticks"].tolist() == [2, 0, 2]
 
 
 def test_who_was_felt_may_be_there_still() -> None:
@@ -210,7 +250,10 @@ def test_of_a_change_since_entry_a_force_is_what_is_beyond_the_errors(share: flo
     joints.covariance[at(1, 0), at(1, 0)] = 0.1**2
     joints.begun()
     errors = CONTACT * np.sqrt(DOUBT**2 + (0.1 * 60.0) ** 2 + (LINK_MASS * 60.0) ** 2)
-    joints.felt[1, :2] = joints.hand._own["felt"][1, 1, :2] = way * share * errors, 60.0
+    joints.felt[1, :2] = joints.hand._own["felt"][LATELY, 1, :2] = joints.hand._own["felt"][BEFORE, 1, :2] = (
+        way * share * errors,
+        60.0,
+    )
     assert joints.tick()[1] == pytest.approx(way * share * errors * felt)
     J = joints.jacobian[:3]
     beyond = way * (share - 1.0) * errors * felt * np.eye(N)[1]
@@ -224,7 +267,7 @@ def test_who_was_felt_a_moment_ago_is_believed_what_says_that_it_leads(speed: fl
     joints.covariance[at(1, 0), at(1, 0)] = 0.1**2
     joints.begun()
     joints.felt[1, :2] = 6.0, 60.0
-    joints.tick(2000)
+    joints.tick(FOLLOWED)
     joints.moves[1] = speed
     joints.felt[1, 0] = 10.0
     joints.tick()
@@ -270,7 +313,8 @@ def test_it_is_told_alike_whatever_the_joints_feel(seed: int) -> None:
         left = change[i, 0] - joints.shares[i] @ change[i, 1:] + (np.array(joints.bias) - bias) @ joints.felt[i, 2 : 2 + ZERO]
         wrong = change[i, 1:] @ joints.covariance[np.ix_(where, where)] @ change[i, 1:]
         wrong += DOUBT**2 + (LINK_MASS * change[i, 1]) ** 2
-        expected[i], sure = left, sure or abs(left) > CONTACT * np.sqrt(wrong)
+        found = abs(left) > CONTACT * np.sqrt(wrong)
+        expected[i], sure = left * found, sure or found
     assert sure
     assert joints.tick() == pytest.approx(expected)
 

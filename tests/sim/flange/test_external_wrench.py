@@ -404,7 +404,7 @@ def of_change(
         for kind in (LOST, FREED, MORE):
             left = swings if kind == MORE else empty
             credit[kind] += 0.0 if kind == MORE else 0.5 * length * math.log(loaded / left)
-            offset = (bank.GAIN * WEIGHT * lever) ** 2 + ((bank.CENTRE * WEIGHT) ** 2 if axis else 0.0)
+            offset = (bank.GAIN * WEIGHT * lever) ** 2 + ((bank.CENTRE_AXIS * WEIGHT) ** 2 if axis else 0.0)
             offset += (OFFSET * lever) ** 2 if kind == FREED else 4.0 * steep[axis] + swings / BEFORE
             parts[kind].append(after[:, k] - (0.0 if kind == FREED else x0[k]))
             covariances[kind].append(left * eye + offset * ones)

@@ -4,10 +4,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from pendant.guided.bias_follower import drift
 from sim.arm.arm_file import Arm, Drift
 from sim.sensing import calibration
 from sim.sensing.calibration import FORCE_OFFSET, Calibration
-from sim.sensing.sensor_drift import SensorDrift, axes, fastest, most
+from sim.sensing.sensor_drift import SensorDrift, axes, fastest, most, sensor_spec
 from sim.sensing.sensors import Sensors
 from tests.sim.arms import UR5E, arms
 
@@ -119,11 +120,11 @@ def test_the_largest_errors_and_rates_of_the_shipped_arms() -> None:
     assert fastest(None) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("drift", [FILED, WALK, msgspec.structs.replace(FILED, warm_up=20.0, force=9.0)])
-def test_no_second_is_faster_than_the_fastest(drift: Drift) -> None:
-    allowed, seen = axes(*fastest(drift)), np.zeros(6)
+@pytest.mark.parametrize("numbers", [FILED, WALK, msgspec.structs.replace(FILED, warm_up=20.0, force=9.0)])
+def test_no_second_is_faster_than_the_fastest(numbers: Drift) -> None:
+    allowed, seen = axes(*fastest(numbers)), np.zeros(6)
     for seed in range(100):
-        device = SensorDrift(drift, errors(seed), source(seed))
+        device = SensorDrift(numbers, errors(seed), source(seed))
         seen = np.maximum(seen, np.abs([device.step() for _ in range(200)]).max(axis=0))
     assert (seen <= allowed).all()
     assert (seen > 0.5 * allowed).any(), "nor is that far too much"
@@ -133,3 +134,25 @@ def test_a_seed_always_drifts_the_same_and_another_seed_otherwise() -> None:
     first, again, other = (run(SensorDrift(FILED, errors(2), source(seed)), 300) for seed in (7, 7, 8))
     assert first.tobytes() == again.tobytes()
     assert (first != other).all()
+
+
+@pytest.mark.parametrize("arm", arms(), ids=lambda arm: arm.name)
+def test_99_of_100_sensors_drift_no_further_than_the_pendant_believes(arm: Arm) -> None:
+    """FD-19: all three axes together, from 2 s after they were switched on; nor is it far too much for the farthest."""
+    seconds = np.array([10, 30, 60, 120, 240, 480])
+    allowed = np.array([drift(sensor_spec(arm), round(500 * each)) for each in seconds])
+    ways = []
+    for seed in range(300):
+        zeros = run(SensorDrift(filed(arm), calibration.draw(arm, np.random.default_rng(seed)), source(seed)), 483)
+        way = (zeros[2:] - zeros[1])[seconds - 1]
+        ways.append(np.stack([np.linalg.norm(way[:, :3], axis=1), np.linalg.norm(way[:, 3:], axis=1)], axis=1))
+    beyond = (np.array(ways) > allowed).mean(axis=0)
+    assert (beyond <= 0.02).all()
+    assert (np.array(ways).max(axis=0) > 0.8 * allowed).all()
+
+
+def test_a_sensor_without_drift_stays_where_it_is() -> None:
+    still = msgspec.structs.replace(UR5E.sensors.force_torque, drift=None)
+    spec = sensor_spec(msgspec.structs.replace(UR5E, sensors=msgspec.structs.replace(UR5E.sensors, force_torque=still)))
+    assert drift(spec, 300_000) == (0.0, 0.0)
+    assert drift(sensor_spec(UR5E), 0) == (0.0, 0.0)
