@@ -151,12 +151,14 @@ class Simulation:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
         done, refusal = references.move_done, references.refusal
-        before = None if self._decision is None else self._decision.law
+        decided = self._decision
+        before = None if decided is None else decided.law
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
         # sensor tells its force; what stops it may be one as well.
         learn = before is _FOLLOW and not references.commanding
-        bias = self._decision.baseline if before is _FREE and self._decision is not None else None
-        estimate = estimator.update(sample, done, refusal, use=use, answered=references.answered, learn=learn, bias=bias)
+        bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
+        answered = references.answered
+        estimate = estimator.update(sample, done, refusal, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value

@@ -39,6 +39,11 @@ class Slack(NamedTuple):
     force: float  # [N]
     torque: float  # [N·m]
 
+    @property
+    def axis(self) -> float:
+        """Standard deviation of an axis of the force [N]: three alike make it at most, and each may be anything up to that."""
+        return self.force / 3.0
+
 
 SURE = Slack(0.0, 0.0)
 

@@ -6,7 +6,7 @@ against gravity, all in axes of B, its covariance is the sum of
 
     the noise of the sensor and of the accelerometer by which the load is weighed, behind the filter; at entry, a window's mean,
     the swing of load and arm, by which the force fluctuates beside its mean more than by this noise: any part may be the user's,
-    the drift of the sensor's zero since that was last followed, at most `slack` in each axis,
+    what the sensor may tell without a hand since its bias was last known, at most `slack`,
     the sensor's gain: a share of the force, and of what of the load's weight has come to lie in another axis since entry,
     the load's mass: it makes that change larger or smaller, along one line,
     along gravity: of F there, any part that a payload can make may be one's, which one posture cannot tell from a steady hand,
@@ -47,7 +47,7 @@ class Doubts(NamedTuple):
 
     change: Vector  # all that it feels beyond what it felt at entry, axes of B [N]
     fluctuation: float  # mean square of what it felt lately beside its mean, all axes together [N²]
-    slack: float  # what it may have drifted by in an axis [N]
+    slack: float  # what it may tell without a hand [N]
     hung: Vector  # upward at entry, axes of F
 
 

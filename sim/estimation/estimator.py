@@ -106,12 +106,13 @@ class Estimator:
         answered: Reference | None = None,
         learn: bool = True,
         bias: tuple[float, ...] | None = None,
+        unsure: float = 0.0,
     ) -> Estimate:
         """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
         as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
-        of F [N, N·m]; None otherwise.
+        of F [N, N·m], None otherwise; `unsure` is the standard deviation of each of its axes that is beside its noise [N].
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
@@ -152,16 +153,16 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None
-            self._ask_whose(known, bias if self._sensed(sample) else None)
+            self._ask_whose(known, bias if self._sensed(sample) else None, unsure)
         return known
 
     def _sensed(self, sample: Sample) -> bool:
         """The flange sensor is valid, and was so since free-drive began, if it is on."""
         return sample.wrench_valid and not self.fall.blind
 
-    def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None) -> None:
+    def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
-        odds = self.whose_force.update(bias, accelerations=known.acceleration_valid)
+        odds = self.whose_force.update(bias, unsure, accelerations=known.acceleration_valid)
         known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
         known.energy = self._dynamics.recursion.energy.item() + self._own["spin"].item()
         known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)

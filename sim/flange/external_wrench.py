@@ -55,7 +55,8 @@ class ExternalWrench:
         """
         self.record = record(
             noise=(2,),  # of the sensor in a tick [N, N·m]
-            offset=(),  # standard deviation of what the bias is off [N]
+            walk=(),  # standard deviation of what the bias is off by itself [N]
+            offset=(),  # and in this tick [N]
             shaking=(),  # of the accelerometer [m/s²]
             turning=(),  # of the angular acceleration that the load is taken to need [rad/s²]
             jitter=(),  # variance of the gyro's difference, each axis [rad²/s⁴]
@@ -93,7 +94,7 @@ class ExternalWrench:
         self._beyond = sum(arm.masses.mass[arm.chain.elbow :])  # the elbow: what springs there do not hold back
         own["noise"] = told.noise_force, told.noise_torque
         # It is the mean of a window, and the sensor's zero has wandered since.
-        own["offset"] = math.hypot(told.walk_force, told.noise_force / math.sqrt(WINDOW))
+        own["walk"] = math.hypot(told.walk_force, told.noise_force / math.sqrt(WINDOW))
         own["shaking"] = told.noise_acceleration
         own["jitter"] = 2.0 * ((0.0 if gyro is None else gyro.noise) / TICK) ** 2
         own["turning"] = math.sqrt(own["jitter"] * forces.passed)
@@ -124,10 +125,11 @@ def compare(wrenches, known, bias, accelerations) -> None:
     Args:
         wrenches: `ExternalWrench.record`.
         known: `FlangeForces.record` and that of the rigid model, of the same tick.
-        bias: of the sensor (6,), axes of F [N, N·m].
+        bias: of the sensor (6,), axes of F [N, N·m], and the standard deviation of each axis, beside its walk [N].
         accelerations: the flange's accelerometer is valid.
     """
     forces, model = known
+    wrench, doubt = bias
     own, felt = wrenches[0], forces[0]
     here = own.next
     own.R[here] = model[0].R
@@ -153,7 +155,8 @@ def compare(wrenches, known, bias, accelerations) -> None:
     own.lost = own.stepped = -np.inf
     own.share = 0.0
     if own.count == KEPT and jumps(own, here):
-        _weigh(own, here, bias)
+        own.offset = math.hypot(own.walk, doubt)
+        _weigh(own, here, wrench)
 
 
 @kernel

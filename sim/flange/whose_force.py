@@ -37,11 +37,12 @@ class WhoseForce:
         self._known = forces.record, forces.model
         self._begun = False
 
-    def update(self, bias: tuple[float, ...] | None, *, accelerations: bool) -> Odds:
+    def update(self, bias: tuple[float, ...] | None, unsure: float = 0.0, *, accelerations: bool) -> Odds:
         """One tick.
 
         Args:
             bias: of the sensor (6,), axes of F [N, N·m]; None: it is not used, and what was before counts no more.
+            unsure: standard deviation of each axis of the bias [N], beside its noise.
             accelerations: the flange's accelerometer is valid.
         """
         if bias is None:
@@ -51,7 +52,7 @@ class WhoseForce:
                     each.forget()
             return NOTHING
         self._begun = True
-        return Odds(*_update(self._records, self._known, bias, accelerations))
+        return Odds(*_update(self._records, self._known, (bias, unsure), accelerations))
 
 
 @kernel
@@ -59,5 +60,5 @@ def _update(records, known, bias, accelerations) -> tuple[float, float, float, f
     bank, step, fall = records
     compare(bank, known, bias, accelerations)
     answer(step, known, bank)
-    follow(fall, bank, bias)
+    follow(fall, bank, bias[0])
     return fall[0].odds, fall[0].share, step[0].odds, step[0].size

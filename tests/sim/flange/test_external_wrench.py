@@ -44,7 +44,7 @@ class Arm:
         self.wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
         self.told = self.wrench.record[0]
         self.rng = np.random.default_rng(seed)
-        self.gyro = np.zeros(3)
+        self.gyro, self.unsure = np.zeros(3), 0.0
         self.forces.model[0]["R"] = np.eye(3)
         self.odds: list[float] = []
         self.stepped: list[float] = []
@@ -68,7 +68,7 @@ class Arm:
         own["missing"], own["specific"] = x + noise, specific + shaking / load.mass
         own["gyro"], own["turn"] = self.gyro, turn
         own["a_felt"] = felt + 0.1 * self.rng.normal(size=3)
-        self.whose = self.whose_force.update(bias, accelerations=accelerometer)
+        self.whose = self.whose_force.update(bias, self.unsure, accelerations=accelerometer)
         self.odds.append(float(self.told["lost"]))
         self.stepped.append(float(self.told["stepped"]))
         return self.odds[-1]
@@ -129,6 +129,19 @@ def test_a_payload_that_falls_out_of_a_hand_that_goes_with_it_is_known_by_how_it
         gone = PAYLOAD.mass * np.concatenate([specific, np.cross(PAYLOAD.com, specific)])
         arm.tick(gone, specific, felt=specific - UP)
     assert (max(arm.odds) > KNOWN) == (shakes > 0.0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_hand_that_lets_go_of_an_arm_whose_bias_is_unsure_is_a_hand(seed: int) -> None:
+    """It pulled with 5 N, and 2 N are left, of the sensor's drift: with a bias that is sure a payload may have come."""
+    left = pushed((0.0, 0.0, 2.0))
+    odds = []
+    for unsure in (0.0, 1.3):
+        arm = Arm(seed)
+        arm.unsure = unsure
+        odds.append(arm.course([pushed((0.0, 0.0, 5.0)), *steady(left)]))
+        assert arm.told["offset"] == pytest.approx(math.hypot(OFFSET, unsure))
+    assert odds[1] < odds[0] - 3.0
 
 
 @pytest.mark.parametrize("ticks", [5, 10, 25])
