@@ -68,8 +68,9 @@ class LinkHand:
             bias=(3, ZERO),  # of the flange sensor then, axes of F [N, N·m]
             ticks="3i8",  # since then
             lasts=f"{arm.n}i8",  # ticks for which who was felt by a joint may be there still
+            left=(3, arm.n),  # what errors do not explain as far as they are known, against each of these [N·m]
+            sure=(3, arm.n),  # what of it they do not explain at all
             torque=(arm.n,),
-            sure=(arm.n,),  # what of it is beyond the errors
             force=(3,),
         )
         self._own = self._record[0]
@@ -105,31 +106,28 @@ def _update(memory, known, model, told) -> None:
     own.ticks += 1
     own.ticks[BEFORE] = min(own.ticks[BEFORE], LONG)
     away = _feel(own, known, (bias, by_deflection), ENTRY)
-    torque, sure = own.torque.copy(), own.sure.copy()
-    _feel(own, known, (bias, by_deflection), BEFORE)
-    before = own.sure.copy()
-    _feel(own, known, (bias, by_deflection), LATELY)
+    changed = _feel(own, known, (bias, by_deflection), LATELY) and _feel(own, known, (bias, by_deflection), BEFORE)
     lately, stands = False, True
     for i in range(qd.size):
-        new = own.sure[i] != 0.0 and before[i] != 0.0
+        new = changed and own.sure[LATELY, i] != 0.0 and own.sure[BEFORE, i] != 0.0
         lately = lately or new
-        own.lasts[i] = LASTS if new or sure[i] != 0.0 else max(own.lasts[i] - 1, 0)
+        own.lasts[i] = LASTS if new or own.sure[ENTRY, i] != 0.0 else max(own.lasts[i] - 1, 0)
         if own.lasts[i] == 0:
-            own.torque[i] = torque[i] = 0.0
+            own.left[ENTRY, i] = own.left[LATELY, i] = 0.0
         stands = stands and abs(qd[i]) < STANDING
     if not away:
-        own.felt[BEFORE] += (errors.felt - own.felt[BEFORE]) / LONG
+        _follow(own.felt[BEFORE], errors.felt, 1.0 / LONG)
         for k in range(ZERO):
             own.bias[BEFORE, k] += (bias[k] - own.bias[BEFORE, k]) / LONG
         if stands or not lately:
-            own.felt[LATELY] += FOLLOW * (errors.felt - own.felt[LATELY])
+            _follow(own.felt[LATELY], errors.felt, FOLLOW)
             _keep(own, bias, LATELY)
-    if not lately and (away or _power(torque, qd) > _power(own.torque, qd)):
-        own.torque[:] = torque
+    by_entry = not lately and (away or _power(own.left[ENTRY], qd) > _power(own.left[LATELY], qd))
+    own.torque[:] = own.left[ENTRY if by_entry else LATELY]
     if lately:
         best_force(jacobian, own.torque, own.force)
     elif away:
-        best_force(jacobian, sure, own.force)
+        best_force(jacobian, own.sure[ENTRY], own.force)
     else:
         own.force[:] = 0.0
 
@@ -142,6 +140,13 @@ def _keep(own, bias, when) -> None:
 
 
 @kernel
+def _follow(felt, now, share) -> None:
+    for i in range(felt.shape[0]):
+        for k in range(felt.shape[1]):
+            felt[i, k] += share * (now[i, k] - felt[i, k])
+
+
+@kernel
 def _power(torque, qd):
     power = 0.0
     for i in range(qd.size):
@@ -151,10 +156,13 @@ def _power(torque, qd):
 
 @kernel
 def _feel(own, known, told, when) -> bool:
-    """Whether a hand is felt against what was felt then; `torque` becomes what it would be, `sure` what of it no error is."""
+    """Whether a hand is felt against what was felt then: what is `left` of the change, and what of that is `sure`."""
     momentum, errors, felt = known[0][0], known[1][0], own.felt[when]
     bias, by_deflection = told
-    found, change = False, np.empty(1 + CAUSES)
+    found, change, drifts, walked = False, np.empty(1 + CAUSES), np.empty(ZERO), np.empty(ZERO)
+    for k in range(ZERO):
+        drifts[k] = bias[k] - own.bias[when, k]  # the sensor tells the opposite of its bias
+        walked[k] = min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
     for i in range(own.torque.size):
         for k in range(1 + CAUSES):
             change[k] = errors.felt[i, k] - felt[i, k]
@@ -163,9 +171,9 @@ def _feel(own, known, told, when) -> bool:
             rest += (MOTOR_CONSTANT * change[1]) ** 2
         for k in range(ZERO):
             lever = errors.felt[i, 2 + k]
-            change[0] += (bias[k] - own.bias[when, k]) * lever  # the sensor tells the opposite of its bias
-            rest += lever * lever * min(errors.walk[k] * own.ticks[when], errors.most[k] ** 2 / 3.0)
-        own.torque[i] = left_over(errors.shares[i], change[0], change[1:])
-        own.sure[i] = beyond(errors, i, change, rest)
-        found = found or own.sure[i] != 0.0
+            change[0] += drifts[k] * lever
+            rest += lever * lever * walked[k]
+        own.left[when, i] = left_over(errors.shares[i], change[0], change[1:])
+        own.sure[when, i] = beyond(errors, i, change, rest)
+        found = found or own.sure[when, i] != 0.0
     return found
