@@ -70,7 +70,7 @@ class BiasFollower:
         "_felt",
         "_first",
         "_followed",
-        "_quiet",
+        "_known_at",
         "_rested",
         "_sensor",
         "_slack",
@@ -88,7 +88,7 @@ class BiasFollower:
             weight: of the load, axes of F [N].
         """
         self._sensor = sensor
-        self._quiet, self._weight = tick, weight  # when it was last known
+        self._known_at, self._weight = tick, weight  # when it was last known
         self._count = 0
         self._followed: Wrench | None = None
         self._taken: Wrench = ZEROS  # what was subtracted since then, axes of F [N, N·m]
@@ -114,7 +114,7 @@ class BiasFollower:
 
     def drifted(self, tick: int) -> Slack:
         """By so much it may have drifted since it was last known."""
-        return drift(self._sensor, tick - self._quiet)
+        return drift(self._sensor, tick - self._known_at)
 
     def slack(self, estimate: Estimate) -> Slack:
         """It may have drifted since it was last known, and what was subtracted since then may have been a hand's.
@@ -149,7 +149,7 @@ class BiasFollower:
 
     def know(self, estimate: Estimate) -> None:
         """What is felt in this tick was all subtracted, and is the sensor's."""
-        self._quiet, self._weight = estimate.tick, load_weight(estimate)
+        self._known_at, self._weight = estimate.tick, load_weight(estimate)
         self._taken, self._rested = ZEROS, 0
 
     def give_back(self) -> list[Wrench]:

@@ -116,11 +116,9 @@ class UnintendedMotion:
             caused = driven or estimate.joints_feel is JointsFeel.HAND
         wrench, usual = NO_WRENCHES, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force and not steady:
-            (force, drifts), (turn, drifts_turn) = (
-                _split(hand.usual, usual, slack.force),
-                _split(torque, norm(torque), slack.torque),
-            )
-            wrench = (force, turn), (drifts, drifts_turn)
+            force, drifts = _split(hand.usual, usual, slack.force)
+            turn, turn_drifts = _split(torque, norm(torque), slack.torque)
+            wrench = (force, turn), (drifts, turn_drifts)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench)

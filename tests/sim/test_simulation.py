@@ -18,6 +18,7 @@ from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
+from sim.flange.whose_force import Odds, WhoseForce
 from sim.plant.changes import AttachPayload, DropPayload, FrictionChange, MoveObject, SensorFault, Temperature
 from sim.plant.touch import Push, Touch
 from sim.sensing.calibration import Calibration
@@ -338,6 +339,26 @@ def test_a_configured_payload_changes_what_the_controller_believes() -> None:
     wrench = np.concatenate([[0.0, 0.0, 2.0 * 9.81], np.cross(R @ [0.0, 0.0, 0.1], [0.0, 0.0, 2.0 * 9.81])])
     assert np.allclose(jump, jacobian.T @ wrench, atol=1e-9)
     assert p[2] > 0.0
+
+
+def test_what_the_bias_may_be_wrong_by_is_told_to_whoever_asks_whose_force_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """FD-19: in free-drive as the pendant decided last, which is more with time; else nothing is asked."""
+    told: list[tuple[bool, float]] = []
+    inner = WhoseForce.update
+
+    def update(self: WhoseForce, bias: tuple[float, ...] | None, unsure: float = 0.0, *, accelerations: bool) -> Odds:
+        told.append((bias is not None, unsure))
+        return inner(self, bias, unsure, accelerations=accelerations)
+
+    monkeypatch.setattr(WhoseForce, "update", update)
+    bench = Bench(Scenario(seed=2))
+    bench.run(0.5)
+    assert told == []
+    bench.enter()
+    decided = [bench.tick(Wishes(Inputs(), (push("flange", (0.0, 12.0, 0.0)),), ())) for _ in range(100)]
+    assert [unsure for _, unsure in told[-99:]] == [each.slack.force / 3.0 for each in decided[:-1]]
+    assert told[-1][0]
+    assert 0.0 < told[-99][1] < told[-1][1]
 
 
 def test_settings_follow_the_pendants() -> None:
