@@ -308,6 +308,11 @@ def test_drift_and_what_was_subtracted_are_unsure_until_the_bias_is_known(second
     assert told(drift, tick + OFTEN) == pytest.approx((0.0, 0.0), abs=0.002)
 
 
+def test_the_deviation_of_an_axis_is_that_of_a_rectangle() -> None:
+    """Three axes that are 1.5 N off at most make 2.6 N; each has a third of its square as variance."""
+    assert Slack(math.sqrt(3.0) * 1.5, 0.0).axis == pytest.approx(1.5 / math.sqrt(3.0))
+
+
 def test_nobody_holds_an_arm_that_feels_the_same_for_as_long_as_no_hand_holds_still() -> None:
     """5 s; then the same again."""
     drift, force = BiasFollower(SENSOR), (0.0, 0.4, 0.0, 0.0, 0.0, 0.0)
