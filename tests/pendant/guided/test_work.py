@@ -97,7 +97,7 @@ def test_a_hand_at_the_flange_pays_with_its_torque_about_the_turn(way: Vector, s
 def test_what_may_be_drift_against_the_motion_is_taken_off_what_the_joints_feel(
     share: float, owed: float, way: Vector, turns: bool
 ) -> None:
-    """They feel a drift as a hand that does the opposite. It takes no more than they feel, half of what is owed, and adds nothing."""
+    """They feel a drift as a hand that does the opposite. It takes no more than they feel, and adds nothing."""
     value = moving(0.5 * PAYS).copy()
     value.v_F[3 * turns : 3 * turns + 3] = [0.05 * part for part in way]
     drift = scaled(share * PAYS * SPEED / 0.05, way)
