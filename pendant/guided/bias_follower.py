@@ -51,8 +51,8 @@ SURE = Slack(0.0, 0.0)
 def drift(sensor: SensorSpec, time: int) -> Slack:
     """Of a good sensor in so many ticks at most, all three axes together: each goes from nothing to its largest bias.
 
-    It does so as fast as the fastest of such sensors warms up. Of 1,000 that were switched on just before, 3 to 10 have gone further
-    at any one time within nine minutes.
+    It does so as fast as the quickest of such sensors warms up. Of 1,000 that were switched on just before, 3 to 10 have gone
+    further at any one time within nine minutes.
     """
     force, torque, gone = sensor.offset_force, sensor.offset_torque, -math.expm1(-TICK * time / sensor.quickest)
     return Slack(gone * norm((force, force, force)), gone * norm((torque, torque, torque)))
