@@ -17,7 +17,7 @@ from sim.estimation.transmission_torque import DYNAMICS
 Array = NDArray[np.float64]
 
 INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is helped in full
-DEAD_ZONE = 0.05  # of the breakaway torque: less than this is sensor drift, no hand
+DEAD_ZONE = 0.05  # of the breakaway torque: less than this is the sensor's noise, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
 BRAKE, BRAKE_SPEED = 1.5, 0.15  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
 FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
@@ -115,8 +115,9 @@ def _ask(law, asking, torque) -> None:
         for m in range(3):
             wrench[k] -= R[k, m] * baseline[m]
             wrench[3 + k] -= R[k, m] * baseline[3 + m]
-    pull, turn = _share(wrench[:3], slack[0]), _share(wrench[3:], slack[1])
-    size = pull * math.sqrt(wrench[0] * wrench[0] + wrench[1] * wrench[1] + wrench[2] * wrench[2])
+    size = _size(wrench[:3])
+    pull, turn = _certain(size, slack[0]), _certain(_size(wrench[3:]), slack[1])
+    size *= pull
     share = cap / size if size > cap else 1.0
     for i in range(torque.size):
         pulled = turned = 0.0
@@ -128,9 +129,13 @@ def _ask(law, asking, torque) -> None:
 
 
 @kernel
-def _share(value, slack):
-    """What of a value (3,) is more than may be drift, as a share of it."""
-    size = math.sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2])
+def _size(value):
+    return math.sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2])
+
+
+@kernel
+def _certain(size, slack):
+    """The share of a value of this size that is more than may be drift."""
     return max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
 
 
