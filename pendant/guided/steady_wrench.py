@@ -94,9 +94,10 @@ class SteadyWrench:
             wrong: of the bias at most.
         """
         noise, weight = noise_error(self._sensor, estimate), load_weight(estimate)
-        self.changes = self._changes(apart, estimate, noise)
+        least = self._force / HALF + noise  # of a change that is a hand's: half of it is its force [N]
+        self.changes = self._changes(apart, estimate, least)
         self._lately.append((apart, weight))
-        self.turned = self._turns(apart, estimate, noise, weight)
+        self.turned = self._turns(apart, estimate, least, weight)
         hand = math.hypot(*apart[:3]) > wrong.force + noise or math.hypot(*apart[3:]) > wrong.torque + LEVER * noise
         if hand or not (moves or self.steady):
             self._begin()
@@ -112,16 +113,15 @@ class SteadyWrench:
     def _begin(self) -> None:
         self._first, self._windows, self.steady = None, 0, False
 
-    def _changes(self, apart: Wrench, estimate: Estimate, noise: float) -> bool:
-        """Half of the change is a hand's force, for `noise` [N] and gain do not explain it."""
-        least = self._force / HALF + noise
+    def _changes(self, apart: Wrench, estimate: Estimate, least: float) -> bool:
+        """It changes by `least` [N], and more than gain explains."""
         for then, weight in self._lately:
             change = max(math.dist(apart[:3], then[:3]), math.dist(apart[3:], then[3:]) / LEVER)
             if change > least and change > least + gain_error(self._sensor, estimate, weight):
                 return True
         return False
 
-    def _turns(self, apart: Wrench, estimate: Estimate, noise: float, weight: Vector) -> bool:
+    def _turns(self, apart: Wrench, estimate: Estimate, least: float, weight: Vector) -> bool:
         """The same since the way began: of its windows the extremes of each axis are kept. The load's weight is so [N] now."""
         low, high = self._low, self._high
         if low is None:
@@ -130,7 +130,7 @@ class SteadyWrench:
             return False
         self._low, self._high = low, high = tuple(map(min, low, apart)), tuple(map(max, high, apart))
         x, y, z, a, b, c = map(sub, high, low)
-        change, least = max(x, y, z, max(a, b, c) / LEVER), self._force / HALF + noise
+        change = max(x, y, z, max(a, b, c) / LEVER)
         return change > least and change > least + gain_error(self._sensor, estimate, self._way_weight)
 
     def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:

@@ -78,7 +78,7 @@ class UserForce:
     def surely(self, least: float) -> bool:
         """The flange sensor and the joints tell at least so much [N], whatever of what was steady along gravity is a payload's.
 
-        That may have been a hand's as well: once it has gone, what was taken off for it seems to pull the other way.
+        That may have been a hand's as well: once it has gone, what was subtracted for it seems to pull the other way.
         """
         x, y, z = self.user
         ux, uy, uz = self._up

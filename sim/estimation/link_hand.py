@@ -173,7 +173,7 @@ def _feel(own, known, told, when) -> bool:
             lever = errors.felt[i, 2 + k]
             change[0] += drifts[k] * lever
             rest += lever * lever * walked[k]
-        own.left[when, i] = left_over(errors.shares[i], change[0], change[1:])
-        own.sure[when, i] = beyond(errors, i, change, rest)
+        own.left[when, i] = left = left_over(errors.shares[i], change[0], change[1:])
+        own.sure[when, i] = beyond(errors, i, (left, change[1:]), rest)
         found = found or own.sure[when, i] != 0.0
     return found

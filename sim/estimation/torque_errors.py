@@ -175,17 +175,24 @@ def variance(own, i, causes):
 
 
 @kernel
-def beyond(own, i, felt, rest):
+def beyond(own, i, what, rest):
     """How much of a torque of joint i is more than its causes and the rest may be wrong by [N·m]: 0 where nothing is.
 
-    `felt` is the torque and its causes, or the change of both; `rest` the variance of what they do not explain [N²·m²]. Where it
-    alone is as large, theirs is not asked for.
+    `what` is what the causes leave of the torque, and the causes, or the change of both; `rest` is the variance of what they do
+    not explain [N²·m²]. Where it alone is as large, theirs is not asked for.
     """
-    left = left_over(own.shares[i], felt[0], felt[1:])
+    left, causes = what
     if left * left <= CONTACT**2 * rest:
         return 0.0
-    size = abs(left) - CONTACT * np.sqrt(variance(own, i, felt[1:]) + rest)
+    size = abs(left) - CONTACT * np.sqrt(variance(own, i, causes) + rest)
     return np.copysign(size, left) if size > 0.0 else 0.0
+
+
+@kernel
+def _feels(own, i, felt, rest) -> bool:
+    """Joint i feels such a torque, with its causes, or such a change of both."""
+    causes = felt[1:]
+    return beyond(own, i, (left_over(own.shares[i], felt[0], causes), causes), rest) != 0.0
 
 
 @kernel
@@ -212,7 +219,7 @@ def touched(errors, residual, doubt, by_deflection) -> bool:
             rest = noise(doubt[i], own.causes[i, 0])
             for k in range(1 + CAUSES):
                 change[k] = own.felt[i, k] - own.rest[i, k]
-            found = beyond(own, i, own.felt[i], rest) != 0.0 or beyond(own, i, change, rest) != 0.0
+            found = _feels(own, i, own.felt[i], rest) or _feels(own, i, change, rest)
     if not found:
         own.rest += FOLLOW * (own.felt - own.rest)
     return found
