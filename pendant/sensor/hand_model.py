@@ -31,5 +31,8 @@ KEEPS = 1.5
 """Time constant with which a change along gravity that stays becomes a payload's [s]: a sensor that drifts by 2 N/s stays below
 3 N."""
 
+LASTS = ticks(KEEPS)
+"""Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
+
 STEADY = 5.0
 """So long no hand holds still to within its tremor [s]; and so long it may lead a moving arm gently up or down."""

@@ -92,7 +92,7 @@ class FreeDriveLaw:
             held: motor torque (n,) that held the arm until now [N·m]; None: the brakes did.
         """
         self._handover[:] = 0.0 if held is None else held - self._dynamics.gravity(estimate.q)
-        self._hand.start(estimate)
+        self._hand.start()
         self._damping.start()
         self._balancing.start()
         self._constraint.release()

@@ -11,8 +11,6 @@ from pendant.tick.modes import TICK
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.adaptive_friction import AdaptiveFriction
-from sim.estimation.joint_tracking import TORQUE_BANDWIDTH, delayed
-from sim.estimation.transmission_torque import DYNAMICS
 
 Array = NDArray[np.float64]
 
@@ -20,11 +18,6 @@ INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is help
 DEAD_ZONE = 0.05  # of the breakaway torque: less than this is the sensor's noise, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
 BRAKE, BRAKE_SPEED = 1.5, 0.15  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
-FELT = 0.25  # of the breakaway torque: a push felt by the joints alone must exceed this beyond the estimate's own uncertainty
-HERE = 0.25  # share of that uncertainty in the posture of entry, where nobody touched the arm
-APART = 0.25 * math.pi  # all of it so far away [rad]: gears err once and twice a turn
-USUAL = 2.0  # times the estimate's uncertainty: a felt torque of this size may be an error of the estimate
-FORGET, KEEP = 1.0, 8.0  # time constants in which a felt torque becomes usual: below that size, and above it [s]
 
 
 class Asking(NamedTuple):
@@ -42,17 +35,14 @@ class Asking(NamedTuple):
 class FeltByJoints(NamedTuple):
     """What the joints tell of the hand, n joints."""
 
-    ways: Array  # transmission torque each way (3, n) [N·m]
-    tau_ext: Array  # (n,) [N·m]
-    uncertain: Array  # standard deviation of that (n,) [N·m]
-    q: Array  # (n,) [rad]
+    tau_certain: Array  # torque of a hand that no error explains (n,) [N·m]
     sliding: Array  # friction (n,) [N·m]
     speed: Array  # of the motors (n,) [rad/s]
     most: float  # share of the friction that is taken off at most
 
 
 class HandHelp:
-    """Finds what a hand asks of n joints, and takes friction off it. Its memory begins with free-drive.
+    """Finds what a hand asks of n joints, and takes friction off it.
 
     Attributes:
         capped: torque (n,) that the flange sensor explains, its force capped [N·m].
@@ -60,28 +50,18 @@ class HandHelp:
 
     def __init__(self, n: int) -> None:
         self._record = record(
-            hand=(n,),  # what the flange sensor explains of each joint's torque
-            capped=(n,),  # and that with its force capped
+            capped=(n,),  # torque that the flange sensor explains, its force capped
             asked=(n,),  # that, filtered
-            felt=(n,),  # by the joints beyond it, filtered
-            usual=(n,),  # of what is felt
-            late=(3, n),  # transmission torque, delayed
-            began=(n,),  # angles in which free-drive began
-            smooth=(),
-            lag=(),
-            forget=(),
-            keep=(),
+            felt=(n,),  # by the joints, filtered
+            smooth=(),  # weight of a tick in both
         )
         own = self._own = self._record[0]
-        self._asked, self.capped = own["hand"], own["capped"]
-        poles = (2.0 * math.pi * HELP_BANDWIDTH, 2.0 * math.pi * TORQUE_BANDWIDTH, 1.0 / FORGET, 1.0 / KEEP)
-        own["smooth"], own["lag"], own["forget"], own["keep"] = (1.0 - math.exp(-pole * TICK) for pole in poles)
+        self.capped = own["capped"]
+        own["smooth"] = 1.0 - math.exp(-2.0 * math.pi * HELP_BANDWIDTH * TICK)
 
-    def start(self, estimate: Estimate) -> None:
-        """Free-drive begins: what the joints feel now is no hand."""
-        own = self._own
-        own["asked"], own["felt"], own["usual"], own["began"] = 0.0, 0.0, estimate.tau_ext, estimate.q
-        own["late"] = estimate.tau_ways[DYNAMICS] - estimate.tau_ext
+    def start(self) -> None:
+        """Free-drive begins: nothing is asked."""
+        self._own["asked"], self._own["felt"] = 0.0, 0.0
 
     def ask(
         self, asking: tuple[Array, tuple[float, ...], tuple[float, float], Array, Array, float, float], torque: Array
@@ -91,12 +71,11 @@ class HandHelp:
 
     def ask_nothing(self) -> None:
         """The flange sensor is not to be used in this tick."""
-        self._asked[:] = self.capped[:] = 0.0
+        self.capped[:] = 0.0
 
     def take_off(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
         """Take at most this share of the friction off the hand; a joint of which nothing is asked is braked."""
-        torques = (estimate.tau_ways, estimate.tau_ext, estimate.tau_ext_deviation)
-        felt = (*torques, estimate.q, estimate.friction, estimate.theta_d, share)
+        felt = estimate.tau_certain, estimate.friction, estimate.theta_d, share
         _take_off(self._record, friction.record, felt, torque)
 
 
@@ -124,7 +103,7 @@ def _ask(law, asking, torque) -> None:
         for k in range(3):
             pulled += jacobian[k, i] * wrench[k]
             turned += jacobian[3 + k, i] * wrench[3 + k]
-        own.hand[i], own.capped[i] = pulled + turned, share * (pull * pulled + turn * turned)
+        own.capped[i] = share * (pull * pulled + turn * turned)
         torque[i] += gain * own.capped[i]
 
 
@@ -143,31 +122,16 @@ def _certain(size, slack):
 def _take_off(law, friction, joints, torque) -> None:
     joints = FeltByJoints(*joints)
     own, terms, warmth = law[0], friction[0].terms, friction[0].warmth
-    ways, tau_ext, uncertain, q, sliding, speed, most = joints
-    away = 0.0
-    for i in range(q.size):
-        away = max(away, abs(q[i] - own.began[i]))
-    doubt = min(HERE + (1.0 - HERE) * away / APART, 1.0)
+    tau_certain, sliding, speed, most = joints
     for i in range(torque.size):
         breakaway = terms[i, 0] * warmth[i]
-        model = ways[DYNAMICS, i]
-        unexplained = model - delayed(own.late, own.lag, model - tau_ext[i], i) - own.hand[i] - own.usual[i]
         own.asked[i] += own.smooth * (own.capped[i] - own.asked[i])
-        own.felt[i] += own.smooth * (unexplained - own.felt[i])
-        ask, felt = own.asked[i], own.felt[i]
-        least = FELT * breakaway + doubt * uncertain[i]
-        over = abs(felt) - least
-        usual = own.usual[i] + (own.keep if over > 0.0 else own.forget) * unexplained
-        # As the gears' errors are learned, what seemed usual must go as well.
-        own.usual[i] = min(max(usual, -USUAL * uncertain[i]), USUAL * uncertain[i])
-        if over > abs(ask):
-            ask = math.copysign(over, felt)
+        own.felt[i] += own.smooth * (tau_certain[i] - own.felt[i])
+        ask = own.asked[i] if abs(own.asked[i]) >= abs(own.felt[i]) else own.felt[i]
         size = max(abs(ask) - DEAD_ZONE * breakaway, 0.0)
         share = min(size / (INTENT * breakaway), 1.0) if breakaway > 0.0 else 1.0
-        torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
-        # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless something pushes it on.
-        along = felt if speed[i] > 0.0 else -felt
-        pushed = min(max(along / least, 0.0), 1.0) if least > 0.0 else 0.0
         if most == 0.0:
             share = 0.0
-        torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
+        torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
+        # A joint of which nothing is asked comes to rest sooner than by its friction alone.
+        torque[i] -= (1.0 - share) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)

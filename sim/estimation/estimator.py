@@ -168,10 +168,10 @@ class Estimator:
         known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
         if bias is None:
             self.link_hand.forget()
-            known.tau_hand = self.fall.torque
+            known.tau_hand, known.tau_certain = self.fall.torque, self.fall.certain
         else:
             self.link_hand.update(bias, self._q[1], self._ways[DEFLECTION])
-            known.tau_hand = self.link_hand.torque
+            known.tau_hand, known.tau_certain = self.link_hand.torque, self.link_hand.certain
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""
@@ -210,6 +210,7 @@ class Estimator:
             F_joints=self.forces.F_joints,
             F_link=self.link_hand.force,
             tau_hand=self.link_hand.torque,
+            tau_certain=self.link_hand.certain,
             current=self._current,
         )
 

@@ -24,7 +24,7 @@ believed whichever of both says that it leads the arm.
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.sensor.hand_model import KEEPS, STEADY
+from pendant.sensor.hand_model import LASTS, STEADY
 from pendant.settings.schema import ticks
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
@@ -40,9 +40,6 @@ Array = NDArray[np.float64]
 
 ENTRY, LATELY, BEFORE = range(3)
 
-LASTS = ticks(KEEPS)
-"""Ticks for which who was felt may be there still: a hand that turns round is not felt for a while. Bench `guided` guards it."""
-
 LONG = ticks(STEADY)
 """Ticks of the time constant with which what was felt before follows."""
 
@@ -51,7 +48,8 @@ class LinkHand:
     """One tick at a time, in free-drive with the flange sensor.
 
     Attributes:
-        torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt.
+        torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt, and was lately.
+        certain: what of it no error explains in this tick (n,) [N·m].
         force: the force (3,) at the flange, in B, that would make these torques best [N].
 
     Args:
@@ -71,15 +69,16 @@ class LinkHand:
             left=(3, arm.n),  # what errors do not explain as far as they are known, against each of these [N·m]
             sure=(3, arm.n),  # what of it they do not explain at all
             torque=(arm.n,),
+            certain=(arm.n,),
             force=(3,),
         )
         self._own = self._record[0]
-        self.torque, self.force = self._own["torque"], self._own["force"]
+        self.torque, self.force, self.certain = self._own["torque"], self._own["force"], self._own["certain"]
 
     def forget(self) -> None:
         """Free-drive is to begin, or the sensor is out: nothing is felt."""
         self._own["ticks"], self._own["lasts"] = 0, 0
-        self.torque[:], self.force[:] = 0.0, 0.0
+        self.torque[:], self.certain[:], self.force[:] = 0.0, 0.0, 0.0
 
     def update(self, bias: tuple[float, ...], qd: Array, by_deflection: NDArray[np.bool_]) -> None:
         """One tick.
@@ -110,6 +109,7 @@ def _update(memory, known, model, told) -> None:
     lately, stands = False, True
     for i in range(qd.size):
         new = changed and own.sure[LATELY, i] != 0.0 and own.sure[BEFORE, i] != 0.0
+        own.certain[i] = own.sure[LATELY, i] if new else 0.0
         lately = lately or new
         own.lasts[i] = LASTS if new or own.sure[ENTRY, i] != 0.0 else max(own.lasts[i] - 1, 0)
         if own.lasts[i] == 0:
@@ -124,6 +124,8 @@ def _update(memory, known, model, told) -> None:
             _keep(own, bias, LATELY)
     by_entry = not lately and (away or _power(own.left[ENTRY], qd) > _power(own.left[LATELY], qd))
     own.torque[:] = own.left[ENTRY if by_entry else LATELY]
+    if not lately:
+        own.certain[:] = own.sure[ENTRY]
     if lately:
         best_force(jacobian, own.torque, own.force)
     elif away:

@@ -31,6 +31,7 @@ than its error and STIFFNESS |J' p|, the payload may have fallen, unless all of 
 joint would miss does not move an arm that its friction holds. Else a hand is there.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -69,6 +70,7 @@ class PayloadFall:
 
     Attributes:
         torque: of a hand (n,) [N·m]; zeros where there is none.
+        certain: what of it is more than each joint may be wrong by (n,) [N·m].
     """
 
     def __init__(self, arm: Arm, rigid: NewtonEuler, joints: JointTorques, wrench: ExternalWrench) -> None:
@@ -91,6 +93,7 @@ class PayloadFall:
             needed=(2, 6),  # force and moment behind the first and the second of both filters [N, N·m]
             swing=(2, 6),  # the same to accelerate 1 kg at its centre
             hand=(arm.n,),  # what a hand makes of the change of tau_ext [N·m]
+            certain=(arm.n,),  # what of that is beyond the errors
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
             ticks="i8",  # since both run
             lasts="i8",  # ticks
@@ -99,6 +102,7 @@ class PayloadFall:
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
         self.torque: Array = own["hand"]
+        self.certain: Array = own["certain"]
         self._begun = self._blind = False
 
     @property
@@ -118,7 +122,7 @@ class PayloadFall:
         """
         if not free:
             self._begun = False
-            self.torque[:] = 0.0
+            self.torque[:] = self.certain[:] = 0.0
             return NOT_ASKED
         if not self._begun:
             self._begin()
@@ -128,7 +132,7 @@ class PayloadFall:
         momentum, transmission, _ = self._joints
         if not momentum.ready:
             self._own["ticks"] = 0
-            self.torque[:] = 0.0
+            self.torque[:] = self.certain[:] = 0.0
             return NOT_ASKED
         felt = q, transmission.ways[DYNAMICS], momentum.residual, transmission.by_motor
         fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
@@ -171,7 +175,7 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
         for k in range(MEAN):
             more += own.latest[k, 0, i] / MEAN
             lost += own.latest[k, 1, i] / MEAN
-        own.hand[i] = more
+        own.hand[i], own.certain[i] = more, math.copysign(max(abs(more) - wrong, 0.0), more)
         change += more * more
         left += (more - lost) * (more - lost)
         nothing = nothing and abs(more) <= wrong
@@ -180,7 +184,7 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
     own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
     feels = NOTHING if nothing else FALL if falls and not unmissed else HAND
     if feels != HAND:
-        own.hand[:] = 0.0
+        own.hand[:] = own.certain[:] = 0.0
     return own.lasts >= LONGEST - MEAN, feels
 
 

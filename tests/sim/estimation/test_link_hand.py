@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
 from pendant.events.event import Kind
-from pendant.sensor.hand_model import KEEPS
+from pendant.sensor.hand_model import KEEPS, LASTS
 from pendant.tick.modes import TICK, Mode
 from sim.arm.scenario import Scenario
-from sim.estimation.link_hand import BEFORE, ENTRY, LASTS, LATELY, LONG, LinkHand
+from sim.estimation.link_hand import BEFORE, ENTRY, LATELY, LONG, LinkHand
 from sim.estimation.momentum_observer import READY, MomentumObserver
 from sim.estimation.torque_errors import CAUSES, FOLLOW, OWN, ZERO
 from sim.estimation.transmission_torque import CONTACT
@@ -86,6 +86,7 @@ def test_a_change_is_a_hands_beyond_what_the_model_leaves(share: float, felt: bo
     joints.felt[joint, 0] += way * share * LEAST
     torque = joints.tick()
     assert torque == pytest.approx(way * share * LEAST * np.eye(N)[joint] * felt)
+    assert joints.hand.certain == pytest.approx(way * (share - 1.0) * LEAST * np.eye(N)[joint] * felt)
     J = joints.jacobian[:3]
     force = np.linalg.solve(J @ J.T + DAMPING**2 * np.eye(3), J @ torque)
     assert joints.hand.force == pytest.approx(force)
@@ -193,8 +194,10 @@ def test_a_hand_that_rested_on_the_arm_seems_to_pull_the_other_way_to_nobody() -
     joints.hand._own["lasts"] = 0
     assert not joints.tick().any()
     assert not joints.hand.force.any()
+    assert not joints.hand.certain.any()
     joints.felt[1, 0] = 6.0 + 5.0 * LEAST
     assert joints.tick()[1] == pytest.approx(3.0 * LEAST, rel=0.05), "who leads it is known, by what is more than before"
+    assert joints.hand.certain[1] == pytest.approx(2.0 * LEAST, rel=0.05), "less the errors, which are no more than then"
 
 
 @pytest.mark.parametrize("k", range(ZERO))
@@ -210,8 +213,10 @@ def test_of_who_is_felt_a_joint_counts_that_feels_it_for_sure() -> None:
     joints = Joints().moving().begun()
     joints.felt[0, 0], joints.felt[1, 0], joints.felt[2, 0] = 1.01 * LEAST, 0.99 * LEAST, -1.01 * LEAST
     assert joints.tick() == pytest.approx([1.01 * LEAST, 0.0, -1.01 * LEAST, 0.0, 0.0, 0.0])
+    assert joints.hand.certain == pytest.approx([0.01 * LEAST, 0.0, -0.01 * LEAST, 0.0, 0.0, 0.0])
     joints.felt[:3, 0] = 0.5 * LEAST
     assert joints.tick() == pytest.approx([0.5 * LEAST, 0.0, 0.5 * LEAST, 0.0, 0.0, 0.0])
+    assert not joints.hand.certain.any()
 
 
 def test_who_is_felt_against_entry_is_never_forgotten() -> None:
@@ -238,6 +243,7 @@ def test_who_was_felt_may_be_there_still() -> None:
     for _ in range(LASTS - 1):
         assert joints.tick()[0] == pytest.approx(0.5 * LEAST)
         assert not joints.hand.force.any()
+        assert not joints.hand.certain.any()
     assert not joints.tick().any()
     assert LASTS * TICK == KEEPS
 
@@ -257,6 +263,7 @@ def test_of_a_change_since_entry_a_force_is_what_is_beyond_the_errors(share: flo
     assert joints.tick()[1] == pytest.approx(way * share * errors * felt)
     J = joints.jacobian[:3]
     beyond = way * (share - 1.0) * errors * felt * np.eye(N)[1]
+    assert joints.hand.certain == pytest.approx(beyond)
     assert joints.hand.force == pytest.approx(np.linalg.solve(J @ J.T + DAMPING**2 * np.eye(3), J @ beyond))
 
 
@@ -287,6 +294,7 @@ def test_afterwards_all_begins_again(how: str) -> None:
         joints.tick()
         joints.count["count"] = READY
     assert not joints.hand.torque.any()
+    assert not joints.hand.certain.any()
     assert not joints.hand.force.any()
     assert not joints.tick().any(), "what is felt now is what was felt at entry"
 
@@ -307,16 +315,17 @@ def test_it_is_told_alike_whatever_the_joints_feel(seed: int) -> None:
     joints.felt[:, 0] *= 4.0
     joints.bias = tuple((bias + 0.2 * rng.normal(size=ZERO)).tolist())
     change = joints.felt - before
-    expected, sure = np.zeros(N), False
+    expected, certain = np.zeros(N), np.zeros(N)
     for i in range(N):
         where = [at(i, k) for k in range(CAUSES)]
         left = change[i, 0] - joints.shares[i] @ change[i, 1:] + (np.array(joints.bias) - bias) @ joints.felt[i, 2 : 2 + ZERO]
         wrong = change[i, 1:] @ joints.covariance[np.ix_(where, where)] @ change[i, 1:]
         wrong += DOUBT**2 + (LINK_MASS * change[i, 1]) ** 2
-        found = abs(left) > CONTACT * np.sqrt(wrong)
-        expected[i], sure = left * found, sure or found
-    assert sure
+        certain[i] = np.copysign(max(abs(left) - CONTACT * np.sqrt(wrong), 0.0), left)
+        expected[i] = left * (certain[i] != 0.0)
+    assert certain.any()
     assert joints.tick() == pytest.approx(expected)
+    assert joints.hand.certain == pytest.approx(certain)
 
 
 @pytest.mark.parametrize("felt", [True, False])
@@ -332,4 +341,5 @@ def test_a_hand_leads_the_arm_by_a_link_because_the_joints_feel_it(felt: bool, m
     assert (bench.mode is Mode.FREE_DRIVE) is felt
     assert (np.linalg.norm(bench.plant.data.body("flange").xpos - before) > 0.2) == felt
     assert bench.simulation.estimate.tau_hand.any() == felt
+    assert bench.simulation.estimate.tau_certain.any() == felt
     assert [event.kind for event in bench.events if event.kind is Kind.STOPPED_MOTION] == [Kind.STOPPED_MOTION] * (not felt)

@@ -264,10 +264,13 @@ def test_the_torques_of_a_hand_are_the_change_since_entry(joint: int, share: flo
         joints.tick(before + change)
     assert joints.feels is JointsFeel.HAND
     assert joints.fall.torque == pytest.approx(change)
+    wrong = RIPPLE + STIFFNESS * abs(joints.model - joints.fall._own["entry"])
+    assert joints.fall.certain == pytest.approx(np.sign(share) * (abs(change) - wrong) * np.eye(N)[joint])
     for _ in range(MEAN):
         joints.tick(before)
     assert joints.feels is JointsFeel.NOTHING
     assert not joints.fall.torque.any()
+    assert not joints.fall.certain.any()
 
 
 @pytest.mark.parametrize("how", ["left", "not ready"])
@@ -280,6 +283,7 @@ def test_a_hand_makes_no_torques_any_more_when_nothing_is_asked(how: str) -> Non
     joints.ready = how == "left"
     joints.tick(3.0 * RIPPLE, free=how != "left")
     assert not joints.fall.torque.any()
+    assert not joints.fall.certain.any()
 
 
 def test_it_is_blind_from_an_outage_to_the_end_of_free_drive() -> None:
