@@ -1,4 +1,8 @@
-"""Manipulation (FD-13): is the user changing, or trying to change, the posture?"""
+"""Manipulation (FD-13): is the user changing, or trying to change, the posture?
+
+A force at the flange must exceed its limit, for the sensor is no better. A hand on a link is told without the sensor's errors and
+the joints' (`sim.estimation.link_hand`): what is left of it counts from the force on that is a hand's.
+"""
 
 import math
 
@@ -8,7 +12,7 @@ from pendant.limits.residual import Split, upward
 from pendant.sensor.hand_model import TOUCH
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.limit_engine import Excess
-from pendant.tick.pose import Wrench
+from pendant.tick.pose import ORIGIN, Vector, Wrench
 
 RATE = 1.0 - math.exp(-1.0 / TOUCH)
 """Weight of a tick in a change that a payload could explain and stops counting as the user's: a hand never keeps one."""
@@ -17,7 +21,7 @@ RATE = 1.0 - math.exp(-1.0 / TOUCH)
 class Maintained:
     """Watches one free-drive or restart period for manipulation. Forces and torques are changes since it began."""
 
-    __slots__ = ("_joints", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
+    __slots__ = ("_joints", "_least", "_link", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
 
     def __init__(self, estimate: Estimate, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]) -> None:
         """
@@ -29,7 +33,9 @@ class Maintained:
         """
         self._monitor = Monitor(settings.limits.maintain)
         self._share = settings.limits.maintain.load_share
+        self._least = settings.unexplained.force
         self._since: EntryValues = reference(estimate, wrench)
+        self._link: Vector = on_link(estimate, wrench)
         self._joints = joints
         self._ones = (1.0,) * len(joints)
         self._up = upward(estimate.g_B.tolist())
@@ -38,6 +44,7 @@ class Maintained:
     def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
         """The period starts again in this tick."""
         self._since = reference(estimate, wrench)
+        self._link = on_link(estimate, wrench)
         self._slow = [0.0] * 6
 
     def step(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
@@ -46,7 +53,12 @@ class Maintained:
         share = self._share
         heavier = share * GRAVITY * estimate.load_mass
         beyond = self._monitor.step(Observed(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
-        return beyond[0].excess if beyond else None
+        return beyond[0].excess if beyond else self._on_link(estimate, wrench)
+
+    def _on_link(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
+        """Whether a hand is felt on a link that was not as the period began."""
+        change = math.dist(on_link(estimate, wrench), self._link)
+        return Excess("user force", "link", change, self._least, "N") if change > self._least else None
 
     def _split(self, wrench: Wrench) -> Split:
         """The change without its payload-like part: that which stays, along gravity (force) or across it (torque)."""
@@ -62,3 +74,11 @@ class Maintained:
         rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
         force, torque = math.sqrt(x * x + y * y + z * z), math.sqrt(rx * rx + ry * ry + rz * rz)
         return Split(0.0, 0.0, force, torque)  # no limit here asks for a payload
+
+
+def on_link(estimate: Estimate, wrench: Wrench | None) -> Vector:
+    """Force of a hand on a link, axes of B [N]: it is told beside the flange sensor alone."""
+    if wrench is None:
+        return ORIGIN
+    x, y, z = estimate.F_link.tolist()
+    return x, y, z

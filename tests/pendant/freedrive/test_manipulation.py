@@ -196,3 +196,36 @@ def test_a_period_that_begins_anew_is_as_one_that_begins() -> None:
     watch.anew(pushed, felt(pushed))
     fresh = maintained(pushed)
     assert (watch._since, watch._slow) == (fresh._since, fresh._slow)
+
+
+@pytest.mark.parametrize("at_begin", [(0.0, 0.0, 0.0), (3.0, -1.0, 2.0)])
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("share", [-1.01, -0.99, 0.0, 0.99, 1.01, 9.0])
+def test_a_hand_on_a_link_counts_by_a_change_that_is_a_hands(share: float, axis: int, at_begin: tuple[float, ...]) -> None:
+    """It is told without what sensor and joints may err by; so it counts from the force on that is a hand's (FD-19)."""
+    least = Settings().unexplained.force
+    now = [value + (share * least if k == axis else 0.0) for k, value in enumerate(at_begin)]
+    excess = see(maintained(estimate(link=list(at_begin))), estimate(link=now))
+    assert excess == (Excess("user force", "link", pytest.approx(abs(share) * least), least, "N") if abs(share) > 1.0 else None)
+
+
+def test_as_the_period_starts_again_so_does_what_is_felt_on_a_link() -> None:
+    """What hangs on a link does not keep an arm free."""
+    watch, hung = maintained(), estimate(link=[0.0, 0.0, -9.0])
+    assert see(watch, hung) is not None
+    watch.anew(hung, felt(hung))
+    assert see(watch, hung) is None
+    assert see(watch, estimate()) is not None
+
+
+def test_without_the_flange_sensor_no_hand_on_a_link_is_told() -> None:
+    watch = maintained(sensed=False)
+    assert watch.step(estimate(link=[9.0, 0.0, 0.0]), None) is None
+    begun = Maintained(estimate(link=[9.0, 0.0, 0.0]), Settings(), None, JOINTS)
+    assert begun.step(estimate(), None) is None
+
+
+def test_another_parameter_is_told_first() -> None:
+    excess = see(maintained(), estimate(link=[9.0, 0.0, 0.0], speed=[0.1, 0.0, 0.0]))
+    assert excess is not None
+    assert excess.parameter == "flange speed"
