@@ -10,7 +10,7 @@ from typing import NamedTuple
 from pendant.all_settings import Settings
 from pendant.events.event import Kind, Values
 from pendant.guided.bias_follower import SURE, Slack
-from pendant.guided.steady_wrench import SteadyWrench
+from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.unintended_motion import UnintendedMotion
 from pendant.guided.user_force import UserForce
 from pendant.limits.parameters import EntryValues, Monitor, Observed, reference
@@ -57,7 +57,7 @@ class EndingWatch:
         joints: tuple[str, ...],
         rated: tuple[float, ...],
         held: float,
-        wrench: SteadyWrench,
+        wrench: ChangingWrench,
     ) -> None:
         """
         Args:

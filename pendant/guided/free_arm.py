@@ -5,11 +5,11 @@ from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
 from pendant.guided.bias_follower import SURE
+from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.endings import EndingWatch
 from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
 from pendant.guided.pull import HandFelt, PullCauses, felt
 from pendant.guided.sensor_bias import SensorBias
-from pendant.guided.steady_wrench import SteadyWrench
 from pendant.guided.user_force import UserForce
 from pendant.limits.axis_locks import axis_locks
 from pendant.limits.joint_zones import JointZones
@@ -47,7 +47,7 @@ class FreeArm:
         "_hung",
         "_operation",
         "_singularity",
-        "_steady",
+        "_wrench",
         "_zones",
         "caught",
         "damping",
@@ -85,7 +85,7 @@ class FreeArm:
         estimate = around.estimate
         self._bias, self._containment, self._zones = bias, containment, zones
         self._hand = UserForce(estimate, around.mean.mean(), bias.sensor.offset_force)
-        self._steady = wrench = SteadyWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
+        self._wrench = wrench = ChangingWrench(bias.sensor, ticks(settings.unexplained.time), settings.unexplained.force)
         self._operation = EndingWatch(estimate, settings, joints=joints, rated=rated, held=around.payload, wrench=wrench)
         self._singularity = SingularityWatch()
         self.caught = self.suspect = self.doubtful = False
@@ -121,8 +121,7 @@ class FreeArm:
         self.user = hand.user
         if bias.used and settings.unexplained.sensor:
             still, force = around.still.count > 0, settings.unexplained.force
-            steady = self._steady.steady
-            told = bias.step(estimate, hand, around.mean, waits=waits, still=still, steady=steady, force=force)
+            told = bias.step(estimate, hand, around.mean, waits=waits, still=still, force=force)
             if told is not None:
                 events.append(told)
         reading = self._containment.step(estimate, hand.user, hand.payload, operation.led)
@@ -140,9 +139,9 @@ class FreeArm:
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
         self.slack = slack = bias.slack(estimate) if bias.used else SURE
-        steady = self._is_steady(around, settings, driven)
+        self._watch_wrench(around, settings, driven)
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
-        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful or steady
+        self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
         self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
         self.pressed = self._pressed(settings, tick)
         self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
@@ -150,18 +149,15 @@ class FreeArm:
             return becomes(Transition.LEFT, Event(ending.kind, tick, ending.values), events)
         return Happened(events)
 
-    def _is_steady(self, around: Surroundings, settings: Settings, driven: bool) -> bool:
-        """One tick: what the flange sensor feels may be its own error, and nobody is felt on a link."""
-        bias, steady, estimate = self._bias, self._steady, around.estimate
+    def _watch_wrench(self, around: Surroundings, settings: Settings, driven: bool) -> None:
+        """One tick: whether a hand at the flange changes its wrench; something else may move the arm, or a hand on a link."""
+        bias, wrench, estimate = self._bias, self._wrench, around.estimate
         x, y, z = estimate.F_link.tolist()
         linked = norm((x, y, z)) >= settings.unexplained.force
         if driven or linked or not (bias.used and settings.unexplained.sensor):
-            steady.forget()
-        elif steady.due():
-            vx, vy, vz = estimate.v_F.tolist()[:3]
-            moves = norm((vx, vy, vz)) >= settings.unexplained.speed
-            steady.step(bias.apart(estimate, around.mean.mean()), estimate, moves=moves, wrong=bias.wrong(estimate.tick))
-        return steady.steady
+            wrench.forget()
+        elif wrench.due():
+            wrench.step(bias.apart(estimate, around.mean.mean()), estimate)
 
     def _pressed(self, settings: Settings, tick: int) -> Excess | None:
         """At entry the sequence let so much pass; without it nobody knows what was felt then."""

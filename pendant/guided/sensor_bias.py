@@ -89,7 +89,6 @@ class SensorBias:
         waits: bool,
         still: bool,
         force: float,
-        steady: bool = False,
     ) -> Event | None:
         """One tick of free-drive with a valid sensor: its drift is subtracted.
 
@@ -102,7 +101,6 @@ class SensorBias:
             waits: nobody is known to move the arm.
             still: no joint moves.
             force: a hand's is at least so large, if the sensor has not drifted [N], so that a smaller step moves nothing.
-            steady: what the sensor feels was its own error, for it did not change while the arm moved and came to rest.
         """
         least = force + self._drift.drifted(estimate.tick).force
         x, y, z = estimate.F_joints.tolist()
@@ -121,9 +119,7 @@ class SensorBias:
             now = mean.mean()
             apart = self.apart(estimate, now)
             if not self._drift.begun:
-                if steady:
-                    self._know(apart, estimate, hand)
-                elif self._drift.held(apart, estimate):
+                if self._drift.held(apart, estimate):
                     return None
             elif self._drift.rested(apart):
                 gone, most = self.drifted or ZEROS, drift(self.sensor, estimate.tick - self._since)

@@ -4,12 +4,12 @@ import math
 
 from pendant.events.event import Values
 from pendant.guided.bias_follower import SURE, Slack
+from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.settings import Unexplained
-from pendant.guided.steady_wrench import SteadyWrench
 from pendant.guided.user_force import UserForce
 from pendant.guided.work import NO_WRENCH, Forces, Work
 from pendant.limits.parameters import EntryValues
-from pendant.sensor.hand_model import LIGHT
+from pendant.sensor.hand_model import LASTS, LIGHT
 from pendant.sensor.odds import HALF
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
@@ -56,6 +56,7 @@ class UnintendedMotion:
     """
 
     __slots__ = (
+        "_again",
         "_allowed",
         "_at_rest",
         "_caused",
@@ -63,6 +64,7 @@ class UnintendedMotion:
         "_helped",
         "_on",
         "_stretch",
+        "_there",
         "_ticks",
         "_whole",
         "_wrench",
@@ -70,7 +72,7 @@ class UnintendedMotion:
         "led",
     )
 
-    def __init__(self, on: Unexplained, since: EntryValues, wrench: SteadyWrench) -> None:
+    def __init__(self, on: Unexplained, since: EntryValues, wrench: ChangingWrench) -> None:
         """
         Args:
             on: settings.
@@ -84,6 +86,8 @@ class UnintendedMotion:
         self._stretch = Way(since)
         self._at_rest = True  # before; nobody let it go while it moved
         self._whole = Way(since)  # since it has been at rest; without the flange sensor, since the payload may have fallen
+        self._there = 0  # ticks for which who was felt may be there still
+        self._again = False  # so that it goes as far again
         self._helped = 0.0  # so much of it was not doubtful [m]
         self.led = self.doubtful = False
 
@@ -107,27 +111,30 @@ class UnintendedMotion:
             slack: what may be the sensor's drift.
             torque: of the hand at the flange, axes of B [N·m].
         """
-        steady = self._wrench.steady
         x, y, z = hand.user
         least = self._on.force + slack.force
         if use_wrench:
-            caused = driven or (not steady and x * x + y * y + z * z >= least * least and hand.surely(least))
+            there = x * x + y * y + z * z >= least * least and hand.surely(least)
         else:
-            caused = driven or estimate.joints_feel is JointsFeel.HAND
+            there = estimate.joints_feel is JointsFeel.HAND
+        changes = use_wrench and self._wrench.changes
+        self._there = 0 if not use_wrench else LASTS if there or changes else max(self._there - 1, 0)
+        self._again = self._again and self._there > 0
         wrench, usual = NO_WRENCHES, norm(hand.usual)
-        if use_wrench and usual < LIGHT + slack.force and not steady:
+        if use_wrench and usual < LIGHT + slack.force:
             force, drifts = _split(hand.usual, usual, slack.force)
             turn, turn_drifts = _split(torque, norm(torque), slack.torque)
             wrench = (force, turn), (drifts, turn_drifts)
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
-        way = self._too_long(estimate, wrench, speed=speed, caused=caused, use_wrench=use_wrench)
+        way = self._too_long(estimate, wrench, speed=speed, caused=driven or there, use_wrench=use_wrench)
         if way is None:
             return None
-        if self._wrench.changes and use_wrench:
+        if changes or (self._there > 0 and not self._again):
             # Who was there a moment ago may be there: nothing helps, and it ends as far from here.
             self._ticks = 0
             self._begin(estimate)
+            self._again = self.doubtful = True
             return None
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
@@ -167,7 +174,7 @@ class UnintendedMotion:
             self._ticks, self.doubtful = 0, False
         elif self._lasts(HALF):
             self.doubtful = True
-        self.doubtful = self.doubtful or far
+        self.doubtful = self.doubtful or far or self._again
         self._doubted = self._doubted + 1 if self.doubtful else 0
         # Without help an arm that nobody leads may come to rest first.
         waits = self._doubted < HALF * self._allowed
@@ -217,7 +224,8 @@ class UnintendedMotion:
         return self._stretch.work.lasts(round(share * self._allowed))
 
     def _end_doubt(self) -> None:
-        self.doubtful, self._doubted = False, 0
+        self._again = self.doubtful = False
+        self._doubted = 0
 
 
 NO_WRENCHES = (NO_WRENCH, NO_WRENCH)

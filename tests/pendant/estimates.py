@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import Settings
-from pendant.guided.steady_wrench import SteadyWrench
+from pendant.guided.changing_wrench import ChangingWrench
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
@@ -118,7 +118,7 @@ def _wrench(linear: float | list[float], angular: float | list[float]) -> NDArra
     return _zeros(6) if linear == angular == 0.0 else np.array(_listed(linear, 3) + _listed(angular, 3))
 
 
-def watched() -> SteadyWrench:
+def watched() -> ChangingWrench:
     """What tells whether the wrench changes, as free-drive has it; nothing was felt yet."""
     on = Settings().unexplained
-    return SteadyWrench(SENSOR, ticks(on.time), on.force)
+    return ChangingWrench(SENSOR, ticks(on.time), on.force)

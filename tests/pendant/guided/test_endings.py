@@ -156,6 +156,7 @@ def test_a_hand_that_was_let_go_stops_counting_after_the_filter() -> None:
     free.until([estimate(force=10.0, speed=0.1)] * 500)
     settle = math.ceil(SWING * math.log(10.0 / 1.0) / TICK)
     assert free.until([estimate(speed=0.1)] * (150 + settle - 2)) is None
+    assert free.until([estimate(speed=0.1)] * 151) is None, "who was felt a moment ago has as long once more"
     assert free.until([estimate(speed=0.1)] * 4) is not None
 
 

@@ -128,7 +128,7 @@ def test_a_doubt_lasts_for_half_of_the_time_before_the_arm_is_stopped() -> None:
 def test_who_pays_for_a_part_has_longer() -> None:
     """With 0.41 paid, 150 ticks' worth are owed after 150 / 0.59 = 254.2 ticks."""
     bench = Bench()
-    bench.held(at(0.0, 0.1))
+    bench.let_go(at(0.0, 0.1))
     value = at(0.0, 0.1, turns=1.0, felt=0.41 * PAYS)
     assert bench.until([value] * 254) is None
     told = bench.see(value)

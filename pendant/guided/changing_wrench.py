@@ -1,11 +1,7 @@
-"""Whether what seems to lead the free arm is an error of the flange sensor's bias: a wrench that does not change (FD-19).
+"""Whether what the flange sensor feels changes as only a hand changes it, however wrong its bias is (FD-19).
 
 An error of the bias turns with the flange, and is the same in every window but for noise and gain. The wrench of a hand that
-leads a moving arm is not. So a wrench that the bias may be wrong by, and that has not changed for as long as an arm may move
-without a hand, may be the sensor's. Nothing helps the motion on then, and the arm brakes. A hand that is there pushes more, and
-is known by that. An error stays what it is until the arm rests: then it is known, and becomes part of the bias.
-
-What did change in that time has two values x and y of which one at least is a hand's, however wrong the bias b is: of
+leads a moving arm is not. What changed has two values x and y of which one at least is a hand's, however wrong the bias b is: of
 |x - b| and |y - b| the larger is half of |x - y| or more. So a hand that turns round is known after minutes, too, in which the
 sensor may have drifted by more than that hand pushes. The same holds since an arm went on its own: who changes less than that
 while it goes as far as it may alone cannot be told from an error.
@@ -15,40 +11,24 @@ import math
 from collections import deque
 from operator import sub
 
-from pendant.guided.bias_follower import OFTEN, Slack
+from pendant.guided.bias_follower import OFTEN
 from pendant.limits.parameters import ZEROS
 from pendant.sensor.odds import HALF
-from pendant.sensor.sensor_errors import LEVER, gain_error, load_weight, noise_error, window_error
+from pendant.sensor.sensor_errors import LEVER, gain_error, load_weight, noise_error
 from pendant.sensor.sensor_spec import SensorSpec
 from pendant.tick.estimate import Estimate
 from pendant.tick.pose import ORIGIN, Vector, Wrench
 
 
-class SteadyWrench:
+class ChangingWrench:
     """Compares windows of the wrench, one after the other.
 
     Attributes:
-        steady: it has not changed for so long, while the arm moved.
-        changes: within that time it changed as only a hand changes it.
+        changes: within the time that an arm may move without a hand it changed as only a hand changes it.
         turned: it did since the way began (`begin_way`).
     """
 
-    __slots__ = (
-        "_count",
-        "_first",
-        "_force",
-        "_high",
-        "_lately",
-        "_low",
-        "_needed",
-        "_sensor",
-        "_way_weight",
-        "_weight",
-        "_windows",
-        "changes",
-        "steady",
-        "turned",
-    )
+    __slots__ = ("_count", "_force", "_high", "_lately", "_low", "_sensor", "_way_weight", "changes", "turned")
 
     def __init__(self, sensor: SensorSpec, needed: int, force: float) -> None:
         """
@@ -57,16 +37,13 @@ class SteadyWrench:
             needed: ticks for which an arm may move without a hand.
             force: a hand's is at least so large [N].
         """
-        self._sensor, self._needed, self._force = sensor, -(-needed // OFTEN), force
-        self._lately: deque[tuple[Wrench, Vector]] = deque(maxlen=self._needed)  # windows, and the load's weight in each
+        self._sensor, self._force = sensor, force
+        self._lately: deque[tuple[Wrench, Vector]] = deque(maxlen=-(-needed // OFTEN))  # windows, and the load's weight in each
         self._count = 0  # ticks since a window ended
-        self._first: Wrench | None = None  # window since which it is the same, axes of F [N, N·m]
-        self._weight: Vector = ORIGIN  # of the load in it, axes of F [N]
-        self._windows = 0  # that were the same as it
         self._low: Wrench | None = None  # the least of each axis since the way began, axes of F [N, N·m]; None: no window yet
         self._high: Wrench = ZEROS  # the most
         self._way_weight: Vector = ORIGIN  # of the load as it began, axes of F [N]
-        self.steady = self.changes = self.turned = False
+        self.changes = self.turned = False
 
     def begin_way(self) -> None:
         """An arm goes on its own from here."""
@@ -79,39 +56,22 @@ class SteadyWrench:
 
     def forget(self) -> None:
         """The sensor is not used, or something else moves the arm."""
-        self._begin()
         self._lately.clear()
         self.changes = False
         self.begin_way()
 
-    def step(self, apart: Wrench, estimate: Estimate, *, moves: bool, wrong: Slack) -> None:
+    def step(self, apart: Wrench, estimate: Estimate) -> None:
         """One window.
 
         Args:
             apart: the wrench without the bias, axes of F [N, N·m].
             estimate: of its last tick.
-            moves: the arm does.
-            wrong: of the bias at most.
         """
         noise, weight = noise_error(self._sensor, estimate), load_weight(estimate)
         least = self._force / HALF + noise  # of a change that is a hand's: half of it is its force [N]
         self.changes = self._changes(apart, estimate, least)
         self._lately.append((apart, weight))
         self.turned = self._turns(apart, estimate, least, weight)
-        hand = math.hypot(*apart[:3]) > wrong.force + noise or math.hypot(*apart[3:]) > wrong.torque + LEVER * noise
-        if hand or not (moves or self.steady):
-            self._begin()
-            return
-        first = self._first
-        if first is not None and self._same(apart, first, estimate):
-            self._windows += 1
-            self.steady = self._windows >= self._needed
-            return
-        self._begin()
-        self._first, self._weight = apart, weight
-
-    def _begin(self) -> None:
-        self._first, self._windows, self.steady = None, 0, False
 
     def _changes(self, apart: Wrench, estimate: Estimate, least: float) -> bool:
         """It changes by `least` [N], and more than gain explains."""
@@ -132,8 +92,3 @@ class SteadyWrench:
         x, y, z, a, b, c = map(sub, high, low)
         change = max(x, y, z, max(a, b, c) / LEVER)
         return change > least and change > least + gain_error(self._sensor, estimate, self._way_weight)
-
-    def _same(self, apart: Wrench, first: Wrench, estimate: Estimate) -> bool:
-        """Noise and gain explain how far apart the two are; as the arm brakes, it may be as far as no hand's force is."""
-        error = window_error(self._sensor, estimate, self._weight) + self._force * self.steady
-        return math.dist(apart[:3], first[:3]) <= error and math.dist(apart[3:], first[3:]) <= LEVER * error
