@@ -35,7 +35,8 @@ class Asking(NamedTuple):
 class FeltByJoints(NamedTuple):
     """What the joints tell of the hand, n joints."""
 
-    tau_certain: Array  # torque of a hand that no error explains (n,) [N·m]
+    tau_hand: Array  # torque of a hand (n,) [N·m]
+    tau_certain: Array  # what of it is certain (n,) [N·m]
     sliding: Array  # friction (n,) [N·m]
     speed: Array  # of the motors (n,) [rad/s]
     most: float  # share of the friction that is taken off at most
@@ -75,7 +76,7 @@ class HandHelp:
 
     def take_off(self, estimate: Estimate, friction: AdaptiveFriction, share: float, torque: Array) -> None:
         """Take at most this share of the friction off the hand; a joint of which nothing is asked is braked."""
-        felt = estimate.tau_certain, estimate.friction, estimate.theta_d, share
+        felt = estimate.tau_hand, estimate.tau_certain, estimate.friction, estimate.theta_d, share
         _take_off(self._record, friction.record, felt, torque)
 
 
@@ -122,7 +123,7 @@ def _certain(size, slack):
 def _take_off(law, friction, joints, torque) -> None:
     joints = FeltByJoints(*joints)
     own, terms, warmth = law[0], friction[0].terms, friction[0].warmth
-    tau_certain, sliding, speed, most = joints
+    tau_hand, tau_certain, sliding, speed, most = joints
     for i in range(torque.size):
         breakaway = terms[i, 0] * warmth[i]
         own.asked[i] += own.smooth * (own.capped[i] - own.asked[i])
@@ -133,5 +134,7 @@ def _take_off(law, friction, joints, torque) -> None:
         if most == 0.0:
             share = 0.0
         torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
-        # A joint of which nothing is asked comes to rest sooner than by its friction alone.
-        torque[i] -= (1.0 - share) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)
+        # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless a hand may push it on.
+        along = tau_hand[i] if speed[i] > 0.0 else -tau_hand[i]
+        pushed = min(max(along / (INTENT * breakaway), 0.0), 1.0) if breakaway > 0.0 and most > 0.0 else 0.0
+        torque[i] -= (1.0 - share) * (1.0 - pushed) * BRAKE * breakaway * math.tanh(speed[i] / BRAKE_SPEED)

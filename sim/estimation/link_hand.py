@@ -49,7 +49,8 @@ class LinkHand:
 
     Attributes:
         torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt, and was lately.
-        certain: what of it no error explains in this tick (n,) [N·m].
+        certain: what of it a hand makes for certain in this tick (n,) [N·m]: a change against what was felt lately as a whole, of
+            the change since entry what no error explains.
         force: the force (3,) at the flange, in B, that would make these torques best [N].
 
     Args:
@@ -109,7 +110,7 @@ def _update(memory, known, model, told) -> None:
     lately, stands = False, True
     for i in range(qd.size):
         new = changed and own.sure[LATELY, i] != 0.0 and own.sure[BEFORE, i] != 0.0
-        own.certain[i] = own.sure[LATELY, i] if new else 0.0
+        own.certain[i] = own.left[LATELY, i] if new else 0.0
         lately = lately or new
         own.lasts[i] = LASTS if new or own.sure[ENTRY, i] != 0.0 else max(own.lasts[i] - 1, 0)
         if own.lasts[i] == 0:

@@ -194,8 +194,21 @@ def test_a_joint_of_which_nothing_is_asked_is_braked() -> None:
     full = BRAKE * BREAKAWAY * np.tanh(2.0)
     for way in (1.0, -1.0):
         np.testing.assert_allclose(felt(np.zeros(N), speed=way * speed), -way * full, rtol=1e-6)
-        half = felt(0.11 * BREAKAWAY, speed=way * speed)
+        half = felt(0.11 * BREAKAWAY, speed=way * speed)  # helped by half of it
         np.testing.assert_allclose(half, 0.5 * (COMPENSATED * BREAKAWAY - way * full), rtol=3e-3, atol=1e-3)
+
+
+@pytest.mark.parametrize(("share", "braked"), [(0.0, 1.0), (0.5, 0.5), (1.0, 0.0), (2.0, 0.0), (-2.0, 1.0)])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_unless_a_hand_may_push_it_on(way: float, share: float, braked: float) -> None:
+    """One that was felt a moment ago, and helps along by so much of what is helped in full. None does without help."""
+    speed, along = 2.0 * BRAKE_SPEED, share * way * INTENT * BREAKAWAY
+    full = -way * BRAKE * BREAKAWAY * np.tanh(2.0)
+    np.testing.assert_allclose(felt(np.zeros(N), speed=way * speed, tau_hand=along), braked * full, rtol=1e-6, atol=1e-9)
+    seen = estimate(q=Q, R_BF=R, theta_d=np.full(N, way * speed), tau_hand=along)
+    doubtful = replace(decision(Law.FREE, gain=1.0), doubtful=True)
+    alone = law().torque(seen, doubtful, JACOBIAN, friction=AdaptiveFriction(UR5E), with_friction=True)
+    np.testing.assert_allclose(alone - GRAVITY, full, rtol=1e-6)
 
 
 def test_who_leads_the_arm_by_its_elbow_leads_it_smoothly() -> None:
