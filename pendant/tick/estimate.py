@@ -67,7 +67,6 @@ class Estimate:
     friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]
     friction_deviation: Array = field(default_factory=_no_joints)  # (n,) its standard deviation [N·m]
     tau_ways: Array = field(default_factory=_no_joints)  # (3, n) transmission torque each way (AF-3) [N·m]
-    tau_ext_deviation: Array = field(default_factory=_no_joints)  # (n,) standard deviation of tau_ext at rest [N·m]
     degraded: bool = False  # `joints_valid` is not, but every joint has its motor angle; the rest is made up for (AF-2, AF-3)
     lost: tuple[tuple[str, int], ...] = ()  # joint sensors that are out: name, joint
     touched: bool = False  # the joints feel a contact, so that nothing is learned

@@ -204,7 +204,6 @@ class Estimator:
             friction=friction.total,
             friction_deviation=friction.deviation,
             tau_ways=transmission.ways,
-            tau_ext_deviation=transmission.external_deviation,
             tcp=rigid.tcp,
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,

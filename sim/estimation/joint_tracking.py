@@ -141,20 +141,3 @@ def follow(joints, angles) -> None:
         slip = own.slip_stiffness[i] * (x - rest[i])
         main = x * (own.stiffness[i] + own.stiffening[i] * x * x)
         own.deflection[i] = main + own.damping[i] * (theta[1, i] - q[1, i]) + slip
-
-
-@kernel
-def delayed(late, lag, measured, i) -> float:
-    """What a joint's gear bears, as late as the rigid model, which sees accelerations through the filter of the output angle.
-
-    Without that, links that swing on their springs pass for a hand, and the help for it keeps them swinging.
-
-    Args:
-        late: three poles in a row (3, n), written in place.
-        lag: weight of a tick of `TORQUE_BANDWIDTH`.
-        measured: in this tick, of joint i [N·m].
-    """
-    for k in range(3):
-        late[k, i] += lag * (measured - late[k, i])
-        measured = late[k, i]
-    return measured

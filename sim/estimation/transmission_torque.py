@@ -61,7 +61,6 @@ class TransmissionTorque:
     Attributes:
         ways, deviations: each way (3, n), and its standard deviation.
         fused, deviation: their fusion (n,), and its standard deviation; a joint without any way keeps its last value.
-        external_deviation: standard deviation of `external` at rest (n,): errors of the deflection and of the model's masses.
         external: model minus the deflection, or without it minus the motor's way (n,): the external torque; 0 without both.
         by_motor: standard deviation of the motor's way (n,) where `external` is told by that, 0 where the deflection tells it.
         stiffer: learned error of the springs' believed stiffness (n,), relative to it.
@@ -92,7 +91,6 @@ class TransmissionTorque:
             fused=(n,),
             deviation=(n,),
             external=(n,),
-            external_deviation=(n,),
             by_motor=(n,),
             model=(n,),  # standard deviation of the rigid model where nothing is touched
             quiet="i8",  # ticks since some joint felt a contact, at most `SETTLE_TICKS`
@@ -102,7 +100,7 @@ class TransmissionTorque:
         own["walk"] = np.column_stack([np.full(n, STIFFNESS_WALK), OFFSET_WALK * ripple]) ** 2 * TICK
         self.stiffer, self.offset, self.ways, self.deviations = (own[k] for k in ("stiffer", "offset", "ways", "deviations"))
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
-        self.external_deviation, self.by_motor = own["external_deviation"], own["by_motor"]
+        self.by_motor = own["by_motor"]
         own["quiet"] = SETTLE_TICKS
         self.forget()
 
@@ -163,7 +161,6 @@ def _compare(own, rubbing, use) -> bool:
         own.model[i] = np.sqrt(rigid + (shaking * own.inertia[i]) ** 2)
         known = max(x * x * P[0, 0] + 2.0 * x * P[0, 1] + P[1, 1], 0.0)
         gear, noise = known + (RIPPLE_LEFT * ripple) ** 2, (0.3 * floor) ** 2
-        own.external_deviation[i] = np.sqrt(gear + noise + rigid)
         if use[0, i] and own.compared[i] == REMEMBERED:
             gear = max(own.slow_square[i], own.differ[i] ** 2 - rigid)
         deviations[1, i] = np.sqrt(gear + noise)

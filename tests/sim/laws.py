@@ -45,8 +45,9 @@ def estimate(**values: Any) -> Estimate:
         "move_done": 0,
         "friction": np.zeros(N),
         "friction_deviation": np.zeros(N),
-        "tau_ext_deviation": np.zeros(N),
         "tau_ways": np.zeros((3, N)),
+        "tau_hand": np.zeros(N),
+        "tau_certain": np.zeros(N),
     }
     return Estimate(**{**known, **values})
 
