@@ -47,6 +47,9 @@ class Slack(NamedTuple):
 
 SURE = Slack(0.0, 0.0)
 
+UNUSED = Slack(math.inf, math.inf)
+"""The sensor is not used: all of what it tells may be wrong."""
+
 
 def drift(sensor: SensorSpec, time: int) -> Slack:
     """Of a good sensor in so many ticks at most, all three axes together: each goes from nothing to its largest bias.

@@ -4,7 +4,7 @@ from pendant.all_settings import Settings
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind, Values
 from pendant.events.happened import Happened, Transition, becomes
-from pendant.guided.bias_follower import SURE
+from pendant.guided.bias_follower import SURE, UNUSED
 from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.endings import EndingWatch
 from pendant.guided.force_covariance import TakenForce, taken, upward_in_flange
@@ -35,7 +35,8 @@ class FreeArm:
         singularity: how near the arm is to one (FD-4).
         pull: what pulls at it; of the tick before, where free-drive ends early in a tick.
         taken: what it takes for the user's force; None in the tick of entry.
-        slack: what of the wrench at the flange may be the sensor's drift, which must not drive the arm (FD-19).
+        slack: what of the wrench at the flange may be the sensor's drift, which must not drive the arm (FD-19); without limit
+            where the sensor is not used.
         suspect: a payload may have dropped, or the sensor stepped (FD-19).
         doubtful: it may be that nobody leads the moving arm (FD-19).
     """
@@ -94,7 +95,7 @@ class FreeArm:
         self.damping: Damping | None = None
         self._hung = upward_in_flange(estimate)
         self.taken: TakenForce | None = None
-        self.slack = SURE
+        self.slack = SURE if bias.used else UNUSED
         self.pull = PullCauses(HandFelt.NOBODY)
         self.singularity = self._singularity.status
         zones.enter(settings.joint_limits)
@@ -138,7 +139,7 @@ class FreeArm:
         self.singularity = self._singularity.status
         baseline = bias.baseline if bias.used else None
         driven = around.shaken or self.caught or self._zones.pushing
-        self.slack = slack = bias.slack(estimate) if bias.used else SURE
+        self.slack = slack = bias.slack(estimate) if bias.used else UNUSED
         self._watch_wrench(around, settings, driven)
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful

@@ -80,6 +80,7 @@ class Estimator:
         self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
         self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
         self._started, self._free = False, False  # `_free`: free-drive was on in the last tick
+        self._used = True  # the flange sensor is
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
@@ -112,12 +113,14 @@ class Estimator:
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
         as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
-        of F [N, N·m], None otherwise; `unsure` is the standard deviation of each of its axes that is beside its noise [N].
+        of F [N, N·m], None otherwise; `unsure` is the standard deviation of each of its axes that is beside its noise [N];
+        without limit, the sensor is not used: the joints alone tell whose force it is.
 
         Joint measurements that are not valid leave the last good estimate standing, marked as invalid.
         """
         dynamics = self._dynamics
         self.tick += 1
+        self._used = math.isfinite(unsure)
         theta, q = self._theta, self._q
         angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
         if angles is not None:
@@ -157,8 +160,8 @@ class Estimator:
         return known
 
     def _sensed(self, sample: Sample) -> bool:
-        """The flange sensor is valid, and was so since free-drive began, if it is on."""
-        return sample.wrench_valid and not self.fall.blind
+        """The flange sensor is valid and used, and was so since free-drive began, if it is on."""
+        return sample.wrench_valid and self._used and not self.fall.blind
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
