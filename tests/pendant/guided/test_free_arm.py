@@ -8,6 +8,7 @@ import pytest
 from pendant.all_settings import Settings, apply
 from pendant.context import Surroundings
 from pendant.events.event import Event, Kind
+from pendant.guided.bias_follower import SURE, UNUSED
 from pendant.guided.free_arm import FreeArm
 from pendant.guided.pull import HandFelt, PullCauses
 from pendant.guided.sensor_bias import SensorBias
@@ -288,6 +289,17 @@ def test_what_is_taken_for_the_users_force_is_told_with_the_doubts_of_a_sensor_t
         assert taken.doubts.hung == (0.0, 0.0, 1.0)
     free.see(estimate(wrench_valid=False))
     assert free.arm.taken == (free.arm.user, None)
+
+
+def test_of_a_sensor_that_is_not_used_all_may_be_wrong() -> None:
+    without, with_it = Free(sensor=False), Free()
+    assert (without.arm.slack, with_it.arm.slack) == (UNUSED, SURE)
+    without.see(estimate())
+    with_it.see(estimate())
+    assert without.arm.slack == UNUSED
+    assert with_it.arm.slack.force < 1.0
+    with_it.see(estimate(wrench_valid=False))
+    assert with_it.arm.slack == UNUSED
 
 
 def drifting(tick: int, force: float, speed: float = 0.1, **more: Any) -> Estimate:

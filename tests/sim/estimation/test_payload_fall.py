@@ -301,14 +301,14 @@ def test_each_free_drive_has_a_beginning_of_its_own() -> None:
     assert not any(joints.tick(joints.lost) for _ in range(SETTLED))
 
 
-def arm(payload: float, *, sensor: bool) -> Bench:
-    """A free arm, with all mismatch, whose flange sensor is not there or goes out after entry."""
+def arm(payload: float, *, sensor: bool, outage: bool = True) -> Bench:
+    """A free arm, with all mismatch, whose flange sensor is not there or goes out after entry, unless it has no outage."""
     load = Load(mass=payload, com=[0.0, 0.0, 0.05])
     scenario = Scenario(payload_true=load, payload_configured=load, seed=7)
     bench = Bench(scenario, LONG, UR5E if sensor else SENSORLESS)
     bench.run(1.0)
     bench.enter()
-    if sensor:
+    if sensor and outage:
         bench.change(SensorFault(sensor="force_torque", outage=True))
         bench.run(0.1)
     return bench
@@ -359,6 +359,24 @@ def test_a_flange_sensor_that_comes_back_in_free_drive_is_not_asked_whose_torque
     bench.do(Command.PROTECTIVE_STOP)
     bench.run(0.2)
     assert not estimator.fall.blind
+
+
+@pytest.mark.parametrize("size", [20.0, -20.0])
+def test_a_flange_sensor_that_stepped_is_no_hand_on_a_link_and_the_joints_tell_from_then_on(size: float) -> None:
+    """It is valid, but used by nobody. Nobody touches the arm; then a hand leads it."""
+    bench = arm(3.0, sensor=True, outage=False)
+    bench.run(0.5)
+    start = bench.flange.copy()
+    bench.change(*(SensorFault(sensor="force_torque", channel=k, offset=size) for k in range(2)))
+    bench.run(2.0)
+    assert [event.kind for event in bench.events if event.kind is Kind.SENSOR_STEPPED] == [Kind.SENSOR_STEPPED]
+    assert bench.estimate.wrench_valid
+    assert np.linalg.norm(bench.flange - start) < 0.001
+    assert not bench.estimate.tau_certain.any()
+    bench.run(0.5, Push("flange", CENTRE, (0.0, 30.0, 0.0)))
+    assert bench.mode is Mode.FREE_DRIVE
+    assert bench.estimate.joints_feel is JointsFeel.HAND
+    assert np.linalg.norm(bench.flange - start) > 0.03
 
 
 def test_a_hand_that_leads_is_no_fall() -> None:
