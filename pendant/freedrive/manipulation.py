@@ -35,7 +35,7 @@ class Maintained:
         self._share = settings.limits.maintain.load_share
         self._least = settings.unexplained.force
         self._since: EntryValues = reference(estimate, wrench)
-        self._link: Vector = on_link(estimate, wrench)
+        self._link: Vector = _link_force(estimate, wrench)
         self._joints = joints
         self._ones = (1.0,) * len(joints)
         self._up = upward(estimate.g_B.tolist())
@@ -44,7 +44,7 @@ class Maintained:
     def anew(self, estimate: Estimate, wrench: Wrench | None) -> None:
         """The period starts again in this tick."""
         self._since = reference(estimate, wrench)
-        self._link = on_link(estimate, wrench)
+        self._link = _link_force(estimate, wrench)
         self._slow = [0.0] * 6
 
     def step(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
@@ -57,7 +57,7 @@ class Maintained:
 
     def _on_link(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
         """Whether a hand is felt on a link that was not as the period began."""
-        change = math.dist(on_link(estimate, wrench), self._link)
+        change = math.dist(_link_force(estimate, wrench), self._link)
         return Excess("user force", "link", change, self._least, "N") if change > self._least else None
 
     def _split(self, wrench: Wrench) -> Split:
@@ -76,7 +76,7 @@ class Maintained:
         return Split(0.0, 0.0, force, torque)  # no limit here asks for a payload
 
 
-def on_link(estimate: Estimate, wrench: Wrench | None) -> Vector:
+def _link_force(estimate: Estimate, wrench: Wrench | None) -> Vector:
     """Force of a hand on a link, axes of B [N]: it is told beside the flange sensor alone."""
     if wrench is None:
         return ORIGIN
