@@ -30,6 +30,7 @@ MODULES = (
     "sim/flange/external_wrench.py",
     "sim/flange/fall_answer.py",
     "sim/flange/step_answer.py",
+    "sim/flange/wrench_hand.py",
     "sim/flange/wrench_hypotheses.py",
     "sim/flange/wrench_steps.py",
 )

@@ -12,6 +12,10 @@ LARGEST = 50.0
 RISE = 5.0
 """Ticks that it takes at least to get there: 10 ms."""
 
+RISES = (1.0, 0.1, 0.01)
+"""Of the fastest, shares of which a hand's rise may be: how fast one is nobody knows, so each order of magnitude is as likely.
+Bench `drop` guards it."""
+
 TREMOR = 0.5
 """What it is off a straight line from tick to tick, and off a constant force within some windows, about [N]."""
 

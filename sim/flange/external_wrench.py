@@ -1,8 +1,8 @@
 """Whose force it is: the odds that the payload changed, or that the sensor stepped, against a hand that changed (FD-19).
 
-The hypotheses are those of `wrench_hypotheses` and `wrench_steps`. Each explains one and the same window: the last `LONGEST`
-ticks and the one before them; what was earlier is given. When in it the change came is not known: the likelihoods of all onsets
-are summed, each as likely as another. So what is compared are probabilities of the same data, and the odds are honest.
+The hypotheses are those of `wrench_hypotheses`, `wrench_hand` and `wrench_steps`. Each explains one and the same window: the last
+`LONGEST` ticks and the one before them; what was earlier is given. When in it the change came is not known: the likelihoods of
+all onsets are summed, each as likely as another. So what is compared are probabilities of the same data, and the odds are honest.
 """
 
 import math
@@ -16,6 +16,7 @@ from sim.arm.chain import Body
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.flange.flange_forces import FlangeForces, about_flange, needed, turn_both
+from sim.flange.wrench_hand import ahead, hand
 from sim.flange.wrench_hypotheses import (
     BEFORE,
     FREED,
@@ -29,13 +30,12 @@ from sim.flange.wrench_hypotheses import (
     STRAY,
     Seen,
     anything,
-    hand,
     nobody,
     noise,
     payload,
     spread,
 )
-from sim.flange.wrench_steps import ahead, both, jumps, quiet, recent, sudden, unanswered
+from sim.flange.wrench_steps import both, jumps, quiet, recent, sudden, unanswered
 from sim.sensing.sensor_drift import sensor_spec
 
 LN_ONSETS = math.log(LONGEST + 1.0)

@@ -10,7 +10,7 @@ it, i the age of a tick after it:
 
     nobody          x(i) = c + e,                    a hand that was there let go
     steady          x(i) = x0 + J + e,               a hand's force stays, within what it may change by in a tick
-    rising          x(i) = x0 + J + r (i + 1/2) + e, a force that rises as a hand's does: not at once
+    rising          x(i) = x0 + J + r (i + 1/2) + e, a force that rises as a hand's does: not at once, fast or slowly
     anything        x(i) = e',                       e' as large as a hand's force: what none of the others explains
     payload lost    x(i) = x0 + s p(i) + c + e,      what touches the arm stays; s is 1 within what is known of the payload
     lost and freed  x(i) = s p(i) + c + e,           and a hand lets go in the same moment
@@ -19,7 +19,7 @@ it, i the age of a tick after it:
     sensor stepped  x(i) = x0 + d + e,               d as large as a hand's force; nothing moves the flange in the first two ticks
     knock           x(i) = x0 + d + e,               the same, but a force: it moves the flange; rare
 
-The last two, and a hand that goes on before the change, are in `sim.flange.wrench_steps`.
+A hand's are in `sim.flange.wrench_hand`, the last two in `sim.flange.wrench_steps`.
 
 Each is linear in what is not known of it (J, r, s, an offset c), which has a Gaussian prior. So its likelihood is a closed form.
 With noise of variance R in L ticks, a basis a(i), a prior (m, V), and sums over the ticks S of (x - a m)² / R, A of a a' / R and
@@ -37,7 +37,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, TOUCH, TREMOR
+from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, TOUCH, TREMOR
 from pendant.sensor.sensor_errors import CENTRE
 from pendant.tick.estimate import GRAVITY
 from sim.compiled.kernel import kernel
@@ -117,34 +117,6 @@ def spread(own, late):
 def jump(own, steep, axis):
     """Variance of what a hand's wrench may change by within a tick, beyond its rise before."""
     return (TREMOR * lever_of(axis)) ** 2 + 9.0 * steep[axis] + noise(own, own.whole, axis, LATE) / BEFORE
-
-
-@kernel
-def hand(own, seen, change, late):
-    """Log likelihoods of a hand whose force rises, J + r (i + 1/2) from the wrench before, and of one that stays as it was."""
-    length, before, steep = change
-    count = float(length)
-    once = 0.5 * count * (count + 2.0)  # the sum of i + 1/2
-    square = count * (count + 1.0) * (2.0 * count + 1.0) / 6.0 + 0.5 * count * (count + 1.0) + 0.25 * count
-    rising = steady = 0.0
-    of_rising = of_steady = 1.0  # determinants
-    for axis in range(2):
-        R, lever = noise(own, own.whole, axis, late), lever_of(axis)
-        sudden = jump(own, steep, axis)
-        rise = (0.5 * LARGEST / RISE * lever) ** 2
-        a, b, c = count / R + 1.0 / sudden, once / R, square / R + 1.0 / rise
-        determinant = a * c - b * b
-        of_rising *= determinant * sudden * rise
-        of_steady *= a * sudden
-        for k in range(3 * axis, 3 * axis + 3):
-            first = seen.x[k] - count * before[k]
-            later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
-            whole = seen.xx[k] - 2.0 * before[k] * seen.x[k] + count * before[k] ** 2
-            g, h = first / R, ((count + 0.5) * first - later) / R
-            rising -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / determinant)
-            steady -= 0.5 * (whole / R - g * g / a)
-    by_noise = count * own.spread[0 if late == 0.0 else 1]
-    return rising - 1.5 * (by_noise + np.log(of_rising)), steady - 1.5 * (by_noise + np.log(of_steady))
 
 
 @kernel

@@ -1,7 +1,6 @@
-"""Hypotheses beside a hand's and a payload's: a hand that goes on, and steps, of the sensor or of a force (FD-19).
+"""Hypotheses beside a hand's and a payload's: steps, of the sensor or of a force (FD-19).
 
-The ticks ahead of a change are explained by a hand that goes on, for each hypothesis alike; that it goes on to the end is one
-more hypothesis. A step is the sensor's if nothing moves the flange in its first ticks, or else a knock's.
+A step is the sensor's if nothing moves the flange in its first ticks, or else a knock's.
 """
 
 import math
@@ -9,9 +8,9 @@ import sys
 
 import numpy as np
 
-from pendant.sensor.hand_model import LARGEST, TREMOR
+from pendant.sensor.hand_model import LARGEST
 from sim.compiled.kernel import kernel
-from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_OFTEN, LN_RARE, LONGEST, SHORTEST, STRAY, jump, least, lever_of, noise
+from sim.flange.wrench_hypotheses import BEFORE, LATE, LN_RARE, LONGEST, SHORTEST, STRAY, jump, least, lever_of, noise
 
 NOTHING = -math.log(sys.float_info.epsilon)
 """Of two logs of likelihoods that are so far apart the smaller one adds nothing [nats]."""
@@ -47,33 +46,6 @@ def both(a, b):
 def quiet(own):
     """Log likelihood of a tick in which there is noise alone, in the mean."""
     return -3.0 - 1.5 * own.spread[0]
-
-
-@kernel
-def ahead(own, x, before, steep):
-    """Log likelihood of a tick's wrench (6,) for a hand that goes on, by the mean before it (6,) and the square of its rise (2,).
-
-    It stays, goes on rising, or changes by a touch, each with what comes late and without; and rarely it does anything.
-    """
-    total = -np.inf
-    for way in range(7):
-        likelihood, determinant = -LN_OFTEN if way < 6 else -LN_RARE, 1.0
-        for axis in range(2):
-            lever = lever_of(axis)
-            V = noise(own, own.whole, axis, LATE if way % 2 else 0.0) * (1.0 + 1.0 / BEFORE)
-            if way >= 2:
-                V += 9.0 * steep[axis]
-            if way >= 4:
-                V += (TREMOR * lever) ** 2
-            if way == 6:
-                V = (0.5 * LARGEST * lever) ** 2
-            square = 0.0
-            for k in range(3 * axis, 3 * axis + 3):
-                square += (x[k] - before[k]) ** 2
-            likelihood -= 0.5 * square / V
-            determinant *= V
-        total = both(total, likelihood - 1.5 * np.log(determinant))
-    return total
 
 
 @kernel

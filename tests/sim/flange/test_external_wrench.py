@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
-from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, TREMOR
+from pendant.sensor.hand_model import GRIP_LEVER, LARGEST, RISE, RISES, TREMOR
 from pendant.sensor.odds import KNOWN, SUSPECTED
 from pendant.tick.estimate import GRAVITY
 from pendant.tick.modes import TICK
@@ -36,12 +36,12 @@ NEEDS = np.concatenate([PAYLOAD.mass * UP, np.cross(PAYLOAD.com, PAYLOAD.mass * 
 class Arm:
     """An arm whose flange feels what a test wants."""
 
-    def __init__(self, seed: int = 0) -> None:
-        rigid = chain(UR5E)
-        self.forces = FlangeForces(Dynamics(rigid, rigid.links, TOOL + PAYLOAD, mounting=[0.0] * 3, elbow=UR5E.chain.elbow))
+    def __init__(self, seed: int = 0, payload: Body = PAYLOAD) -> None:
+        rigid, self.load = chain(UR5E), TOOL + payload
+        self.forces = FlangeForces(Dynamics(rigid, rigid.links, self.load, mounting=[0.0] * 3, elbow=UR5E.chain.elbow))
         self.whose_force = WhoseForce(UR5E, self.forces)
         self.wrench = self.whose_force.bank
-        self.wrench.set_load(TOOL + PAYLOAD, PAYLOAD)
+        self.wrench.set_load(self.load, payload)
         self.told = self.wrench.record[0]
         self.rng = np.random.default_rng(seed)
         self.gyro, self.unsure = np.zeros(3), 0.0
@@ -60,7 +60,7 @@ class Arm:
         accelerometer: bool = True,
     ) -> float:
         """The wrench `x` that is missing at the flange while it feels a `specific` force and is moved as `felt`."""
-        own, load = self.forces.record[0], TOOL + PAYLOAD
+        own, load = self.forces.record[0], self.load
         noise = self.rng.normal(size=6) * [0.15, 0.15, 0.15, 0.006, 0.006, 0.006]
         shaking = 0.1 * load.mass * self.rng.normal(size=3)  # of the accelerometer that weighs the load
         noise += np.concatenate([shaking, np.cross(load.com, shaking)])
@@ -148,6 +148,19 @@ def test_a_hand_that_lets_go_of_an_arm_whose_bias_is_unsure_is_a_hand(seed: int)
 @pytest.mark.parametrize("seed", range(5))
 def test_a_hand_that_comes_to_carry_the_payload_is_a_hand(seed: int, ticks: int) -> None:
     assert Arm(seed).course(rising(NEEDS, ticks)) < 0.6 * KNOWN
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_hand_that_carries_more_than_a_light_payload_and_shakes_it_is_a_hand(seed: int) -> None:
+    """Its force swings as the payload's would, at 20 Hz and by some tenths of a newton a tick: slowly, for a hand."""
+    light = Body(0.2, np.array([0.02, 0.02, 0.08]), np.eye(3) * 0.0002)
+    arm = Arm(seed, light)
+    arm.unsure = 1.13
+    for k in range(100):
+        shakes = 1.5 * np.array([math.sin(0.26 * k), math.cos(0.26 * k), 0.5 * math.sin(0.26 * k)])
+        force = 2.1 * light.mass * UP + 0.25 * shakes
+        arm.tick(np.concatenate([force, np.cross(light.com, force)]), UP + shakes, felt=shakes)
+    assert max(arm.odds) < 0.65 * KNOWN
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -394,7 +407,8 @@ def of_change(
     x0, steep = before(x, start - 1)
     x0 = attitudes[start - 1] @ x0  # looked at from the base
     eye, ones, rise = np.eye(length), np.ones((length, length)), np.arange(1, length + 1) + 0.5
-    hands = {(name, late): 0.0 for name in ("rising", "steady", "nobody") for late in (0.0, LATE)}
+    ways = [*RISES, "steady", "nobody"]
+    hands = {(way, late): -math.log(len(RISES)) * (way in RISES) for way in ways for late in (0.0, LATE)}
     anything = 0.0
     credit = dict.fromkeys((LOST, FREED, MORE), 0.0)
     steps = np.zeros((6 * length, 6 * length))
@@ -408,8 +422,9 @@ def of_change(
         wide = (0.5 * LARGEST * lever) ** 2
         for late, variance in ((0.0, loaded), (LATE, swings)):
             touched = variance * eye + jumps[k] * ones
-            outer = (0.5 * LARGEST / RISE * lever) ** 2 * np.outer(rise, rise)
-            hands["rising", late] += dense(after[:, k], x0[k], touched + outer)
+            for share in RISES:
+                outer = (share * 0.5 * LARGEST / RISE * lever) ** 2 * np.outer(rise, rise)
+                hands[share, late] += dense(after[:, k], x0[k], touched + outer)
             hands["steady", late] += dense(after[:, k], x0[k], touched)
             hands["nobody", late] += dense(after[:, k], 0.0, variance * eye + (OFFSET * lever) ** 2 * ones)
         anything += dense(after[:, k], 0.0, wide * eye)
