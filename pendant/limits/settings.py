@@ -51,7 +51,7 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
     )
     joint_torque: Annotated[Limit, _limit(0.01, 1.0, "of rated", "FD-9", text="external torque of a joint")] = Limit(max=0.04)
     payload_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", text="force as a wrong payload would cause it")] = Limit(
-        max=5.8
+        max=6.2
     )
     payload_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", text="torque as a wrong payload would cause it")] = Limit(
         max=1.5

@@ -204,7 +204,7 @@ LIMITS = {
         "motor_torque": (0.9, 0.01, 1.0, "of rated", "FD-9"),
         "motor_current": (0.9, 0.01, 1.0, "of largest", "FD-9"),
         "joint_torque": (0.04, 0.01, 1.0, "of rated", "FD-9"),
-        "payload_force": (5.8, 1.0, 50.0, "N", "FD-9"),
+        "payload_force": (6.2, 1.0, 50.0, "N", "FD-9"),
         "payload_torque": (1.5, 0.1, 10.0, "N·m", "FD-9"),
         "payload_error": (0.3, 0.1, 5.0, "kg", "FD-9"),
         "user_force": (12.0, 1.0, 50.0, "N", "FD-9"),

@@ -343,7 +343,7 @@ def test_a_refused_payload_names_the_zero_where_it_explains_the_force_as_well(fo
 def test_that_zeroing_is_due_is_told_and_shown() -> None:
     robot = Robot()
     assert not robot.decision.zero_due
-    robot.offset[:] = (0.0, 0.0, 4.0, 0.0, 0.0, 0.0)
+    robot.offset[:] = (0.0, 0.0, 4.3, 0.0, 0.0, 0.0)
     robot.valid = False
     robot.run(1)
     robot.valid = True

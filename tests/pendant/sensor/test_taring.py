@@ -353,7 +353,7 @@ def test_a_limit_that_is_off_makes_nothing_due() -> None:
 def test_it_is_due_until_half_the_limit_or_until_it_is_zeroed() -> None:
     bench = Bench().feel(0.0, 0.0, 4.4).run(READY)
     assert bench.taring.due
-    for force, due in ((3.0, True), (2.91, True), (2.89, False), (3.8, False), (3.9, True)):
+    for force, due in ((3.2, True), (3.11, True), (3.09, False), (4.1, False), (4.2, True)):
         bench.wait(200.0).feel(0.0, 0.0, force).run(READY)
         assert bench.taring.due is due, force
     assert [event.kind for event in bench.events] == [Kind.ZERO_DUE] * 2
