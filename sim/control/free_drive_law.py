@@ -136,7 +136,8 @@ class FreeDriveLaw:
             help = self._damping.help
         if estimate.wrench_valid and decision.amplified:
             gain = help * decision.gain
-            felt = estimate.F_user, decision.baseline, decision.slack
+            slack = decision.slack
+            felt = estimate.F_user, decision.baseline, (slack.force, slack.torque)  # a named tuple takes a kernel 0.5 us more
             self._hand.ask((*felt, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
             if locks is not None:
                 constraint.project(self._hand.capped, gain, torque)
