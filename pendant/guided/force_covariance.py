@@ -6,8 +6,9 @@ against gravity, all in axes of B, its covariance is the sum of
 
     the noise of the sensor and of the accelerometer by which the load is weighed, behind the filter; at entry, a window's mean,
     the swing of load and arm, by which the force fluctuates beside its mean more than by this noise: any part may be the user's,
-    what the sensor may tell without a hand since its bias was last known, at most `slack`,
-    the sensor's gain: a share of the force, and of what of the load's weight has come to lie in another axis since entry,
+    what the sensor may tell without a hand since its bias was last known, at most `slack`: its drift, and the gain of a load that
+    has turned,
+    the sensor's gain: a share of the force, and of what the load needs to be accelerated,
     the load's mass: it makes that change larger or smaller, along one line,
     along gravity: of F there, any part that a payload can make may be one's, which one posture cannot tell from a steady hand,
     the rest, as far as it is more than noise: any part of it may be the user's all the same.
@@ -103,7 +104,7 @@ def covariance(told: TakenForce, estimate: Estimate, sensor: SensorSpec, mass: f
     swung = estimate.a_felt + GRAVITY * (up - np.array(turned(flat(estimate.R_BF), doubts.hung)))
     noise = sensor.noise_force**2 + (sensor.noise_acceleration * estimate.load_mass) ** 2
     swing = max(doubts.fluctuation / 3.0 - noise, 0.0)
-    gain = sensor.gain * (estimate.load_mass * float(np.linalg.norm(swung)) + norm(told.force))
+    gain = sensor.gain * (estimate.load_mass * float(np.linalg.norm(estimate.a_felt)) + norm(told.force))
     along = float(up @ told.force)
     payload = min((mass * GRAVITY) ** 2, along**2 / 3.0)
     everywhere = _LEFT * noise + (swing + doubts.slack**2 + gain**2) / 3.0
