@@ -1,7 +1,8 @@
 """Manipulation (FD-13): is the user changing, or trying to change, the posture?
 
 A force at the flange must exceed its limit, for the sensor is no better. A hand on a link is told without the sensor's errors and
-the joints' (`sim.estimation.link_hand`): what is left of it counts from the force on that is a hand's.
+the joints' (`sim.estimation.link_hand`): what is left of it counts from the force on that is a hand's. So does what changes on an
+arm that stands: a hand that leads a link gently, and has not moved it yet, never holds still.
 """
 
 import math
@@ -56,8 +57,11 @@ class Maintained:
         return beyond[0].excess if beyond else self._on_link(estimate, wrench)
 
     def _on_link(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
-        """Whether a hand is felt on a link that was not as the period began."""
+        """Whether a hand is felt on a link that was not as the period began, or one that touches an arm that stands."""
         change = math.dist(_link_force(estimate, wrench), self._link)
+        if wrench is not None:
+            x, y, z = estimate.F_touch.tolist()
+            change = max(change, math.sqrt(x * x + y * y + z * z))
         return Excess("user force", "link", change, self._least, "N") if change > self._least else None
 
     def _split(self, wrench: Wrench) -> Split:

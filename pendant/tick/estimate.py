@@ -77,6 +77,7 @@ class Estimate:
     elbow: Array = field(default_factory=_nowhere)  # (6,) elbow: the same
     F_joints: Array = field(default_factory=lambda: np.zeros(3))  # (3,) force on the flange that explains tau_ext best, in B [N]
     F_link: Array = field(default_factory=lambda: np.zeros(3))  # (3,) the same of tau_hand, with a valid flange sensor [N]
+    F_touch: Array = field(default_factory=lambda: np.zeros(3))  # (3,) of a touch of a standing arm, likewise [N]
     tau_hand: Array = field(default_factory=_no_joints)  # (n,) of a hand, on a link with that sensor; in free-drive only [N·m]
     tau_certain: Array = field(default_factory=_no_joints)  # (n,) what of it a hand makes for certain in this tick [N·m]
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]

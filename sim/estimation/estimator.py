@@ -211,6 +211,7 @@ class Estimator:
             elbow=rigid.elbow,
             F_joints=self.forces.F_joints,
             F_link=self.link_hand.force,
+            F_touch=self.link_hand.touch,
             tau_hand=self.link_hand.torque,
             tau_certain=self.link_hand.certain,
             current=self._current,

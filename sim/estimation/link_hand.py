@@ -17,6 +17,10 @@ is forgotten once it has gone. But what was felt lately may have been a hand tha
 other way once it has gone. So a change is a hand's only if it is one against what was felt before, too, which follows so slowly
 that no hand holds still for as long.
 
+On an arm that stands for longer, gears, friction and posture change nothing: within a second the torques keep within some
+hundredths of a newton metre. So whoever touches a link is told by a far smaller change. But nothing follows from it for the arm's
+motion: as soon as a joint moves, its friction is another one.
+
 What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
 believed whichever of both says that it leads the arm.
 """
@@ -43,6 +47,9 @@ ENTRY, LATELY, BEFORE = range(3)
 LONG = ticks(STEADY)
 """Ticks of the time constant with which what was felt before follows."""
 
+SETTLED = round(1.0 / FOLLOW)
+"""Ticks after which an arm has stood for long enough: the time constant of what was felt lately."""
+
 
 class LinkHand:
     """One tick at a time, in free-drive with the flange sensor.
@@ -52,6 +59,7 @@ class LinkHand:
         certain: what of it a hand makes for certain in this tick (n,) [N·m]: a change against what was felt lately as a whole, of
             the change since entry what no error explains.
         force: the force (3,) at the flange, in B, that would make these torques best [N].
+        touch: the same of what the joints of a standing arm feel, beside what they felt lately [N].
 
     Args:
         arm: its number of joints.
@@ -72,14 +80,18 @@ class LinkHand:
             torque=(arm.n,),
             certain=(arm.n,),
             force=(3,),
+            stood="i8",  # ticks, at most `SETTLED`
+            rest=(arm.n,),  # torque that a standing arm felt lately [N·m]
+            touch=(3,),
         )
         self._own = self._record[0]
-        self.torque, self.force, self.certain = self._own["torque"], self._own["force"], self._own["certain"]
+        own = self._own
+        self.torque, self.force, self.certain, self.touch = own["torque"], own["force"], own["certain"], own["touch"]
 
     def forget(self) -> None:
         """Free-drive is to begin, or the sensor is out: nothing is felt."""
-        self._own["ticks"], self._own["lasts"] = 0, 0
-        self.torque[:], self.certain[:], self.force[:] = 0.0, 0.0, 0.0
+        self._own["ticks"], self._own["lasts"], self._own["stood"] = 0, 0, 0
+        self.torque[:], self.certain[:], self.force[:], self.touch[:] = 0.0, 0.0, 0.0, 0.0
 
     def update(self, bias: tuple[float, ...], qd: Array, by_deflection: NDArray[np.bool_]) -> None:
         """One tick.
@@ -133,6 +145,21 @@ def _update(memory, known, model, told) -> None:
         best_force(jacobian, own.sure[ENTRY], own.force)
     else:
         own.force[:] = 0.0
+    _touch(own, jacobian, errors.felt, (by_deflection, stands))
+
+
+@kernel
+def _touch(own, jacobian, felt, told) -> None:
+    """Who touches an arm that stands; a joint whose torque comes from the motor does not tell, its friction may bear as much."""
+    by_deflection, stands = told
+    own.stood = min(own.stood + 1, SETTLED) if stands else 0
+    change = np.zeros(own.rest.size)
+    for i in range(change.size):
+        if own.stood < SETTLED or not by_deflection[i]:
+            own.rest[i] = felt[i, 0]
+        change[i] = felt[i, 0] - own.rest[i]
+        own.rest[i] += FOLLOW * change[i]
+    best_force(jacobian, change, own.touch)
 
 
 @kernel

@@ -48,6 +48,7 @@ def estimate(
     energy: float = 0.0,
     tau_hand: float | list[float] = 0.0,
     link: float | list[float] = 0.0,
+    touch: float | list[float] = 0.0,
 ) -> Estimate:
     """An estimate, gravity along -z of B and F. A plain number is joint 0's or the x component.
 
@@ -87,6 +88,7 @@ def estimate(
         energy=energy,
         tau_hand=_vector(tau_hand, n),
         F_link=_vector(link, 3),
+        F_touch=_vector(touch, 3),
     )
 
 

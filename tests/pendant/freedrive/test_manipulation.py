@@ -209,6 +209,17 @@ def test_a_hand_on_a_link_counts_by_a_change_that_is_a_hands(share: float, axis:
     assert excess == (Excess("user force", "link", pytest.approx(abs(share) * least), least, "N") if abs(share) > 1.0 else None)
 
 
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("share", [-1.01, -0.99, 0.99, 1.01])
+def test_who_touches_an_arm_that_stands_counts(share: float, axis: int) -> None:
+    """It is told as a change already (FD-13), beside the flange sensor alone."""
+    least = Settings().unexplained.force
+    watch, now = maintained(), estimate(touch=[share * least * (k == axis) for k in range(3)])
+    excess = see(watch, now)
+    assert excess == (Excess("user force", "link", pytest.approx(abs(share) * least), least, "N") if abs(share) > 1.0 else None)
+    assert maintained(sensed=False).step(now, None) is None
+
+
 def test_as_the_period_starts_again_so_does_what_is_felt_on_a_link() -> None:
     """What hangs on a link does not keep an arm free."""
     watch, hung = maintained(), estimate(link=[0.0, 0.0, -9.0])

@@ -11,7 +11,7 @@ from pendant.events.event import Kind
 from pendant.sensor.hand_model import KEEPS, LASTS
 from pendant.tick.modes import TICK, Mode
 from sim.arm.scenario import Scenario
-from sim.estimation.link_hand import BEFORE, ENTRY, LATELY, LONG, LinkHand
+from sim.estimation.link_hand import BEFORE, ENTRY, LATELY, LONG, SETTLED, LinkHand
 from sim.estimation.momentum_observer import READY, MomentumObserver
 from sim.estimation.torque_errors import CAUSES, FOLLOW, OWN, ZERO
 from sim.estimation.transmission_torque import CONTACT
@@ -280,6 +280,61 @@ def test_who_was_felt_a_moment_ago_is_believed_what_says_that_it_leads(speed: fl
     joints.tick()
     joints.felt[1, 0] = 6.5
     assert joints.tick()[1] == pytest.approx(told, rel=0.05)
+
+
+@pytest.mark.parametrize("sensed", [True, False])
+@pytest.mark.parametrize(("stood", "told"), [(SETTLED - 2, False), (SETTLED - 1, True)])
+def test_a_small_change_tells_who_touches_an_arm_that_stands(stood: int, told: bool, sensed: bool) -> None:
+    """Against numpy. It is no hand's beyond the errors; of a joint without its deflection it tells nothing."""
+    joints = Joints()
+    joints.felt[:, 0] = 3.0
+    joints.moves[2] = 0.99 * STANDING
+    joints.tick(stood)
+    change = np.array([0.1, -0.7, 0.4, 0.05, 0.0, 0.02])
+    joints.felt[:, 0] += change
+    joints.by_deflection = ALL.copy()
+    joints.by_deflection[1] = sensed
+    assert not joints.tick().any()
+    J = joints.jacobian[:3]
+    expected = np.linalg.solve(J @ J.T + DAMPING**2 * np.eye(3), J @ (change * joints.by_deflection))
+    assert joints.hand.touch == pytest.approx(told * expected)
+    joints.tick()
+    assert joints.hand.touch == pytest.approx(told * (1.0 - FOLLOW) * expected), "what stays is forgotten"
+
+
+@pytest.mark.parametrize("how", ["moves", "forget"])
+def test_nobody_touches_an_arm_that_moved_a_moment_ago(how: str) -> None:
+    joints = Joints()
+    joints.tick(SETTLED)
+    joints.felt[1, 0] += 1.0
+    joints.tick()
+    assert joints.hand.touch.any()
+    if how == "moves":
+        joints.moves[4] = -1.01 * STANDING
+        joints.tick()
+        joints.moves[4] = 0.0
+    else:
+        joints.hand.forget()
+    assert not joints.hand.touch.any()
+    joints.felt[1, 0] += 1.0
+    joints.tick(SETTLED - 1)
+    assert not joints.hand.touch.any()
+    joints.felt[1, 0] += 1.0
+    joints.tick()
+    assert joints.hand.touch.any()
+
+
+@pytest.mark.parametrize("touched", [True, False])
+def test_who_leads_a_link_gently_and_has_not_moved_it_yet_keeps_free_drive(touched: bool) -> None:
+    """3 N at the forearm that come and go within a second, with all mismatch: the arm stands. Alone it is held after 3 s."""
+    bench = Device(Scenario(seed=3), Settings())
+    bench.run(1.0)
+    bench.enter()
+    begun = bench.plant.data.body("flange").xpos.copy()
+    for k in range(16):
+        bench.run(0.5, *([Push("wrist_1", CENTRE, (0.0, 0.0, 3.0 * (k % 2)))] if touched else []))
+    assert (bench.mode is Mode.FREE_DRIVE) is touched
+    assert np.linalg.norm(bench.plant.data.body("flange").xpos - begun) < 0.002
 
 
 @pytest.mark.parametrize("how", ["forget", "not ready"])
