@@ -98,6 +98,7 @@ _EMBODIMENTS = {
     "FD-9 current": "motor current as a parameter",
     "FD-9 motion": "without a force sensor: a wrong payload that moves the arm is refused by its motion alone",
     "FD-13 press": "a hand that presses on an arm that cannot move keeps it free",
+    "FD-13 touch": "a hand that touches a link of a standing arm, and does not move it, keeps it free",
     "FD-12b vertical": "speed along gravity limited more than across it",
     "FD-19 falls": "a payload that falls off ends free-drive at once",
     "FD-19 light": "a light payload's fall that a hand hides in letting go is known by what follows",

@@ -22,7 +22,7 @@ RATE = 1.0 - math.exp(-1.0 / TOUCH)
 class Maintained:
     """Watches one free-drive or restart period for manipulation. Forces and torques are changes since it began."""
 
-    __slots__ = ("_joints", "_least", "_link", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
+    __slots__ = ("_counts", "_joints", "_least", "_link", "_monitor", "_ones", "_share", "_since", "_slow", "_up")
 
     def __init__(self, estimate: Estimate, settings: Settings, wrench: Wrench | None, joints: tuple[str, ...]) -> None:
         """
@@ -34,7 +34,7 @@ class Maintained:
         """
         self._monitor = Monitor(settings.limits.maintain)
         self._share = settings.limits.maintain.load_share
-        self._least = settings.unexplained.force
+        self._least, self._counts = settings.unexplained.force, settings.limits.maintain.user_force.on
         self._since: EntryValues = reference(estimate, wrench)
         self._link: Vector = _link_force(estimate, wrench)
         self._joints = joints
@@ -56,12 +56,15 @@ class Maintained:
         beyond = self._monitor.step(Observed(estimate, self._since, parts, self._joints, self._ones, share, heavier=heavier))
         return beyond[0].excess if beyond else self._on_link(estimate, wrench)
 
+    def touched(self, estimate: Estimate, wrench: Wrench | None) -> bool:
+        """A hand touches a link of an arm that stands."""
+        return self._counts and _touch(estimate, wrench) > self._least
+
     def _on_link(self, estimate: Estimate, wrench: Wrench | None) -> Excess | None:
         """Whether a hand is felt on a link that was not as the period began, or one that touches an arm that stands."""
-        change = math.dist(_link_force(estimate, wrench), self._link)
-        if wrench is not None:
-            x, y, z = estimate.F_touch.tolist()
-            change = max(change, math.sqrt(x * x + y * y + z * z))
+        if not self._counts:
+            return None
+        change = max(math.dist(_link_force(estimate, wrench), self._link), _touch(estimate, wrench))
         return Excess("user force", "link", change, self._least, "N") if change > self._least else None
 
     def _split(self, wrench: Wrench) -> Split:
@@ -78,6 +81,14 @@ class Maintained:
         rx, ry, rz = change[3] - tx + about * ux, change[4] - ty + about * uy, change[5] - tz + about * uz
         force, torque = math.sqrt(x * x + y * y + z * z), math.sqrt(rx * rx + ry * ry + rz * rz)
         return Split(0.0, 0.0, force, torque)  # no limit here asks for a payload
+
+
+def _touch(estimate: Estimate, wrench: Wrench | None) -> float:
+    """Force at the flange of a hand that touches a link of a standing arm [N]; 0 without the flange sensor."""
+    if wrench is None:
+        return 0.0
+    x, y, z = estimate.F_touch.tolist()
+    return math.sqrt(x * x + y * y + z * z)
 
 
 def _link_force(estimate: Estimate, wrench: Wrench | None) -> Vector:

@@ -128,7 +128,7 @@ class Periods:
             return self._count(around, settings, anew=anew, registered=registered, wrench=wrench, pressed=pressed)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
         self._left = max(self._left - 1, 0)
-        if settings.free_drive.ends_by_period and self._left == 0 and pressed is None and self._rests(around, settings):
+        if settings.free_drive.ends_by_period and self._left == 0 and pressed is None and self._rests(around, settings, wrench):
             self._begin(Phase.RESTART, around, settings, wrench)
             return Happened([Event(Kind.RESTARTED, around.estimate.tick, {"period": self._total * TICK})])
         return Happened([])
@@ -189,8 +189,10 @@ class Periods:
         # static again: for its whole time after the manipulation began
         self._total = self._left = ticks(settings.static.time)
 
-    def _rests(self, around: Surroundings, settings: Settings) -> bool:
-        """The guided arm is static again, or nobody pushes it (FD-15)."""
+    def _rests(self, around: Surroundings, settings: Settings, wrench: Wrench | None) -> bool:
+        """The guided arm is static again and nobody touches it, or nobody pushes it (FD-15)."""
+        if self._maintained is not None and self._maintained.touched(around.estimate, wrench):
+            return False
         if settings.free_drive.restart_begins is not RestartBegins.FORCE_ENDS:
             return around.still.count >= self._total
         return self._unpushed >= self._total

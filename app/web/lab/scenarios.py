@@ -32,6 +32,7 @@ TOPICS = {
     "Free-drive ends": (
         "left-alone",
         "kept-by-press",
+        "kept-by-touch",
         "short-press",
         "too-fast",
         "sensor-fails",

@@ -220,6 +220,14 @@ def test_who_touches_an_arm_that_stands_counts(share: float, axis: int) -> None:
     assert maintained(sensed=False).step(now, None) is None
 
 
+def test_where_no_force_counts_none_on_a_link_does() -> None:
+    off = apply(Settings(), {"limits.maintain.user_force.on": False})
+    watch = Maintained(estimate(), off, felt(estimate()), JOINTS)
+    assert see(watch, estimate(link=9.0, touch=9.0)) is None
+    assert not watch.touched(estimate(touch=9.0), felt(estimate()))
+    assert maintained().touched(estimate(touch=9.0), felt(estimate()))
+
+
 def test_as_the_period_starts_again_so_does_what_is_felt_on_a_link() -> None:
     """What hangs on a link does not keep an arm free."""
     watch, hung = maintained(), estimate(link=[0.0, 0.0, -9.0])

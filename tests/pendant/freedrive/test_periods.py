@@ -196,6 +196,18 @@ def test_a_steady_push_counts_once_where_the_period_begins_with_it() -> None:
     assert bench.step(NOTHING, pushed).mode is Mode.TEACH
 
 
+@pytest.mark.parametrize("begins", ["standstill", "force_ends"])
+@pytest.mark.parametrize(("force", "touches"), [(0.99, False), (1.01, True)])
+def test_the_restart_period_begins_when_nobody_touches_a_link(force: float, touches: bool, begins: str) -> None:
+    """FD-13, FD-15: so the log has one event of a hand that stays there."""
+    bench, touched = Quick(free_drive__restart_begins=begins).in_period(), estimate(touch=force)
+    bench.step(WAYPOINT)
+    bench.run(200, NOTHING, touched)
+    assert bench.last.phase is (Phase.GUIDED if touches else Phase.RESTART)
+    assert bench.step().phase is Phase.RESTART
+    assert [event.kind for event in bench.events] == [Kind.WAYPOINT, Kind.RESTARTED]
+
+
 @pytest.mark.parametrize(("after_force", "rests"), [(True, True), (False, False)])
 def test_the_restart_period_may_begin_when_the_hand_is_off_while_the_arm_still_moves(after_force: bool, rests: bool) -> None:
     names = {f"limits__maintain__{name}__on": False for name in ("joint_speed", "flange_speed")}
