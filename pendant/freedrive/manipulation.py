@@ -13,7 +13,7 @@ from pendant.limits.residual import Split, upward
 from pendant.sensor.hand_model import TOUCH
 from pendant.tick.estimate import GRAVITY, Estimate
 from pendant.tick.limit_engine import Excess
-from pendant.tick.pose import ORIGIN, Vector, Wrench
+from pendant.tick.pose import ORIGIN, Vector, Wrench, norm
 
 RATE = 1.0 - math.exp(-1.0 / TOUCH)
 """Weight of a tick in a change that a payload could explain and stops counting as the user's: a hand never keeps one."""
@@ -88,7 +88,7 @@ def _touch(estimate: Estimate, wrench: Wrench | None) -> float:
     if wrench is None:
         return 0.0
     x, y, z = estimate.F_touch.tolist()
-    return math.sqrt(x * x + y * y + z * z)
+    return norm((x, y, z))
 
 
 def _link_force(estimate: Estimate, wrench: Wrench | None) -> Vector:

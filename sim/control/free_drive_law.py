@@ -137,7 +137,7 @@ class FreeDriveLaw:
         if estimate.wrench_valid and decision.amplified:
             gain = help * decision.gain
             slack = decision.slack
-            felt = estimate.F_user, decision.baseline, (slack.force, slack.torque)  # a named tuple takes a kernel 0.5 us more
+            felt = estimate.F_user, decision.baseline, (slack.force, slack.torque)  # a named tuple takes a kernel 0.5 µs more
             self._hand.ask((*felt, estimate.R_BF, jacobian, decision.force_cap, gain), torque)
             if locks is not None:
                 constraint.project(self._hand.capped, gain, torque)

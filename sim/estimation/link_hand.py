@@ -84,8 +84,7 @@ class LinkHand:
             rest=(arm.n,),  # torque that a standing arm felt lately [N·m]
             touch=(3,),
         )
-        self._own = self._record[0]
-        own = self._own
+        own = self._own = self._record[0]
         self.torque, self.force, self.certain, self.touch = own["torque"], own["force"], own["certain"], own["touch"]
 
     def forget(self) -> None:

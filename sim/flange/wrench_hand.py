@@ -52,12 +52,18 @@ def hand(own, seen, change, late):
     square = count * (count + 1.0) * (2.0 * count + 1.0) / 6.0 + 0.5 * count * (count + 1.0) + 0.25 * count
     rising = np.zeros(len(RISES))
     of_rising = np.ones(len(RISES))  # determinants
+    c, determinant = np.empty(len(RISES)), np.empty(len(RISES))  # of an axis
     steady, of_steady = 0.0, 1.0
     for axis in range(2):
         R, lever = noise(own, own.whole, axis, late), lever_of(axis)
         sudden = jump(own, steep, axis)
         a, b = count / R + 1.0 / sudden, once / R
         of_steady *= a * sudden
+        for which in range(len(RISES)):
+            V = (RISES[which] * 0.5 * LARGEST / RISE * lever) ** 2
+            c[which] = square / R + 1.0 / V
+            determinant[which] = a * c[which] - b * b
+            of_rising[which] *= determinant[which] * sudden * V
         for k in range(3 * axis, 3 * axis + 3):
             first = seen.x[k] - count * before[k]
             later = seen.later[k] - 0.5 * before[k] * count * (count - 1.0)
@@ -65,19 +71,10 @@ def hand(own, seen, change, late):
             g, h = first / R, ((count + 0.5) * first - later) / R
             steady -= 0.5 * (whole / R - g * g / a)
             for which in range(len(RISES)):
-                c = square / R + 1.0 / rise(which, lever)
-                rising[which] -= 0.5 * (whole / R - (c * g * g - 2.0 * b * g * h + a * h * h) / (a * c - b * b))
-        for which in range(len(RISES)):
-            V = rise(which, lever)
-            of_rising[which] *= (a * (square / R + 1.0 / V) - b * b) * sudden * V
+                explained = (c[which] * g * g - 2.0 * b * g * h + a * h * h) / determinant[which]
+                rising[which] -= 0.5 * (whole / R - explained)
     by_noise = count * own.spread[0 if late == 0.0 else 1]
     rises = -np.inf
     for which in range(len(RISES)):
         rises = both(rises, rising[which] - 1.5 * (by_noise + np.log(of_rising[which])) - LN_RISES)
     return rises, steady - 1.5 * (by_noise + np.log(of_steady))
-
-
-@kernel
-def rise(which, lever):
-    """Variance of what a hand's force, times a lever, rises by in a tick."""
-    return (RISES[which] * 0.5 * LARGEST / RISE * lever) ** 2
