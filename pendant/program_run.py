@@ -106,7 +106,8 @@ class ProgramRun:
 
     def _did(self, tick: int, tool_on: bool, outputs: frozenset[int]) -> list[Event]:
         """What the step of this tick has switched, from what was on before, and what it tells."""
-        sequencer, events = self._robot.sequencer, list[Event]()
+        sequencer = self._robot.sequencer
+        events: list[Event] = []
         if sequencer.tool_on is not tool_on:
             events.append(Event(Kind.TOOL_SWITCHED, tick, {"state": "on" if sequencer.tool_on else "off"}))
         if sequencer.telling is not None:

@@ -1,6 +1,7 @@
 """Records: arrays with names in one block of memory, which a compiled kernel takes as one argument.
 
 Handing an array to a kernel costs as much as the arithmetic of a joint; a record of twenty arrays costs as much as one array.
+One value of it costs Python five times as much by `record[0]["name"]` as by `record["name"].item()` of a kept `record["name"]`.
 """
 
 from functools import cache

@@ -12,7 +12,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.adaptive_friction import AdaptiveFriction
+from sim.estimation.adaptive_friction import AdaptiveFriction, slide
 from sim.motion.moves import Reference
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
@@ -20,20 +20,14 @@ from sim.sensing.calibration import Calibration
 Array = NDArray[np.float64]
 
 
-class Turned(NamedTuple):
-    """What turns the motors in a tick, n joints."""
+class Moved(NamedTuple):
+    """The desired motion of a tick, n joints."""
 
-    qd: Array  # (n,) desired speed [rad/s]
-    load: Array  # (n,) desired transmission torque [N·m]
+    qd: Array  # (n,) [rad/s]
+    qdd: Array  # (n,) [rad/s²]
+    desired: Array  # (n,) transmission torque [N·m]; the output's friction is added to it
     stiffer: Array  # (n,) error of the springs' believed stiffness, relative to it
-
-
-class Needed(NamedTuple):
-    """What a motion needs, n joints [N·m]."""
-
-    qdd: Array  # (n,) its acceleration [rad/s²]
-    friction: Array  # (n,) of both sides
-    desired: Array  # (n,) transmission torque; the output's friction is added to it
+    fresh: bool  # it starts again, nothing is known of the bristles
 
 
 class FeedForward:
@@ -63,13 +57,14 @@ class FeedForward:
             load=(arm.n,),  # desired, of the last tick
             speed=(arm.n,),  # of the motors
             direction=(arm.n,),  # of friction, -1..1
+            friction=(arm.n,),  # that is fed forward
         )
         own = self._record[0]
         own["rotor"] = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         own["stiffness"] = (np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)) * calibration.stiffness
         own["presliding"] = arm.frictions.presliding
         self._speed = own["speed"]
-        self._no_friction = np.zeros(arm.n)
+        self._smooth = AdaptiveFriction(arm, 0.0)  # joints without friction: nothing is fed against it
         self._fed = False  # friction was fed forward in the last tick
         self._commanded = False  # torques were commanded in it
         self.tau_J = np.zeros(arm.n)
@@ -94,21 +89,17 @@ class FeedForward:
             push: with which the joints push against the outside as well (n,) [N·m].
             fresh: the reference started again, nothing is known of the bristles.
         """
-        torque, self._commanded = np.empty_like(self._no_friction), False
+        self._commanded = False
         if not motion:
             self.tau_J = self._dynamics.gravity(reference.q).copy()
-            _add(self._record, (reference.qdd, self._no_friction, self.tau_J), (0.0, 0.0), torque)
-            return torque
+            return self.tau_J.copy()
         self.tau_J = self._dynamics.inverse(reference.q, reference.qd, reference.qdd)
         if push is not None:
             self.tau_J = self.tau_J + push
-        total, share = self._no_friction, 0.0
-        if friction is not None:
-            _turn(self._record, (reference.qd, self.tau_J, stiffer), fresh or not self._fed)
-            total, share = friction.at(self._speed, self.tau_J), friction.output_share
-            _bend(self._record, total)
+        torque = np.empty_like(self.tau_J)
+        moved = reference.qd, reference.qdd, self.tau_J, stiffer, fresh or not self._fed
         self._fed = friction is not None
-        _add(self._record, (reference.qdd, total, self.tau_J), (1.0, share), torque)
+        _feed(self._record, (friction or self._smooth).record, moved, torque)
         return torque
 
     def commanded(self, move: DirectTorque, estimate: Estimate, friction: AdaptiveFriction) -> Array:
@@ -135,25 +126,27 @@ class FeedForward:
 
 
 @kernel
-def _add(feed_forward, needed, shares, torque) -> None:
-    """Motor torque; `shares`: of the rotors' inertia that counts, and of the friction that the output has."""
-    needed = Needed(*needed)
-    rotor = feed_forward[0].rotor
-    inertia, share = shares
+def _feed(feed_forward, friction, moved, torque) -> None:
+    """Motor torque; and to the desired transmission torque the output's friction. One kernel: a call costs as much as a part."""
+    moved = Moved(*moved)
+    own, desired, share = feed_forward[0], moved.desired, friction[0].output_share
+    rotor, qdd, rubs = own.rotor, moved.qdd, own.friction
+    _turn(own, moved)
+    slide(friction, own.speed, desired, rubs)
+    _bend(feed_forward, rubs)
     for i in range(torque.size):
-        torque[i] = needed.desired[i] + inertia * rotor[i] * needed.qdd[i] + needed.friction[i]
-        needed.desired[i] += share * needed.friction[i]
+        torque[i] = desired[i] + rotor[i] * qdd[i] + rubs[i]
+        desired[i] += share * rubs[i]
 
 
 @kernel
-def _turn(feed_forward, turned, fresh) -> None:
+def _turn(own, moved) -> None:
     """Desired speed of the motors."""
-    turned = Turned(*turned)
-    own, load = feed_forward[0], turned.load
+    load = moved.desired
     for i in range(load.size):
-        if fresh:
+        if moved.fresh:
             own.load[i], own.direction[i] = load[i], 0.0
-        own.speed[i] = turned.qd[i] + (load[i] - own.load[i]) / (TICK * own.stiffness[i] * (1.0 + turned.stiffer[i]))
+        own.speed[i] = moved.qd[i] + (load[i] - own.load[i]) / (TICK * own.stiffness[i] * (1.0 + moved.stiffer[i]))
         own.load[i] = load[i]
 
 

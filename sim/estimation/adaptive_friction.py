@@ -108,7 +108,7 @@ class AdaptiveFriction:
         A speed of 0 counts as the slowest forwards.
         """
         total = np.empty_like(speed)
-        _slide(self.record, speed, tau_J, total)
+        slide(self.record, speed, tau_J, total)
         return total
 
     def parts(self, speed: Array, tau_J: Array) -> tuple[Array, Array]:
@@ -195,7 +195,8 @@ def _evaluate(own, turning) -> None:
 
 
 @kernel
-def _slide(friction, speed, tau_J, total) -> None:
+def slide(friction, speed, tau_J, total) -> None:
+    """Friction (n,) of both sides, as `AdaptiveFriction.at` gives it."""
     own = friction[0]
     warmth, terms = own.warmth, own.terms
     for i in range(speed.size):

@@ -73,6 +73,7 @@ class Estimator:
         self._relaxed = False  # at first the hysteresis spring is taken for relaxed
         own["gains"] = tracking_gains(SPEED_BANDWIDTH), tracking_gains(TORQUE_BANDWIDTH)
         self._theta, self._q, self.tau_m, self._current = own["theta"], own["q"], own["tau_m"], own["current"]
+        self._spin = self._record["spin"]
         self._compliance = 1.0 / (stiffness + slip_stiffness)
         self._able = np.ones((3, n), dtype=bool)  # motor angle, output angle, current
         self._lost: tuple[tuple[str, int], ...] = ()
@@ -167,7 +168,7 @@ class Estimator:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
         odds = self.whose_force.update(bias, unsure, accelerations=known.acceleration_valid)
         known.lost_odds, known.lost_share, known.step_odds, known.step_force = odds
-        known.energy = self._dynamics.recursion.energy.item() + self._own["spin"].item()
+        known.energy = self._dynamics.recursion.energy.item() + self._spin.item()
         known.payload_fell, known.joints_feel = self.fall.update(self.q, free=self._free, sensed=bias is not None)
         if bias is None:
             self.link_hand.forget()

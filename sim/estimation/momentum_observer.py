@@ -88,21 +88,22 @@ class MomentumObserver:
             doubt=(n,),
             quiet="i8",  # ticks since something was touched, as far as these torques tell
         )
-        own = self._own = self.record[0]
+        own = self.record[0]
         self.residual, self.doubt, self.errors = own["residual"], own["doubt"], TorqueErrors(arm)
         own["bare"] = np.concatenate([[body.mass], body.com, body.inertia.ravel()])
         own["output_share"] = arm.frictions.output_share
         own["floor"] = FLOOR * np.array(arm.limits.torque)
+        self._count = self.record["count"]
         self._with_sensor = False
 
     @property
     def ready(self) -> bool:
         """What it says counts: it has followed the arm for `READY` ticks."""
-        return bool(self._own["count"] == READY)
+        return self._count.item() == READY
 
     def forget(self) -> None:
         """What was before counts no more: a tick is missing, or the flange sensor came or went."""
-        self._own["count"] = 0
+        self._count[0] = 0
 
     def forget_zero(self) -> None:
         """What was before counts no more: the flange sensor tells something else from now on."""

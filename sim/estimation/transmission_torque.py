@@ -102,6 +102,7 @@ class TransmissionTorque:
         self.fused, self.deviation, self.external = own["fused"], own["deviation"], own["external"]
         self.by_motor = own["by_motor"]
         own["quiet"] = SETTLE_TICKS
+        self._quiet = self.record["quiet"]
         self.forget()
 
     def forget(self) -> None:
@@ -115,7 +116,7 @@ class TransmissionTorque:
     @property
     def contact(self) -> bool:
         """Some joint feels a contact, or felt one lately."""
-        return bool(self._own["quiet"] < SETTLE_TICKS)
+        return self._quiet.item() < SETTLE_TICKS
 
 
 @kernel

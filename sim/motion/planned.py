@@ -1,6 +1,7 @@
 """Motions that are planned from rest to rest before they begin: joint moves, lines, circles."""
 
 import math
+from operator import mul
 
 import numpy as np
 import ruckig
@@ -92,7 +93,7 @@ class JointTrajectory:
         self.done = self._time >= self._trajectory.duration
         position, velocity, acceleration = self._trajectory.at_time(min(self._time, self._trajectory.duration))
         speed, change = np.array(velocity), np.array(acceleration)
-        self.slowing = self.done or float(speed @ change) < 0.0
+        self.slowing = self.done or sum(map(mul, velocity, acceleration)) < 0.0
         if rate == 1.0 == self._rate:
             return Reference(np.array(position), speed, change)
         changing = (rate - self._rate) / TICK

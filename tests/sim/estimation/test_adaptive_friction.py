@@ -20,9 +20,10 @@ IDLE = Wishes(NOTHING, (), ())
 HOME = np.array(UR5E.chain.home)
 
 
-def running(wear: float, mismatch: str = "on", speed: float = 0.3) -> Simulation:
-    """A UR5e that moves to and fro by a program, its friction `wear` times what its file says."""
-    simulation = Simulation(UR5E, Scenario(seed=1003, mismatch=mismatch), Settings())
+def running(wear: float, mismatch: str = "on", speed: float = 0.3, *, helped: bool = True) -> Simulation:
+    """A UR5e that moves to and fro by a program, its friction `wear` times what its file says, and fed forward if `helped`."""
+    settings = apply(Settings(), {"joint_control.friction": helped})
+    simulation = Simulation(UR5E, Scenario(seed=1003, mismatch=mismatch), settings)
     simulation.plant.friction.factor[:] = wear
     steps = tuple(JointMove(q=tuple(HOME + sign * 0.35), speed=speed, acceleration=0.5) for sign in (1.0, -1.0) * 12)
     simulation.tick(Wishes(Inputs(program=Program(steps=steps)), (), ()))
@@ -64,9 +65,7 @@ def test_friction_is_learned_within_seconds_and_within_its_own_uncertainty(wear:
 def test_tracking_is_finer_with_the_estimate_than_without() -> None:
     errors = []
     for helped in (True, False):
-        simulation = running(1.2)
-        if not helped:
-            simulation.estimator.friction.at = lambda speed, tau_J: np.zeros(6)  # type: ignore[method-assign]
+        simulation = running(1.2, helped=helped)
         missed = []
         for tick in range(3500):
             simulation.tick(IDLE)
