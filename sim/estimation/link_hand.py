@@ -18,8 +18,9 @@ other way once it has gone. So a change is a hand's only if it is one against wh
 that no hand holds still for as long.
 
 On an arm that stands for longer, gears, friction and posture change nothing: within a second the torques keep within some
-hundredths of a newton metre. So whoever touches a link is told by a far smaller change. But nothing follows from it for the arm's
-motion: as soon as a joint moves, its friction is another one.
+hundredths of a newton metre. So whoever touches a link is told by a far smaller change. As soon as a joint moves its friction is
+another one, so nothing helps a motion that follows. But a joint whose torque changed by more than what the model leaves on a
+moving arm was touched: what it feels is the hand's for a while, and pays for the motion.
 
 What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
 believed whichever of both says that it leads the arm.
@@ -144,12 +145,13 @@ def _update(memory, known, model, told) -> None:
         best_force(jacobian, own.sure[ENTRY], own.force)
     else:
         own.force[:] = 0.0
-    _touch(own, jacobian, errors.felt, (by_deflection, stands))
+    _touch(own, jacobian, (errors.felt, known[0][0].floor), (by_deflection, stands))
 
 
 @kernel
-def _touch(own, jacobian, felt, told) -> None:
+def _touch(own, jacobian, known, told) -> None:
     """Who touches an arm that stands; a joint whose torque comes from the motor does not tell, its friction may bear as much."""
+    felt, floor = known
     by_deflection, stands = told
     own.stood = min(own.stood + 1, SETTLED) if stands else 0
     change = np.zeros(own.rest.size)
@@ -158,6 +160,8 @@ def _touch(own, jacobian, felt, told) -> None:
             own.rest[i] = felt[i, 0]
         change[i] = felt[i, 0] - own.rest[i]
         own.rest[i] += FOLLOW * change[i]
+        if abs(change[i]) > floor[i]:
+            own.lasts[i] = LASTS
     best_force(jacobian, change, own.touch)
 
 

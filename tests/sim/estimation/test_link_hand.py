@@ -324,6 +324,26 @@ def test_nobody_touches_an_arm_that_moved_a_moment_ago(how: str) -> None:
     assert joints.hand.touch.any()
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("joint", [0, 1, 4])
+@pytest.mark.parametrize(("share", "told"), [(0.99, False), (1.01, True)])
+def test_who_touched_a_joint_that_stood_leads_it_for_a_while_when_it_moves(
+    share: float, told: bool, joint: int, way: float
+) -> None:
+    """By a torque that may be an error on a moving arm, so that it pays for the motion and makes no force."""
+    joints = Joints()
+    joints.tick(SETTLED)
+    change = way * share * joints.count["floor"][joint]
+    joints.felt[joint, 0] += change
+    joints.tick()
+    joints.moving()
+    assert joints.tick() == pytest.approx(told * change * np.eye(N)[joint], rel=0.05)
+    assert not joints.hand.certain.any()
+    assert not joints.hand.force.any()
+    assert joints.tick(LASTS - 2).any() == told
+    assert not joints.tick().any()
+
+
 @pytest.mark.parametrize("touched", [True, False])
 def test_who_leads_a_link_gently_and_has_not_moved_it_yet_keeps_free_drive(touched: bool) -> None:
     """3 N at the forearm that come and go within a second, with all mismatch: the arm stands. Alone it is held after 3 s."""
