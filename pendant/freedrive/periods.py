@@ -13,6 +13,7 @@ from pendant.freedrive.gate import Gate
 from pendant.freedrive.manipulation import Maintained
 from pendant.freedrive.settings import RestartBegins
 from pendant.settings.schema import ticks
+from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.limit_engine import Excess
 from pendant.tick.modes import TICK, Phase
 from pendant.tick.pose import Vector, Wrench, norm
@@ -38,6 +39,7 @@ class Periods:
 
     __slots__ = (
         "_anew",
+        "_fallen",
         "_joints",
         "_left",
         "_maintained",
@@ -67,6 +69,7 @@ class Periods:
         self._registered = False  # a waypoint was registered in this tick
         self._stirred = False  # there was manipulation in the tick before
         self._unpushed = 0  # ticks for which no hand has pushed
+        self._fallen = 0  # ticks for which the arm has at most crept, as its payload may have fallen
         self._pressed = -1  # ticks since a press that began in free-drive, -1 for the press that entered it
         self._maintained: Maintained | None = None  # of the running period
         if not held:
@@ -127,6 +130,7 @@ class Periods:
         if self.phase is not Phase.GUIDED:
             return self._count(around, settings, anew=anew, registered=registered, wrench=wrench, pressed=pressed)
         self._unpushed = 0 if norm(user) >= settings.let_go.force else self._unpushed + 1
+        self._fallen = self._fallen + 1 if _creeps(around.estimate, settings.unexplained.speed) else 0
         self._left = max(self._left - 1, 0)
         if settings.free_drive.ends_by_period and self._left == 0 and pressed is None and self._rests(around, settings, wrench):
             self._begin(Phase.RESTART, around, settings, wrench)
@@ -185,16 +189,19 @@ class Periods:
             self._total = self._left = ticks(min(settings.free_drive.restart_period, settings.free_drive.longest))
             maintained.anew(around.estimate, wrench)
             return
-        self.phase, self._stirred, self._unpushed = Phase.GUIDED, False, 0
+        self.phase, self._stirred, self._unpushed, self._fallen = Phase.GUIDED, False, 0, 0
         # static again: for its whole time after the manipulation began
         self._total = self._left = ticks(settings.static.time)
 
     def _rests(self, around: Surroundings, settings: Settings, wrench: Wrench | None) -> bool:
-        """The guided arm is static again and nobody touches it, or nobody pushes it (FD-15)."""
+        """The guided arm is static again and nobody touches it, or nobody pushes it (FD-15).
+
+        One that has lost its payload may creep, though nobody touches it.
+        """
         if self._maintained is not None and self._maintained.touched(around.estimate, wrench):
             return False
         if settings.free_drive.restart_begins is not RestartBegins.FORCE_ENDS:
-            return around.still.count >= self._total
+            return max(around.still.count, self._fallen) >= self._total
         return self._unpushed >= self._total
 
     def _begin(self, phase: Phase, around: Surroundings, settings: Settings, wrench: Wrench | None) -> None:
@@ -204,6 +211,14 @@ class Periods:
         self._total = self._left = ticks(min(use.period if phase is Phase.PERIOD else use.restart_period, use.longest))
         self._stirred = False
         self._maintained = Maintained(around.estimate, settings, wrench, self._joints)
+
+
+def _creeps(estimate: Estimate, moves: float) -> bool:
+    """A payload that may have fallen explains all that the joints feel, and the flange is slower than an arm that moves [m/s]."""
+    if estimate.joints_feel is not JointsFeel.FALL:
+        return False
+    x, y, z = estimate.v_F.tolist()[:3]
+    return norm((x, y, z)) < moves
 
 
 _HELD = Phase.HELD  # looked up in every tick

@@ -10,11 +10,14 @@ from pendant.guided.user_force import UserForce
 from pendant.guided.work import NO_WRENCH, Forces, Work
 from pendant.limits.parameters import EntryValues
 from pendant.sensor.hand_model import LASTS, LIGHT
-from pendant.sensor.odds import HALF
+from pendant.sensor.odds import HALF, KNOWN, NOISE
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate, JointsFeel
 from pendant.tick.modes import TICK
 from pendant.tick.pose import ORIGIN, Vector, norm
+
+FELT, UNFELT = math.log(HALF / NOISE), math.log(HALF / (1.0 - NOISE))
+"""What a tick says against a fall, and one in which a fall is felt [nats]: what is none is felt in half of the ticks at least."""
 
 
 class Way:
@@ -59,6 +62,7 @@ class UnintendedMotion:
         "_again",
         "_allowed",
         "_at_rest",
+        "_besides",
         "_caused",
         "_doubted",
         "_helped",
@@ -89,6 +93,7 @@ class UnintendedMotion:
         self._there = 0  # ticks for which who was felt may be there still
         self._again = False  # so that it goes as far again
         self._helped = 0.0  # so much of it was not doubtful [m]
+        self._besides = KNOWN  # log of the odds that what is felt is no fall, against noise [nats]
         self.led = self.doubtful = False
 
     def step(
@@ -154,7 +159,7 @@ class UnintendedMotion:
                 stretch.begin(estimate)
             self._ticks += 1
             stretch.work.step(estimate, *wrench, counts=use_wrench or caused)
-        if not use_wrench and estimate.joints_feel is not JointsFeel.FALL:
+        if not use_wrench and not self._may_fall(estimate.joints_feel):
             whole.begin(estimate)
         if caused:
             self._at_rest = False
@@ -212,6 +217,14 @@ class UnintendedMotion:
         way = self._whole if fallen else self._stretch
         length, away = way.length(estimate), self._on.distance
         return (way if length > away else None), fallen or length > HALF * away
+
+    def _may_fall(self, feel: JointsFeel) -> bool:
+        """A fall is felt, or was, and what else is felt now and then may be noise (Page's test)."""
+        if feel is JointsFeel.FALL:
+            self._besides = max(self._besides + UNFELT, 0.0) if self._besides < KNOWN else 0.0
+        else:
+            self._besides = min(self._besides + FELT, KNOWN)
+        return self._besides < KNOWN
 
     def _begin(self, estimate: Estimate) -> None:
         """From here on an arm that was at rest goes on its own, if nobody leads it."""

@@ -14,6 +14,9 @@ SUSPECTED = math.log(20.0)
 """From here on a payload may have changed, and nothing helps a hand: the help may be gone in one tick of 20. A sensor may have
 stepped until a hand is as much likelier, for the help for a step moves an arm that nobody touches."""
 
+NOISE = 0.1
+"""Share of the ticks in which noise may make something else of a fall, as the joints feel it. Bench `guided` guards it."""
+
 RARELY = 3.29
 """Standard deviations that an error exceeds once in a thousand times."""
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+import numpy as np
 import pytest
 
 from pendant.all_settings import Settings
@@ -298,11 +299,29 @@ def test_the_way_of_a_fall_begins_with_it_and_counts_however_slow_it_is(speed: f
     told = bench.see(unseen(JointsFeel.FALL, 0.1 + 1.01 * AWAY, speed))
     assert told is not None
     assert told["distance"] == pytest.approx(1010.0 * AWAY)
+
+
+HELD = 9
+"""Ticks for which a hand that half of the ticks tell is known against noise in a tenth: log(2000 * 250) / log(5), rounded up."""
+
+
+@pytest.mark.parametrize("feels", [JointsFeel.HAND, JointsFeel.NOTHING])
+@pytest.mark.parametrize(("ticks", "again"), [(HELD - 1, False), (HELD, True)])
+def test_the_way_of_a_fall_begins_again_after_what_noise_cannot_make_of_it(ticks: int, again: bool, feels: JointsFeel) -> None:
     bench = Bench(sensor=False)
-    assert bench.until([unseen(JointsFeel.FALL, 0.0, speed), unseen(JointsFeel.FALL, 0.99 * AWAY, speed)]) is None
-    bench.held(unseen(JointsFeel.HAND, 0.99 * AWAY, 0.1))
-    assert bench.see(unseen(JointsFeel.FALL, 1.98 * AWAY, speed)) is None, "after a hand the way of a fall begins again"
-    assert bench.see(unseen(JointsFeel.FALL, 2.0 * AWAY, speed)) is not None
+    assert bench.until([unseen(JointsFeel.FALL, 0.0), unseen(JointsFeel.FALL, 0.99 * AWAY)]) is None
+    assert bench.until([unseen(feels, 0.99 * AWAY)] * ticks) is None
+    assert (bench.see(unseen(JointsFeel.FALL, 1.98 * AWAY)) is None) is again
+    assert bench.see(unseen(JointsFeel.FALL, 2.0 * AWAY)) is not None
+
+
+@pytest.mark.parametrize(("share", "led"), [(0.1, False), (0.5, True)])
+def test_an_arm_that_rises_alone_is_not_led_by_noise(share: float, led: bool) -> None:
+    """A fall of a payload that was told wrong is felt in most ticks, and a hand that pushes upward in half of them."""
+    bench, rng = Bench(sensor=False), np.random.default_rng(3)
+    felt = [JointsFeel.HAND if rng.uniform() < share else JointsFeel.FALL for _ in range(3000)]
+    told = bench.until(unseen(feels, 0.0001 * tick) for tick, feels in enumerate(felt))
+    assert (told is None) is led
 
 
 def test_half_of_the_way_from_rest_is_doubtful_without_the_sensor_too() -> None:
