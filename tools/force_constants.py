@@ -27,6 +27,7 @@ MODULES = (
     "pendant/signals/joint_push.py",
     "sim/estimation/link_hand.py",
     "sim/estimation/payload_fall.py",
+    "sim/estimation/sudden_change.py",
     "sim/flange/external_wrench.py",
     "sim/flange/fall_answer.py",
     "sim/flange/step_answer.py",

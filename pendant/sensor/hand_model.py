@@ -16,6 +16,9 @@ RISES = (1.0, 0.1, 0.01)
 """Of the fastest, shares of which a hand's rise may be: how fast one is nobody knows, so each order of magnitude is as likely.
 Bench `drop` guards it."""
 
+DEGREE = 4
+"""Of the polynomial that its force is over some hundredths of a second: it may come, turn round, go. Bench `drop` guards it."""
+
 TREMOR = 0.5
 """What it is off a straight line from tick to tick, and off a constant force within some windows, about [N]."""
 

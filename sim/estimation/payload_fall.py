@@ -7,7 +7,8 @@ flange's Jacobian J, the joints then feel
 
 A hand makes these torques, too, if it pushes upward as hard as the payload weighs, and harder the faster the arm rises. Gears
 tell torques as well as their stiffness is known; so the payload fell where all but that share of the change is as J' p says, for
-as long as a fall is looked at elsewhere.
+as long as a fall is looked at elsewhere, and where most of the change, as a share of J' p, came at once, as no hand brings it
+about (`sim.estimation.sudden_change`).
 
 Both sides come from momenta, without accelerations, which would be known too late: an arm that has lost its payload gains 5 mm/s
 in each millisecond. The momentum observer tells the torques, and with the payload's momentum P and angular momentum L about the
@@ -37,13 +38,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.sensor.odds import RARELY
+from pendant.sensor.odds import HALF, RARELY, SUSPECTED
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.momentum_observer import MomentumObserver, follow
+from sim.estimation.momentum_observer import GAIN, MomentumObserver, follow
+from sim.estimation.sudden_change import MEAN, SEEN, add, came, courses, forget
 from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.wrench_hypotheses import LONGEST
@@ -52,9 +54,11 @@ from sim.sensing.calibration import STIFFNESS, ripple_torque
 
 Array = NDArray[np.float64]
 
+SURE = HALF * RARELY**2
+"""Log of the odds at which an error of `RARELY` deviations is noticed [nats]."""
+
 NOTHING, FALL, HAND = (int(each) for each in JointsFeel)  # as kernels know them
 NOT_ASKED = False, JointsFeel.NOTHING
-MEAN = LONGEST // 2  # ticks of which the mean is looked at; for the other half of `LONGEST` it has to be a fall
 
 
 class JointTorques(NamedTuple):
@@ -97,7 +101,10 @@ class PayloadFall:
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
             ticks="i8",  # since both run
             lasts="i8",  # ticks
+            fell="?",
+            unlike="i8",  # ticks for which the change has not been that of a fall, at most `SEEN`
         )
+        self._courses = courses(GAIN)
         own = self._own = self._record[0]
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
@@ -135,7 +142,7 @@ class PayloadFall:
             self.torque[:] = self.certain[:] = 0.0
             return NOT_ASKED
         felt = q, transmission.ways[DYNAMICS], momentum.residual, transmission.by_motor
-        fell, feels = _update(self._record, self._rigid, self._wrench.record, felt)
+        fell, feels = _update((self._record, self._courses), self._rigid, self._wrench.record, felt)
         return fell, JointsFeel(feels)
 
     def _begin(self) -> None:
@@ -156,13 +163,14 @@ class PayloadFall:
 
 @kernel
 def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
-    own, jacobian, place = memory[0], model[0].jacobian, memory[0].ticks % MEAN
+    own, courses, jacobian, place = memory[0][0], memory[1], model[0].jacobian, memory[0][0].ticks % MEAN
     q, bears, external, by_motor = felt
     _need(own, model[0], wrenches[0], q)
     if own.ticks == 0:
-        own.latest[:], own.lasts = 0.0, 0
+        own.latest[:], own.lasts, own.unlike, own.fell = 0.0, 0, SEEN, False
+        forget(courses)
     own.ticks += 1
-    change = left = 0.0
+    change = left = along = size = now = whole = 0.0
     nothing = falls = unmissed = True
     for i in range(q.size):
         wrong = RARELY * by_motor[i] if by_motor[i] > 0.0 else own.ripple[i] + STIFFNESS * abs(bears[i] - own.entry[i])
@@ -171,6 +179,8 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
             own.latest[place, 1, i] += jacobian[k, i] * own.needed[1, k]
             swings += jacobian[k, i] * own.swing[1, k]
         wrong += own.untold * abs(swings)
+        now += own.latest[place, 0, i] * own.latest[place, 1, i]
+        whole += own.latest[place, 1, i] ** 2
         more = lost = 0.0
         for k in range(MEAN):
             more += own.latest[k, 0, i] / MEAN
@@ -178,14 +188,38 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
         own.hand[i], own.certain[i] = more, math.copysign(max(abs(more) - wrong, 0.0), more)
         change += more * more
         left += (more - lost) * (more - lost)
+        along += more * lost
+        size += lost * lost
         nothing = nothing and abs(more) <= wrong
         falls = falls and abs(more - lost) <= wrong + STIFFNESS * abs(lost)
         unmissed = unmissed and abs(lost) <= wrong
-    own.lasts = own.lasts + 1 if change > own.noise and left < STIFFNESS**2 * change else 0
+    add(courses, now / whole if whole > 0.0 else 0.0)
+    least = STIFFNESS**2 * change
+    own.lasts = own.lasts + 1 if change > own.noise and left < least else 0
+    _judge(own, courses, change > own.noise and size > 0.0 and change - along**2 / size < least)
     feels = NOTHING if nothing else FALL if falls and not unmissed else HAND
     if feels != HAND:
         own.hand[:] = own.certain[:] = 0.0
-    return own.lasts >= LONGEST - MEAN, feels
+    return own.fell, feels
+
+
+@kernel
+def _judge(own, courses, like) -> None:
+    """Whether the payload fell; `like`: the change is that of a fall, whatever its size.
+
+    It is sure in the first ticks where a step is likelier by far than what a hand does, and as soon as a fall lasts unless a hand
+    is likelier by far. Later it is not seen any more how the change came.
+    """
+    fits, first = own.lasts >= LONGEST - MEAN, own.unlike == SEEN
+    if first and (fits or (like and courses[0].latest[courses[0].newest] > HALF)):
+        by_hand, at_all, size, level = came(courses)
+        sure = like and by_hand <= -SURE and abs(level - 1.0) <= STIFFNESS
+        own.fell = at_all >= SUSPECTED and size >= HALF and (sure or (fits and by_hand < 0.0))
+    if fits or (first and own.fell):
+        own.unlike = 0
+    elif not first:
+        own.unlike += 1
+        own.fell = own.fell and own.unlike < SEEN
 
 
 @kernel

@@ -16,8 +16,9 @@ from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
 from sim.arm.scenario import Load, Scenario
-from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver
-from sim.estimation.payload_fall import MEAN, JointTorques, PayloadFall
+from sim.estimation.momentum_observer import BANDWIDTH, MomentumObserver, follow
+from sim.estimation.payload_fall import JointTorques, PayloadFall
+from sim.estimation.sudden_change import MEAN, SEEN
 from sim.estimation.transmission_torque import TransmissionTorque
 from sim.exchange.desk import Wishes
 from sim.flange.external_wrench import ExternalWrench
@@ -95,11 +96,45 @@ class Joints:
         return [self.tick(external + before) for _ in range(ticks)]
 
 
+def filtered(rise: int) -> list[float]:
+    """Tick by tick, what the observer and the filter behind it make of a change from 0 to 1 in so many ticks."""
+    first, second, found = np.zeros(1), np.zeros(1), []
+    for tick in range(SETTLED):
+        follow(first, second, min((tick + 1) / rise, 1.0), 0)
+        found.append(float(second[0]))
+    return found
+
+
 def test_what_the_payload_needs_at_rest_is_its_fall() -> None:
     joints = Joints()
-    told = joints.course(joints.lost)
+    told = [joints.tick(share * joints.lost) for share in [0.0] * SEEN + filtered(1)]
     assert told[-1]
-    assert told.index(True) + 1 == LONGEST - MEAN + 4, "4 of 5 ticks of the mean are a fall to within a fifth of it"
+    late = [joints.tick(0.0 * joints.lost) for _ in range(2 * SEEN)]
+    assert not late[-1]
+    assert filtered(1)[told.index(True) - SEEN] < 1.0 - STIFFNESS, "known by how it comes, before it is there"
+
+
+def test_where_the_noise_hides_how_it_comes_it_is_told_by_what_it_is() -> None:
+    joints, rng = Joints(), np.random.default_rng(1)
+    told = [
+        joints.tick(share * joints.lost + 0.06 * rng.normal() * joints.lost)
+        for share in [0.0] * SEEN + [0.2, 0.6] + [1.0] * SETTLED
+    ]
+    assert LONGEST - MEAN + 4 <= told.index(True) - SEEN < SEEN
+
+
+@pytest.mark.parametrize("most", [1.0, 1.1])
+@pytest.mark.parametrize("rise", [15, 20, 25, 40])
+def test_what_comes_as_a_hand_brings_it_about_is_no_fall(rise: int, most: float) -> None:
+    joints = Joints()
+    assert not any(joints.tick(most * share * joints.lost) for share in [0.0] * SEEN + filtered(rise))
+    assert joints.feels is JointsFeel.FALL, "it may be one, and nothing helps it"
+
+
+def test_a_hand_that_bore_most_of_the_weight_before_is_no_fall_if_it_bears_all() -> None:
+    joints = Joints()
+    shares = [*(0.6 * share for share in filtered(40)), *(0.6 + 0.4 * share for share in filtered(1))]
+    assert not any(joints.tick(share * joints.lost) for share in shares)
 
 
 def test_what_it_needs_in_its_motion_is_known_as_late_as_the_torques() -> None:
@@ -377,6 +412,15 @@ def test_a_flange_sensor_that_stepped_is_no_hand_on_a_link_and_the_joints_tell_f
     assert bench.mode is Mode.FREE_DRIVE
     assert bench.estimate.joints_feel is JointsFeel.HAND
     assert np.linalg.norm(bench.flange - start) > 0.03
+
+
+@pytest.mark.parametrize("rise", [0.03, 0.05])
+def test_a_hand_that_pushes_upward_as_hard_as_the_payload_weighs_is_no_fall(rise: float) -> None:
+    bench, ticks = arm(2.0, sensor=False), round(rise / TICK)
+    for tick in range(2 * ticks):
+        force = 2.0 * 9.81 * min((tick + 1) / ticks, 1.0)
+        bench.tick(Wishes(NOTHING, (Push("flange", (0.0, 0.0, 0.05), (0.0, 0.0, force)),), ()))
+    assert not [event for event in bench.events if event.kind is Kind.STOPPED_PAYLOAD]
 
 
 def test_a_hand_that_leads_is_no_fall() -> None:

@@ -1,0 +1,153 @@
+"""Whether a change came at once, as of a payload that falls, or as a hand brings it about (FD-19).
+
+A payload that falls is gone within a tick. A hand takes 10 ms and more to push as hard, pushes harder than that, or changes its
+push all the time. Of the last `SEEN` ticks of a value, each of these is a course with unknown size and level:
+
+- at once: a step, through the filters that the value went through;
+- a hand that comes or goes: a ramp of `RISES` ticks, through the same filters;
+- a hand that is there: a polynomial of the degree `DEGREE`;
+- nothing: a constant.
+
+Where the noise is white, as large as it may be, the likelihood of a course that misses the values by the sum S of squares is
+proportional to S^(-SEEN / 2); one with more free numbers pays log(SEEN) / 2 for each.
+
+Source: generalised likelihood ratio of linear models of unknown variance; Schwarz, Estimating the Dimension of a Model, Annals of
+Statistics 6(2), 1978.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.sensor.hand_model import DEGREE, RISE
+from sim.compiled.kernel import kernel
+from sim.compiled.record import Record, record
+from sim.flange.wrench_hypotheses import LONGEST
+
+Array = NDArray[np.float64]
+
+MEAN = LONGEST // 2
+"""Ticks of which the mean is looked at; for the other half of `LONGEST` it has to be a fall."""
+
+SEEN = 2 * LONGEST + MEAN
+"""Ticks that are looked at: as long as a fall is looked at, with the mean, and as long before."""
+
+RISES = (2 * RISE, 4 * RISE, 8 * RISE)
+"""Ticks in which a hand comes or goes: from twice its shortest, which a step cannot be told from, in factors of two."""
+
+FREE = 0.5 * math.log(SEEN)
+"""What a free number costs [nats]."""
+
+TINY = float(np.finfo(np.float64).tiny)
+
+
+class Came(NamedTuple):
+    """How a value came to be what it is."""
+
+    by_hand: float  # log of the odds of a hand's course against a step [nats]
+    at_all: float  # of a step against none
+    size: float  # of the step that fits best
+    level: float  # of that step, after it
+
+
+def courses(gain: float) -> Record:
+    """The courses of a value behind two filters of the first order of this gain a tick, and the value itself, still zero.
+
+    Each course is a row without level, of length 1; those of the polynomial are orthogonal.
+    """
+    steps = np.array([_course(begin, 1.0, gain) for begin in range(SEEN - 1)])
+    ramps = np.array([_course(begin, rise, gain) for rise in RISES for begin in range(-int(rise), SEEN - 1)])
+    powers = np.vander(np.linspace(-1.0, 1.0, SEEN), DEGREE + 1, increasing=True)
+    smooth = np.linalg.qr(powers)[0].T[1:]
+    made = record(
+        steps=steps.shape,
+        level=(len(steps),),  # of a step of 1, its mean
+        length=(len(steps),),  # the same without level
+        ramps=ramps.shape,
+        smooth=smooth.shape,
+        latest=(SEEN,),  # a ring
+        newest="i8",  # place in it
+        value=(SEEN,),  # in the order of time, without level
+    )
+    own = made[0]
+    own["level"], own["length"] = steps.mean(axis=1), np.linalg.norm(_flat(steps), axis=1)
+    own["steps"], own["ramps"], own["smooth"] = _unit(steps), _unit(ramps), smooth
+    return made
+
+
+def _course(begin: int, rise: float, gain: float) -> Array:
+    """From 0 to 1 in so many ticks, behind the filters."""
+    came, course = np.zeros(2), np.empty(SEEN)
+    for tick in range(min(begin, 0), SEEN):
+        came[0] += gain * (min(max((tick - begin + 1) / rise, 0.0), 1.0) - came[0])
+        came[1] += gain * (came[0] - came[1])
+        if tick >= 0:
+            course[tick] = came[1]
+    return course
+
+
+def _flat(rows: Array) -> Array:
+    return rows - rows.mean(axis=1, keepdims=True)
+
+
+def _unit(rows: Array) -> Array:
+    return _flat(rows) / np.linalg.norm(_flat(rows), axis=1, keepdims=True)
+
+
+@kernel
+def forget(known) -> None:
+    """The value was 0 until now."""
+    known[0].latest[:] = 0.0
+
+
+@kernel
+def add(known, value) -> None:
+    """One tick."""
+    own = known[0]
+    own.newest = (own.newest + 1) % SEEN
+    own.latest[own.newest] = value
+
+
+@kernel
+def came(known) -> tuple[float, float, float, float]:
+    """How the value came to be what it is, as `Came`."""
+    own, value = known[0], known[0].value
+    mean = own.latest.mean()
+    for k in range(SEEN):
+        value[k] = own.latest[(own.newest + 1 + k) % SEEN] - mean
+    whole, smooth = _dot(value, value), 0.0
+    for k in range(DEGREE):
+        smooth += _dot(own.smooth[k], value) ** 2
+    step, ramp = _best(own.steps, value), _best(own.ramps, value)
+    along = _dot(own.steps[step], value)
+    left, by_ramp = whole - along**2, whole - _dot(own.ramps[ramp], value) ** 2
+    by_hand = max(_odds(by_ramp, left), _odds(whole - smooth, left) - (DEGREE - 1) * FREE)
+    size = along / own.length[step]
+    return by_hand, _odds(left, whole) - FREE, size, mean + size * (1.0 - own.level[step])
+
+
+@kernel
+def _dot(a, b) -> float:
+    total = 0.0
+    for k in range(SEEN):
+        total += a[k] * b[k]
+    return total
+
+
+@kernel
+def _best(rows, value) -> int:
+    """The row along which most of the value is."""
+    most, which = 0.0, 0
+    for i in range(rows.shape[0]):
+        square = _dot(rows[i], value) ** 2
+        if square > most:
+            most, which = square, i
+    return which
+
+
+@kernel
+def _odds(left, against) -> float:
+    """Log of the odds of a course that leaves the sum `left` of squares against one that leaves `against` [nats]."""
+    return 0.5 * SEEN * math.log(max(against, TINY) / max(left, TINY))
