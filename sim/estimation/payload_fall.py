@@ -101,7 +101,7 @@ class PayloadFall:
             latest=(MEAN, 2, arm.n),  # change of tau_ext, and J' p [N·m]
             ticks="i8",  # since both run
             lasts="i8",  # ticks
-            fell="?",
+            fell="?",  # the payload did
             unlike="i8",  # ticks for which the change has not been that of a fall, at most `SEEN`
         )
         self._courses = courses(GAIN)
@@ -207,8 +207,8 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
 def _judge(own, courses, like) -> None:
     """Whether the payload fell; `like`: the change is that of a fall, whatever its size.
 
-    It is sure in the first ticks where a step is likelier by far than what a hand does, and as soon as a fall lasts unless a hand
-    is likelier by far. Later it is not seen any more how the change came.
+    It is sure in the first ticks where a step is likelier by far than what a hand does, and as soon as a fall lasts where a step
+    is the likelier. Later it is not seen any more how the change came.
     """
     fits, first = own.lasts >= LONGEST - MEAN, own.unlike == SEEN
     if first and (fits or (like and courses[0].latest[courses[0].newest] > HALF)):
