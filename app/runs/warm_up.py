@@ -10,6 +10,7 @@ from app.runs.runner import run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
 from app.urscript.language.reading import read_script
+from pendant.motion.script_requests import DirectTorque
 
 
 def warm_up() -> None:
@@ -25,6 +26,8 @@ def warm_up() -> None:
         with Recorder(out / "log.mcap", simulation, session.title) as recorder:
             run(session, prepared, simulation, out, see=lambda decision: recorder.see(simulation, decision))
     simulation.snapshot()
-    seen = simulation.estimate
-    simulation.estimator.friction.parts(seen.theta_d, seen.tau_J)  # of direct_torque, which no session's step does
+    # What no session's step does: direct_torque.
+    none = (0.0,) * simulation.arm.n
+    torque = DirectTorque(id=0, torque=none, viscous=none, coulomb=none)
+    simulation.controller.feed_forward.commanded(torque, simulation.estimate, simulation.estimator.friction)
     read_script("")
