@@ -62,10 +62,10 @@ class UnintendedMotion:
         "_again",
         "_allowed",
         "_at_rest",
-        "_besides",
         "_caused",
         "_doubted",
         "_helped",
+        "_no_fall",
         "_on",
         "_stretch",
         "_there",
@@ -93,7 +93,7 @@ class UnintendedMotion:
         self._there = 0  # ticks for which who was felt may be there still
         self._again = False  # so that it goes as far again
         self._helped = 0.0  # so much of it was not doubtful [m]
-        self._besides = KNOWN  # log of the odds that what is felt is no fall, against noise [nats]
+        self._no_fall = KNOWN  # log of the odds that what is felt is no fall, against noise [nats]
         self.led = self.doubtful = False
 
     def step(
@@ -221,10 +221,10 @@ class UnintendedMotion:
     def _may_fall(self, feel: JointsFeel) -> bool:
         """A fall is felt, or was, and what else is felt now and then may be noise (Page's test)."""
         if feel is JointsFeel.FALL:
-            self._besides = max(self._besides + UNFELT, 0.0) if self._besides < KNOWN else 0.0
+            self._no_fall = max(self._no_fall + UNFELT, 0.0) if self._no_fall < KNOWN else 0.0
         else:
-            self._besides = min(self._besides + FELT, KNOWN)
-        return self._besides < KNOWN
+            self._no_fall = min(self._no_fall + FELT, KNOWN)
+        return self._no_fall < KNOWN
 
     def _begin(self, estimate: Estimate) -> None:
         """From here on an arm that was at rest goes on its own, if nobody leads it."""
