@@ -44,7 +44,7 @@ from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.compiled.kernel import kernel
 from sim.compiled.record import record
-from sim.estimation.momentum_observer import GAIN, MomentumObserver, follow
+from sim.estimation.momentum_observer import MomentumObserver, follow
 from sim.estimation.sudden_change import MEAN, SEEN, add, came, courses, forget
 from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
@@ -104,7 +104,7 @@ class PayloadFall:
             fell="?",  # the payload did
             unlike="i8",  # ticks for which the change has not been that of a fall, at most `SEEN`
         )
-        self._courses = courses(GAIN)
+        self._courses = courses()
         own = self._own = self._record[0]
         own["ripple"] = ripple = ripple_torque(arm.transmissions)
         own["noise"] = ripple @ ripple
@@ -193,10 +193,12 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
         nothing = nothing and abs(more) <= wrong
         falls = falls and abs(more - lost) <= wrong + STIFFNESS * abs(lost)
         unmissed = unmissed and abs(lost) <= wrong
-    add(courses, now / whole if whole > 0.0 else 0.0)
+    share = now / whole if whole > 0.0 else 0.0
+    add(courses, share)
+    enough = change > own.noise
     least = STIFFNESS**2 * change
-    own.lasts = own.lasts + 1 if change > own.noise and left < least else 0
-    _judge(own, courses, change > own.noise and size > 0.0 and change - along**2 / size < least)
+    own.lasts = own.lasts + 1 if enough and left < least else 0
+    _judge(own, courses, enough and share > HALF and size > 0.0 and change - along**2 / size < least)
     feels = NOTHING if nothing else FALL if falls and not unmissed else HAND
     if feels != HAND:
         own.hand[:] = own.certain[:] = 0.0
@@ -204,17 +206,17 @@ def _update(memory, model, wrenches, felt) -> tuple[bool, int]:
 
 
 @kernel
-def _judge(own, courses, like) -> None:
-    """Whether the payload fell; `like`: the change is that of a fall, whatever its size.
+def _judge(own, courses, comes) -> None:
+    """Whether the payload fell; `comes`: the change is that of a fall which may not be all there yet.
 
     It is sure in the first ticks where a step is likelier by far than what a hand does, and as soon as a fall lasts where a step
     is the likelier. Later it is not seen any more how the change came.
     """
     fits, first = own.lasts >= LONGEST - MEAN, own.unlike == SEEN
-    if first and (fits or (like and courses[0].latest[courses[0].newest] > HALF)):
+    if first and (fits or comes):
         by_hand, at_all, size, level = came(courses)
-        sure = like and by_hand <= -SURE and abs(level - 1.0) <= STIFFNESS
-        own.fell = at_all >= SUSPECTED and size >= HALF and (sure or (fits and by_hand < 0.0))
+        sure = by_hand <= -SURE and abs(level - 1.0) <= STIFFNESS
+        own.fell = at_all >= SUSPECTED and size >= HALF and (by_hand < 0.0 if fits else sure)
     if fits or (first and own.fell):
         own.unlike = 0
     elif not first:

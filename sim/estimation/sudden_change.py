@@ -16,14 +16,17 @@ Statistics 6(2), 1978.
 """
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from pendant.sensor.hand_model import DEGREE, RISE
 from sim.compiled.kernel import kernel
 from sim.compiled.record import Record, record
+from sim.estimation.momentum_observer import follow
 from sim.flange.wrench_hypotheses import LONGEST
 
 Array = NDArray[np.float64]
@@ -52,15 +55,12 @@ class Came(NamedTuple):
     level: float  # of that step, after it
 
 
-def courses(gain: float) -> Record:
-    """The courses of a value behind two filters of the first order of this gain a tick, and the value itself, still zero.
+def courses() -> Record:
+    """The courses of a value behind the momentum observer's two filters, and the value itself, still zero.
 
     Each course is a row without level, of length 1; those of the polynomial are orthogonal.
     """
-    steps = np.array([_course(begin, 1.0, gain) for begin in range(SEEN - 1)])
-    ramps = np.array([_course(begin, rise, gain) for rise in RISES for begin in range(-int(rise), SEEN - 1)])
-    powers = np.vander(np.linspace(-1.0, 1.0, SEEN), DEGREE + 1, increasing=True)
-    smooth = np.linalg.qr(powers)[0].T[1:]
+    steps, ramps, smooth = _rows()
     made = record(
         steps=steps.shape,
         level=(len(steps),),  # of a step of 1, its mean
@@ -77,15 +77,26 @@ def courses(gain: float) -> Record:
     return made
 
 
-def _course(begin: int, rise: float, gain: float) -> Array:
-    """From 0 to 1 in so many ticks, behind the filters."""
-    came, course = np.zeros(2), np.empty(SEEN)
-    for tick in range(min(begin, 0), SEEN):
-        came[0] += gain * (min(max((tick - begin + 1) / rise, 0.0), 1.0) - came[0])
-        came[1] += gain * (came[0] - came[1])
-        if tick >= 0:
-            course[tick] = came[1]
-    return course
+@cache
+def _rows() -> tuple[Array, Array, Array]:
+    """Steps and ramps from 0 to 1, of which each begins in another tick, and the polynomial: once, for they are every arm's.
+
+    A ramp is the mean of the steps in its ticks.
+    """
+    before = SEEN + int(max(RISES))
+    first, second, answer = np.zeros(1), np.zeros(1), np.zeros(2 * before)
+    for tick in range(before, len(answer)):
+        follow(first, second, 1.0, 0)
+        answer[tick] = second[0]
+    step = sliding_window_view(answer, SEEN)[before::-1]  # in tick 0 of the window, in tick 1, ...
+    earlier = sliding_window_view(answer, SEEN)[before:]  # in tick 0, a tick before the window, ...
+    ramps = [
+        np.concatenate([earlier[rise:0:-1], step])[begin : begin + rise].mean(axis=0)
+        for rise in map(int, RISES)
+        for begin in range(rise + SEEN - 1)
+    ]
+    powers = np.vander(np.linspace(-1.0, 1.0, SEEN), DEGREE + 1, increasing=True)
+    return step[: SEEN - 1], np.array(ramps), np.linalg.qr(powers)[0].T[1:]
 
 
 def _flat(rows: Array) -> Array:

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pendant.sensor.odds import SUSPECTED
-from sim.estimation.momentum_observer import GAIN, follow
+from sim.estimation.momentum_observer import follow
 from sim.estimation.sudden_change import SEEN, Came, add, came, courses, forget
 
 Array = NDArray[np.float64]
@@ -15,7 +15,7 @@ NOISE = 0.05
 
 def seen(value: Array, seed: int, noise: float = NOISE) -> Came:
     """What is told of the last of these values behind the filters, in noise."""
-    known, rng = courses(GAIN), np.random.default_rng(seed)
+    known, rng = courses(), np.random.default_rng(seed)
     first, second = np.zeros(1), np.zeros(1)
     for each in value:
         follow(first, second, each, 0)
@@ -65,7 +65,7 @@ def test_noise_is_no_step() -> None:
 
 
 def test_what_was_before_can_be_forgotten() -> None:
-    known, fresh = courses(GAIN), courses(GAIN)
+    known, fresh = courses(), courses()
     for k in range(SEEN + 3):
         add(known, float(k))
     forget(known)
