@@ -87,6 +87,7 @@ def estimate(
         friction=_vector(friction, n),
         energy=energy,
         tau_hand=_vector(tau_hand, n),
+        tau_certain=_zeros(n),
         F_link=_vector(link, 3),
         F_touch=_vector(touch, 3),
     )

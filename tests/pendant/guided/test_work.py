@@ -108,6 +108,19 @@ def test_what_may_be_drift_against_the_motion_is_taken_off_what_the_joints_feel(
     assert work.unpaid == pytest.approx(owed * 100 * TICK * PAYS * SPEED)
 
 
+@pytest.mark.parametrize(("sure", "owed"), [(0.0, 1.0), (0.2, 0.8), (0.5, 0.5), (2.0, 0.5), (-1.0, 1.0)])
+def test_no_drift_is_taken_off_what_the_joints_feel_for_certain(sure: float, owed: float) -> None:
+    """A hand of 4 N·m leads a joint, and the sensor's error may be worth as much: what no error explains pays nevertheless."""
+    value = moving(0.5 * PAYS).copy()
+    value.tau_certain = np.array([0.0, sure * PAYS, 0.0, 0.0, 0.0, 0.0])
+    value.v_F[0] = 0.05
+    work = Work()
+    work.begin(value)
+    for _ in range(100):
+        work.step(value, drift=((-9.0 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN))
+    assert work.unpaid == pytest.approx(owed * 100 * TICK * PAYS * SPEED)
+
+
 def test_no_drift_makes_what_the_joints_feel_against_the_motion_worse() -> None:
     value = moving(-PAYS).copy()
     value.v_F[0] = 0.05
