@@ -5,11 +5,11 @@ The control law takes at most a share of its friction off a moving arm. The rest
     W = integral of (tau_hand . qd + F . v + tau . w) dt  >=  LEFT * integral of friction . qd dt,
 
 with the torques that the joints feel of a hand on a link and the wrench that the flange sensor feels of one at the flange, each
-only as far as it is more than an error may be. Without the sensor the joints tell both. What may be the sensor's drift the joints
-feel as a hand that does the opposite: it is taken off, but not from what they feel for certain, where it is allowed for. An arm that nobody leads pays for that
-rest with its speed. Half of that rest is asked for: what may be an error hides some of a hand. Each joint is weighed by its own
-speed: one that stands says nothing. The torques come from the deflection of the gears, so that an error of the friction estimate
-alone pays nothing.
+only as far as it is more than an error may be. Without the sensor the joints tell both. What may be the sensor's drift the
+joints feel as a hand that does the opposite: it is taken off, but not from what they feel for certain, where it is allowed for.
+An arm that nobody leads pays for that rest with its speed. Half of that rest is asked for: what may be an error hides some of a
+hand. Each joint is weighed by its own speed: one that stands says nothing. The torques come from the deflection of the gears,
+so that an error of the friction estimate alone pays nothing.
 """
 
 from pendant.sensor.odds import HALF
