@@ -103,20 +103,21 @@ class PullWatch:
         shown: that; None while free-drive has been off for as long.
     """
 
-    __slots__ = ("_age", "shown")
+    __slots__ = ("_age", "_doubt", "shown")
 
     def __init__(self) -> None:
         self.shown: PullCauses | None = None
         self._age = 0
+        self._doubt = NOT_TOLD  # of `shown`
 
     def step(self, pull: PullCauses | None) -> None:
         """One tick; None: the arm is not free."""
-        shown = self.shown
         self._age += 1
         if pull is not None:
-            if shown is None or self._age >= KEPT or pull.doubt >= shown.doubt:
-                self.shown, self._age = pull, 0
-        elif shown is not None and self._age >= KEPT:
+            doubt = pull.doubt
+            if self.shown is None or self._age >= KEPT or doubt >= self._doubt:
+                self.shown, self._doubt, self._age = pull, doubt, 0
+        elif self.shown is not None and self._age >= KEPT:
             self.shown = None
 
 

@@ -102,11 +102,10 @@ class SensorBias:
             still: no joint moves.
             force: a hand's is at least so large, if the sensor has not drifted [N], so that a smaller step moves nothing.
         """
-        least = force + self._drift.drifted(estimate.tick).force
         x, y, z = estimate.F_joints.tolist()
         fx, fy, fz = self._felt
         self._felt = (fx + SMOOTH * (x - fx), fy + SMOOTH * (y - fy), fz + SMOOTH * (z - fz))
-        if estimate.step_odds >= KNOWN and estimate.step_force >= least:
+        if estimate.step_odds >= KNOWN and estimate.step_force >= self._least(force, estimate.tick):
             self.leave()
             return Event(Kind.SENSOR_STEPPED, estimate.tick, {"force": estimate.step_force})
         if not waits:
@@ -116,7 +115,7 @@ class SensorBias:
                 for taken in self._drift.give_back():
                     self._take_off(tuple([-value for value in taken]), hand)
         elif self._drift.due():
-            now = mean.mean()
+            now, least = mean.mean(), self._least(force, estimate.tick)
             apart = self.apart(estimate, now)
             if not self._drift.begun:
                 if self._drift.held(apart, estimate):
@@ -137,6 +136,10 @@ class SensorBias:
                     self.leave()
                     return Event(Kind.SENSOR_DRIFTED, estimate.tick, {"force": far, "torque": turn})
         return None
+
+    def _least(self, force: float, tick: int) -> float:
+        """A hand's force is at least so large, with what the sensor may have drifted by since its bias was last known [N]."""
+        return force + self._drift.drifted(tick).force
 
     def _know(self, gone: Wrench, estimate: Estimate, hand: UserForce) -> None:
         """So much, axes of F [N, N·m], is all that the sensor has drifted by since its bias was last known."""

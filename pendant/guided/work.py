@@ -6,7 +6,7 @@ The control law takes at most a share of its friction off a moving arm. The rest
 
 with the torques that the joints feel of a hand on a link and the wrench that the flange sensor feels of one at the flange, each
 only as far as it is more than an error may be. Without the sensor the joints tell both. What may be the sensor's drift the
-joints feel as a hand that does the opposite: it is taken off, but not from what they feel for certain, where it is allowed for.
+joints feel as a hand that does the opposite: it is subtracted, but not from what they feel for certain, in which it is counted.
 An arm that nobody leads pays for that rest with its speed. Half of that rest is asked for: what may be an error hides some of a
 hand. Each joint is weighed by its own speed: one that stands says nothing. The torques come from the deflection of the gears,
 so that an error of the friction estimate alone pays nothing.
@@ -64,15 +64,10 @@ class Work:
         """
         x, y, z, a, b, c = estimate.v_F.tolist()
         (force, torque), (more, turn) = wrench, drift
-        done = certain = rubbed = 0.0
-        felt = estimate.tau_hand.tolist(), estimate.tau_certain.tolist()
-        for speed, hand, sure, friction in zip(estimate.qd.tolist(), *felt, estimate.friction.tolist(), strict=True):
-            done += hand * speed
-            certain += sure * speed
-            rubbed += friction * speed
+        done, certain, rubbed = estimate.powers
         if done > 0.0:
             drifted = min(dot(more, (x, y, z)) + dot(turn, (a, b, c)), 0.0)
-            done = max(done + drifted, min(done, certain), 0.0)
+            done = max(done + drifted, min(certain, done), 0.0)
         done = (done * counts + dot(force, (x, y, z)) + dot(torque, (a, b, c))) * TICK
         rubbed *= HALF * LEFT * TICK
         self._ticks += 1

@@ -80,6 +80,7 @@ class Estimate:
     F_touch: Array = field(default_factory=lambda: np.zeros(3))  # (3,) of a touch of a standing arm, likewise [N]
     tau_hand: Array = field(default_factory=_no_joints)  # (n,) of a hand, on a link with that sensor; in free-drive only [N·m]
     tau_certain: Array = field(default_factory=_no_joints)  # (n,) what of it a hand makes for certain in this tick [N·m]
+    powers: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of tau_hand, tau_certain, friction; in free-drive only [W]
     a_felt: Array = field(default_factory=lambda: np.zeros(3))  # (3,) what the flange feels beyond gravity, in B [m/s²]
     current: Array = field(default_factory=_no_joints)  # (n,) measured motor current, as a share of the largest that it may have
     load_mass: float = 0.0  # configured: payload and tool [kg]

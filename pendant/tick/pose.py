@@ -73,7 +73,8 @@ def dot(a: Vector, b: Vector) -> float:
 
 def norm(v: Vector) -> float:
     """The length."""
-    return math.hypot(*v)
+    x, y, z = v
+    return math.sqrt(x * x + y * y + z * z)
 
 
 def turned(R: Rotation, v: Vector) -> Vector:

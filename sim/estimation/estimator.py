@@ -19,7 +19,7 @@ from sim.estimation.joint_tracking import (
     plan,
     tracking_gains,
 )
-from sim.estimation.link_hand import LinkHand
+from sim.estimation.link_hand import LinkHand, powers
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
 from sim.estimation.torque_balance import balance
@@ -176,6 +176,7 @@ class Estimator:
         else:
             self.link_hand.update(bias, self._q[1], self._ways[DEFLECTION])
             known.tau_hand, known.tau_certain = self.link_hand.torque, self.link_hand.certain
+        known.powers = powers(self._q[1], known.tau_hand, known.tau_certain, known.friction)
 
     def _all(self, sample: Sample) -> Estimate:
         """The estimate that every tick renews: most of it are arrays that are written in place."""

@@ -180,6 +180,12 @@ def _follow(felt, now, share) -> None:
 
 
 @kernel
+def powers(qd, tau_hand, tau_certain, friction) -> tuple[float, float, float]:
+    """What a hand does, what of it is certain, and what friction takes [W]: of (n,) joints [rad/s, N·m]."""
+    return _power(tau_hand, qd), _power(tau_certain, qd), _power(friction, qd)
+
+
+@kernel
 def _power(torque, qd):
     power = 0.0
     for i in range(qd.size):

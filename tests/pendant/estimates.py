@@ -1,6 +1,7 @@
 """Estimates for tests: an arm at rest, with what a test wants to differ."""
 
 from functools import cache
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +48,7 @@ def estimate(
     friction: float | list[float] = 0.0,
     energy: float = 0.0,
     tau_hand: float | list[float] = 0.0,
+    tau_certain: float | list[float] = 0.0,
     link: float | list[float] = 0.0,
     touch: float | list[float] = 0.0,
 ) -> Estimate:
@@ -87,7 +89,8 @@ def estimate(
         friction=_vector(friction, n),
         energy=energy,
         tau_hand=_vector(tau_hand, n),
-        tau_certain=_zeros(n),
+        tau_certain=_vector(tau_certain, n),
+        powers=(_power(qd, tau_hand), _power(qd, tau_certain), _power(qd, friction)),
         F_link=_vector(link, 3),
         F_touch=_vector(touch, 3),
     )
@@ -113,6 +116,12 @@ def _listed(value: float | list[float], length: int) -> list[float]:
 
 def _vector(value: float | list[float], length: int) -> NDArray[np.float64]:
     return _zeros(length) if value == 0.0 else np.array(_listed(value, length))
+
+
+def _power(speeds: float | list[float], torques: float | list[float]) -> float:
+    """Of all joints [W]."""
+    n = max(len(each) for each in (speeds, torques, [0.0]) if isinstance(each, list))
+    return sum(map(mul, _listed(speeds, n), _listed(torques, n)))
 
 
 def _wrench(linear: float | list[float], angular: float | list[float]) -> NDArray[np.float64]:

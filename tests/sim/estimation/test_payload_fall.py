@@ -390,6 +390,9 @@ def test_a_flange_sensor_that_comes_back_in_free_drive_is_not_asked_whose_torque
     assert estimate.joints_feel is JointsFeel.HAND
     np.testing.assert_array_equal(estimate.tau_hand, estimator.fall.torque)
     np.testing.assert_allclose(estimate.tau_hand, estimator.momentum.residual - estimator.fall._own["before"], atol=3.0)
+    torques = (estimate.tau_hand, estimate.tau_certain, estimate.friction)
+    assert estimate.powers == pytest.approx([torque @ estimate.qd for torque in torques])
+    assert all(estimate.powers)
     assert (estimate.F_link == 0.0).all()
     bench.do(Command.PROTECTIVE_STOP)
     bench.run(0.2)
