@@ -11,6 +11,7 @@ from app.files.library import load_arm
 from benchmarks.common import Report, main, spread
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.program.steps import JointMove, Program, ProgramState
 from pendant.tick.modes import Mode
 from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
@@ -24,6 +25,7 @@ IDLE = Wishes(NOTHING, (), ())
 HOLD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
 RELEASE = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
 SMALLEST_SINGULAR = 0.1  # postures nearer to a singularity are drawn again; the share is printed
+SETTLE = 1.0  # [s] for which nobody does anything
 LOOK_AHEAD = 0.1  # so far on is looked which way leads away from singularities [m]
 Mismatch = Literal["on", "nominal"]
 
@@ -74,6 +76,22 @@ def travel(simulation: Simulation, seconds: float, start: np.ndarray) -> float:
         simulation.tick(IDLE)
         worst = max(worst, float(np.linalg.norm(flange(simulation) - start)))
     return worst
+
+
+def settle(device: Simulation) -> None:
+    """Nobody does anything for `SETTLE`."""
+    for _ in range(round(500 * SETTLE)):
+        device.tick(IDLE)
+
+
+def go(device: Simulation, *postures: np.ndarray) -> None:
+    """A program moves the joints there, one after the other, and the arm settles."""
+    moves = Program(steps=tuple(JointMove(q=tuple(posture.tolist())) for posture in postures))
+    device.tick(Wishes(Inputs(program=moves), (), ()))
+    device.tick(Wishes(Inputs(commands=(Command.START_PROGRAM,)), (), ()))
+    while device.tick(IDLE).program is ProgramState.RUNNING:
+        pass
+    settle(device)
 
 
 def smallest_singular(arm: Arm) -> float:

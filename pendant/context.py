@@ -1,9 +1,12 @@
 """What free-drive must know of the rest of the robot in one tick."""
 
+import math
+
 import msgspec
 
 from pendant.limits.residual import PayloadError
 from pendant.limits.validity import Stillness, WrenchMean
+from pendant.sensor.odds import RARELY
 from pendant.sensor.taring import Taring
 from pendant.signals.enabling_device import Grip, enables
 from pendant.tick.estimate import Estimate
@@ -35,8 +38,14 @@ class Surroundings(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def payload_error(self) -> PayloadError | None:
-        """Of the payload, as other postures tell it; None where nothing is known but the force of now."""
-        if self.taring is None or not self.wrench_ok:
+        """Of the payload, as other postures tell it; None where nothing is known but the force of now.
+
+        Without a valid flange sensor the joints tell it.
+        """
+        if not self.wrench_ok:
+            mass, deviation = self.estimate.missing_mass
+            return PayloadError(mass, RARELY * deviation) if math.isfinite(mass + deviation) else None
+        if self.taring is None:
             return None
         return self.taring.payload_error(self.estimate, self.mean.mean())
 

@@ -97,6 +97,7 @@ _EMBODIMENTS = {
     "FD-8 gesture": "a chosen second gesture, another than the first, some time after it",
     "FD-9 current": "motor current as a parameter",
     "FD-9 motion": "without a force sensor: a wrong payload that moves the arm is refused by its motion alone",
+    "FD-9 joints": "without a force sensor the joints tell a payload that nobody told",
     "FD-13 press": "a hand that presses on an arm that cannot move keeps it free",
     "FD-13 touch": "a hand that touches a link of a standing arm, and does not move it, keeps it free",
     "FD-12b vertical": "speed along gravity limited more than across it",

@@ -193,6 +193,6 @@ class SequenceVerdict:
 def _payload_like(around: Surroundings, up: Vector, settings: Settings) -> tuple[float, bool]:
     """The force as a wrong payload would cause it, without the sensor's bias where that is known, and whether it is [N]."""
     known = around.payload_error
-    if known is not None and known.margin <= settings.limits.activation.payload_error.max:
+    if known is not None and (not around.wrench_ok or known.margin <= settings.limits.activation.payload_error.max):
         return weight_error(known.mass), True
     return split(around.mean.mean(), up).payload_force, False

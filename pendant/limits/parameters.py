@@ -190,7 +190,7 @@ PARAMETERS: dict[str, Parameter] = {
     "joint_torque": Parameter("joint external torque", "N·m", _joint_torque),
     "payload_force": Parameter("payload-like force", "N", _payload_force, wrench=True, signed=True),
     "payload_torque": Parameter("payload-like torque", "N·m", _payload_torque, wrench=True),
-    "payload_error": Parameter("payload error", "kg", _payload_error, wrench=True),
+    "payload_error": Parameter("payload error", "kg", _payload_error),
     "user_force": Parameter("user force", "N", _user_force, wrench=True),
     "user_torque": Parameter("user torque", "N·m", _user_torque, wrench=True),
 }

@@ -58,7 +58,7 @@ class ActivationLimits(Section, frozen=True, forbid_unknown_fields=True, kw_only
     )
     payload_error: Annotated[
         Limit,
-        _limit(0.1, 5.0, "kg", "FD-9", text="error of the payload's mass, once other postures tell it"),
+        _limit(0.1, 5.0, "kg", "FD-9", text="error of the payload's mass, by other postures or joints"),
     ] = Limit(max=0.3)
     user_force: Annotated[Limit, _limit(1.0, 50.0, "N", "FD-9", text="force that no payload would cause")] = Limit(max=12.0)
     user_torque: Annotated[Limit, _limit(0.1, 10.0, "N·m", "FD-9", text="torque that no payload would cause")] = Limit(max=1.5)

@@ -22,7 +22,7 @@ from sim.estimation.joint_tracking import (
 from sim.estimation.link_hand import LinkHand, powers
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.payload_fall import JointTorques, PayloadFall
-from sim.estimation.torque_balance import balance
+from sim.estimation.torque_balance import NOT_TOLD, balance, missing_mass
 from sim.estimation.transmission_torque import DEFLECTION, MOTOR, WAYS, TransmissionTorque
 from sim.flange.flange_forces import FlangeForces
 from sim.flange.whose_force import WhoseForce
@@ -154,6 +154,8 @@ class Estimator:
         known.move_done, known.move_refused = move_done, move_refused
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
+        payload, gears = self.whose_force.bank.record, self._torques[2]
+        known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(gears, rigid.record, payload, self._ways)
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None

@@ -1,5 +1,9 @@
-"""Friction and transmission torque of the joints, one tick in one order: what one module learns the other needs (AF-2, AF-3)."""
+"""Friction and transmission torque of the joints, one tick in one order: what one module learns the other needs (AF-2, AF-3).
 
+What they leave of the rigid model's torques on an arm that rests tells the payload's error without a flange sensor (FD-9).
+"""
+
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +13,13 @@ from sim.compiled.kernel import kernel
 from sim.estimation.adaptive_friction import rub
 from sim.estimation.joint_tracking import sides, surplus
 from sim.estimation.transmission_torque import SETTLE_TICKS, fuse
+from sim.rigid_body.newton_euler import cross, turned
 
 Bools = NDArray[np.bool_]
+
+
+NOT_TOLD = (0.0, math.inf)
+"""A payload's error of which nothing is known, and its standard deviation [kg]."""
 
 
 class Known(NamedTuple):
@@ -62,3 +71,40 @@ def balance(records, given, known, learns) -> bool:
     moving = sides(joints, tau_dyn, friction, transmission)
     fuse(transmission, (friction[0].deviation, own.stiction, own.theta[2]), known.ways, moving and learns.gears)
     return moving
+
+
+@kernel
+def missing_mass(transmission, model, wrenches, use) -> tuple[float, float]:
+    """What the payload weighs beyond what is configured, as the joints of a resting arm tell it, and its standard deviation [kg].
+
+    A mass m at the payload's centre takes of joint i the torque m b_i. What gears and motors bear beyond the rigid model, r_i,
+    has the variance s_i² of both, which falls as the gears are learned. Of all m, the likeliest is
+
+        m = sum of b_i r_i / s_i²  /  sum of b_i² / s_i².
+
+    Args:
+        transmission: `TransmissionTorque.record`, after the tick's balance.
+        model: the rigid model's recursion, run in this tick.
+        wrenches: record of `sim.flange.external_wrench`, with the payload as configured.
+        use: which of `transmission_torque.WAYS` may be used, of which joint (3, n).
+    """
+    own, rigid = transmission[0], model[0]
+    weight = (-rigid.gravity[0], -rigid.gravity[1], -rigid.gravity[2])
+    turn = cross(turned(rigid.R, wrenches[0].com), weight)
+    told = certain = 0.0
+    for i in range(use.shape[1]):
+        share = bears = 0.0
+        for way in range(1, 3):
+            if use[way, i]:
+                w = 1.0 / own.deviations[way, i] ** 2
+                share += w
+                bears += w * own.ways[way, i]
+        if not use[0, i] or share == 0.0:
+            continue
+        lever = 0.0
+        for k in range(3):
+            lever += rigid.jacobian[k, i] * weight[k] + rigid.jacobian[3 + k, i] * turn[k]
+        variance = 1.0 / share + own.model[i] ** 2
+        told += lever * (bears / share - own.ways[0, i]) / variance
+        certain += lever * lever / variance
+    return (told / certain, 1.0 / math.sqrt(certain)) if certain > 0.0 else NOT_TOLD

@@ -27,7 +27,7 @@ TOPICS = {
     ),
     "Free-drive is refused": (
         *("wrong-payload", "push-not-payload", "another-tool", "balanced", "stored-comparison", "checked-current"),
-        *("payload-moves-the-arm", "payload-gains-speed", "payload-moves-into-a-wall"),
+        *("payload-moves-the-arm", "payload-gains-speed", "payload-moves-into-a-wall", "payload-changes-unseen"),
     ),
     "Free-drive ends": (
         "left-alone",

@@ -316,6 +316,38 @@ def test_without_the_sensor_other_postures_tell_nothing() -> None:
     assert around(estimate()).payload_error is None
 
 
+def unseen(mass: float, deviation: float) -> Estimate:
+    """Without the flange sensor the joints tell a payload that is wrong by so much, with this standard deviation [kg]."""
+    blind = estimate(wrench_valid=False, force=math.nan)
+    blind.missing_mass = (mass, deviation)
+    return blind
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("mass", "deviation", "refused"),
+    [(0.29, 0.01, False), (0.31, 0.01, True), (0.98, 0.3, False), (0.99, 0.3, True), (9.0, math.inf, False)],
+)
+def test_without_the_sensor_the_joints_tell_a_wrong_payload_as_well_as_its_gears_are_known(
+    mass: float, deviation: float, refused: bool, way: float
+) -> None:
+    """FD-9: 3.29 deviations of 0.3 kg are 0.987 kg. What was told as the sequence began counts: then the arm stood."""
+    start = around(unseen(way * mass, deviation))
+    begun = Sequence(start, Settings(), joints=JOINTS, rated=(100.0,) * 6, stored=None)
+    beyond = begun.check(around(unseen(0.0, deviation)))
+    assert [gauge.name for gauge in beyond] == ["payload error"] * refused
+    if refused:
+        told = begun.refusal(beyond, start, Settings())
+        assert told.kind is Kind.REFUSED_PAYLOAD
+        assert told.values["mass"] == pytest.approx(way * mass)
+        assert (told.values["way"], told.values["zero"]) == ("down" if way > 0.0 else "up", False)
+
+
+@pytest.mark.parametrize("wrong", [(math.nan, 0.1), (2.0, math.nan), (math.inf, 0.1)])
+def test_what_the_joints_tell_of_the_payload_must_be_a_number(wrong: tuple[float, float]) -> None:
+    assert around(unseen(*wrong)).payload_error is None
+
+
 @pytest.mark.parametrize(("margin", "said", "zero"), [(0.1, 0.5, False), (0.3, 0.5, False), (0.31, -0.7, True)])
 def test_where_the_payload_is_known_well_its_mass_is_said_and_the_zero_is_no_cause(
     margin: float, said: float, zero: bool
