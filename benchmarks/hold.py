@@ -17,6 +17,7 @@ from sim.arm.arm_file import Arm
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
 from sim.plant.touch import Pull, Push, Touch
+from sim.rigid_body.dynamics import Dynamics
 from sim.simulation import Simulation
 
 ARMS = ("ur3e", "ur5e", "ur10e", "ur16e")
@@ -99,6 +100,11 @@ def smallest_singular(arm: Arm) -> float:
     return SMALLEST_SINGULAR * arm.reach / 0.85
 
 
+def singular(dynamics: Dynamics, arm: Arm, q: np.ndarray) -> bool:
+    """These joint angles are next to a singularity."""
+    return bool(np.linalg.svd(dynamics.update(q)[2], compute_uv=False)[-1] <= smallest_singular(arm))
+
+
 def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
     """A random posture away from singularities, and how many were thrown away before."""
     arm = load_arm(arm_name)
@@ -106,8 +112,7 @@ def posture(arm_name: str, rng: np.random.Generator) -> tuple[list[float], int]:
     redrawn = 0
     while True:
         q = rng.uniform(-2.6, 2.6, arm.n)
-        jacobian = probe.dynamics.update(q)[2]
-        if np.linalg.svd(jacobian, compute_uv=False)[-1] > smallest_singular(arm):
+        if not singular(probe.dynamics, arm, q):
             return q.tolist(), redrawn
         redrawn += 1
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks import arms
 from benchmarks.common import NO_CASE, Report, main, spread
-from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, enter, flange, go, settle, smallest_singular
+from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, enter, flange, go, settle, singular
 from pendant.all_settings import Settings, apply
 from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
@@ -77,10 +77,10 @@ def postures(count: int, rng: np.random.Generator, arm_name: str = arms.USUAL) -
     redrawn = 0
     while len(found) < count:
         q = rng.uniform(-2.6, 2.6, arm.n)
-        if np.linalg.svd(probe.update(q)[2], compute_uv=False)[-1] > smallest_singular(arm):
-            found.append(tuple(q.tolist()))
-        else:
+        if singular(probe, arm, q):
             redrawn += 1
+        else:
+            found.append(tuple(q.tolist()))
     return found, redrawn
 
 
@@ -133,18 +133,12 @@ def simulation(case: Case, settings: Settings = SETTINGS) -> Simulation:
     return device
 
 
-def singular(device: Simulation, posture: np.ndarray) -> bool:
-    """It is next to a singularity."""
-    jacobian = device.dynamics.update(posture)[2]
-    return bool(np.linalg.svd(jacobian, compute_uv=False)[-1] <= smallest_singular(device.arm))
-
-
 def move_about(device: Simulation, rng: np.random.Generator) -> None:
     """A program moves all joints, not next to a singularity: the gears are learned."""
     home, goals = device.estimate.q.copy(), []
     while len(goals) < MOVES:
         there = home + rng.uniform(-MOVED, MOVED, home.size)
-        if not singular(device, there):
+        if not singular(device.dynamics, device.arm, there):
             goals.append(there)
     go(device, *goals)
 
@@ -158,7 +152,7 @@ def turn_wrist(device: Simulation, rng: np.random.Generator) -> None:
         there = before.copy()
         there[-3:] += rng.uniform(-SPAN, SPAN, 3)
         turned = down @ (device.dynamics.gravity_B @ device.dynamics.update(there)[1]) < TURNED * (down @ down)
-        if turned and not singular(device, there):
+        if turned and not singular(device.dynamics, device.arm, there):
             break
     go(device, there)
 

@@ -91,8 +91,7 @@ class Estimate:
     step_force: float = 0.0  # size of the step then [N]
     payload_fell: bool = False  # as the joints tell, in free-drive without a valid flange sensor
     joints_feel: JointsFeel = JointsFeel.NOTHING  # there, too
-    missing_mass: tuple[float, float] = (0.0, math.inf)  # what the payload weighs beyond what is configured, as the joints tell
-    # without a valid flange sensor, and its standard deviation [kg]
+    missing_mass: tuple[float, float] = (0.0, math.inf)  # payload beyond the configured one, its deviation; without sensor [kg]
     singularity: float = math.inf  # smallest singular value of the flange's Jacobian, a turn as 0.2 m; in free-drive only [m]
 
     def copy(self) -> "Estimate":

@@ -90,6 +90,7 @@ class Estimator:
         joints = JointTorques(self.momentum, self.transmission, self._deflection)
         self.fall = PayloadFall(arm, dynamics.recursion, joints, self.whose_force.bank)
         self.link_hand = LinkHand(arm, dynamics.recursion, self.momentum)
+        self._bears = self.transmission.record, dynamics.recursion.record, self.whose_force.bank.record, self._ways
         self._known: Estimate | None = None
         self.tick = 0
 
@@ -154,8 +155,7 @@ class Estimator:
         known.move_done, known.move_refused = move_done, move_refused
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
-        payload, gears = self.whose_force.bank.record, self._torques[2]
-        known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(gears, rigid.record, payload, self._ways)
+        known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None

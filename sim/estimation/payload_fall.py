@@ -46,6 +46,7 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.momentum_observer import MomentumObserver, follow
 from sim.estimation.sudden_change import MEAN, SEEN, add, came, courses, forget
+from sim.estimation.torque_balance import payload_levers
 from sim.estimation.transmission_torque import DYNAMICS, MOTOR, TransmissionTorque
 from sim.flange.external_wrench import ExternalWrench
 from sim.flange.wrench_hypotheses import LONGEST
@@ -151,14 +152,8 @@ class PayloadFall:
         self._begun, self._blind, own["ticks"] = True, False, 0
         own["entry"] = model = transmission.ways[DYNAMICS]
         own["before"] = before = model - np.where(transmission.by_motor > 0.0, transmission.ways[MOTOR], deflection)
-        weight = self._weight()
+        weight = payload_levers(self._rigid, self._wrench.record)
         own["untold"] = min(abs(before @ weight) / max(weight @ weight, 1e-9), self._most)
-
-    def _weight(self) -> Array:
-        """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]."""
-        rigid = self._rigid[0]
-        force = -rigid["gravity"]
-        return np.concatenate([force, np.cross(rigid["R"] @ self._wrench.record[0]["com"], force)]) @ rigid["jacobian"]
 
 
 @kernel

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sim.compiled.kernel import kernel
 from sim.estimation.adaptive_friction import rub
 from sim.estimation.joint_tracking import sides, surplus
-from sim.estimation.transmission_torque import SETTLE_TICKS, fuse
+from sim.estimation.transmission_torque import SETTLE_TICKS, fuse, weighed
 from sim.rigid_body.newton_euler import cross, turned
 
 Bools = NDArray[np.bool_]
@@ -74,6 +74,19 @@ def balance(records, given, known, learns) -> bool:
 
 
 @kernel
+def payload_levers(model, wrenches) -> NDArray[np.float64]:
+    """What 1 kg at the payload's centre takes of each joint at rest (n,) [N·m]; arguments as of `missing_mass`."""
+    rigid = model[0]
+    weight = (-rigid.gravity[0], -rigid.gravity[1], -rigid.gravity[2])
+    turn = cross(turned(rigid.R, wrenches[0].com), weight)
+    levers = np.zeros(rigid.jacobian.shape[1])
+    for i in range(levers.size):
+        for k in range(3):
+            levers[i] += rigid.jacobian[k, i] * weight[k] + rigid.jacobian[3 + k, i] * turn[k]
+    return levers
+
+
+@kernel
 def missing_mass(transmission, model, wrenches, use) -> tuple[float, float]:
     """What the payload weighs beyond what is configured, as the joints of a resting arm tell it, and its standard deviation [kg].
 
@@ -88,23 +101,12 @@ def missing_mass(transmission, model, wrenches, use) -> tuple[float, float]:
         wrenches: record of `sim.flange.external_wrench`, with the payload as configured.
         use: which of `transmission_torque.WAYS` may be used, of which joint (3, n).
     """
-    own, rigid = transmission[0], model[0]
-    weight = (-rigid.gravity[0], -rigid.gravity[1], -rigid.gravity[2])
-    turn = cross(turned(rigid.R, wrenches[0].com), weight)
+    own, levers = transmission[0], payload_levers(model, wrenches)
     told = certain = 0.0
-    for i in range(use.shape[1]):
-        share = bears = 0.0
-        for way in range(1, 3):
-            if use[way, i]:
-                w = 1.0 / own.deviations[way, i] ** 2
-                share += w
-                bears += w * own.ways[way, i]
-        if not use[0, i] or share == 0.0:
-            continue
-        lever = 0.0
-        for k in range(3):
-            lever += rigid.jacobian[k, i] * weight[k] + rigid.jacobian[3 + k, i] * turn[k]
-        variance = 1.0 / share + own.model[i] ** 2
-        told += lever * (bears / share - own.ways[0, i]) / variance
-        certain += lever * lever / variance
+    for i in range(levers.size):
+        weight, bears = weighed(own, use, i, 1)
+        if use[0, i] and weight > 0.0:
+            variance = 1.0 / weight + own.model[i] ** 2
+            told += levers[i] * (bears / weight - own.ways[0, i]) / variance
+            certain += levers[i] ** 2 / variance
     return (told / certain, 1.0 / math.sqrt(certain)) if certain > 0.0 else NOT_TOLD

@@ -210,6 +210,18 @@ def _correct_spring(own, use) -> None:
 
 
 @kernel
+def weighed(own, use, i, first) -> tuple[float, float]:
+    """Of joint i, over the ways from `first` on: the sum of their weights, inverse variances, and of the torques so weighed."""
+    weight, total = 0.0, 0.0
+    for k in range(first, use.shape[0]):
+        if use[k, i]:
+            w = 1.0 / own.deviations[k, i] ** 2
+            weight += w
+            total += w * own.ways[k, i]
+    return weight, total
+
+
+@kernel
 def _fuse(own, use, contact) -> None:
     ways, deviations, fused, deviation = own.ways, own.deviations, own.fused, own.deviation
     for i in range(fused.size):
@@ -219,12 +231,7 @@ def _fuse(own, use, contact) -> None:
             # Without an output angle, though, the model's acceleration is made of this torque itself.
             variance = min(variance, (LINK_MASS * ways[0, i]) ** 2 + own.floor[i] ** 2 + own.fast_square[i])
         deviations[0, i] = np.sqrt(variance + outside**2)
-        weight, total = 0.0, 0.0
-        for k in range(3):
-            if use[k, i]:
-                w = 1.0 / deviations[k, i] ** 2
-                weight += w
-                total += w * ways[k, i]
+        weight, total = weighed(own, use, i, 0)
         if weight > 0.0:
             fused[i] = total / weight
             deviation[i] = np.sqrt(1.0 / weight)
