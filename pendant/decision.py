@@ -43,6 +43,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     step: int = 0  # of the program, from 1; 0 unless it is running or paused
     monitored: tuple[Monitored, ...] = ()  # parameters against their limits, while the activation sequence checks them
     contacts: tuple[Contact, ...] = ()  # changes in contact seen in this tick (CD-16)
+    looks: bool = True  # for changes in contact, now or as soon as something asks for them: the next tick needs their signals
     tool_on: bool = False  # what the program switches (CD-15)
     outputs: frozenset[int] = frozenset()  # digital outputs that the program has switched on
     walls: tuple[WallState, ...] = ()  # that hold

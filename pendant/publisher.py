@@ -40,6 +40,7 @@ class Publisher:
         events: list[Event],
         *,
         contacts: tuple[Contact, ...],
+        looks: bool,
         speeds: SpeedLimits | None,
         shake: Shake | None,
     ) -> Decision:
@@ -49,6 +50,7 @@ class Publisher:
             law: of this tick.
             events: all that happened in it.
             contacts: changes in contact seen in it.
+            looks: for them, as in `Decision`.
             speeds: limits of REDUCED.
             shake: haptic feedback.
         """
@@ -66,7 +68,7 @@ class Publisher:
         walls = () if phase is _OFF else free.walls()
         monitored = free.monitored() if trying else ()
         amplified = helping and balance is None and not (trying and not use.sequence.amplified)
-        active = sequencer.state in (ProgramState.RUNNING, ProgramState.PAUSED)
+        active = sequencer.state is _RUNNING or sequencer.state is _PAUSED
         return Decision(
             mode=mode,
             safety=robot.safety,
@@ -82,6 +84,7 @@ class Publisher:
             step=sequencer.index + 1 if active else 0,
             monitored=monitored,
             contacts=contacts,
+            looks=looks,
             tool_on=sequencer.tool_on,
             outputs=sequencer.outputs,
             walls=walls,
@@ -118,3 +121,4 @@ class Publisher:
 
 
 _FREE_DRIVE, _SEQUENCE, _OFF = Mode.FREE_DRIVE, Phase.SEQUENCE, Phase.OFF  # looked up in every tick
+_RUNNING, _PAUSED = ProgramState.RUNNING, ProgramState.PAUSED

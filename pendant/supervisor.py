@@ -143,7 +143,7 @@ class Supervisor:
         """One tick. The order of these lines is the precedence: what stands above acts first and forbids what stands below."""
         events: list[Event] = []
         wrench_ok = self._observe(estimate, inputs, events)
-        self._feel(estimate, events)
+        looks = self._feel(estimate, events)
         if self._calls.commands:
             inputs = replace(inputs, commands=inputs.commands + self._calls.commands)
         commands = inputs.commands
@@ -167,7 +167,7 @@ class Supervisor:
             self.settings, changed = change(self.settings, wanted, mode=self._robot.mode, trying=trying, tick=estimate.tick)
             events += changed
             self._refresh()
-        return self._publish(events)
+        return self._publish(events, looks)
 
     def _observe(self, estimate: Estimate, inputs: Inputs, events: list[Event]) -> bool:
         """What the tick brings, before anything is decided. Returns whether the user's wrench is valid."""
@@ -197,16 +197,20 @@ class Supervisor:
         """A step of the running program wants free-drive, which is off, and the arm stands."""
         return self._sequencer.guiding and self._robot.static and self._free.phase is Phase.OFF
 
-    def _feel(self, estimate: Estimate, events: list[Event]) -> None:
-        """Changes in contact (CD-1): told, and taken by a program step that waits for one."""
-        sequencer, robot, use = self._sequencer, self._robot, self._run.contact_use(self.settings.contact, estimate)
-        on = (use.on or self._run.feels) and not (self._tooling.changing or self._haptics.busy)
+    def _feel(self, estimate: Estimate, events: list[Event]) -> bool:
+        """Changes in contact (CD-1): told, and taken by a program step that waits for one. Returns whether any is looked for."""
+        sequencer, robot, use = self._sequencer, self._robot, self.settings.contact
+        looks = use.on or self._run.feels
+        on = looks and not (self._tooling.changing or self._haptics.busy)
+        if on:
+            use = self._run.contact_use(use, estimate)
         self._contacts = self._monitor.step(estimate, use, robot.mode, on)
         for contact in self._contacts:
             until, action = sequencer.until, "none"
             if until is not None and robot.mode is Mode.RUN and sequencer.touch(contact, estimate.v_tcp):
                 robot.braking, action = True, until.then
             events.append(told(contact, estimate.tick, action))
+        return looks
 
     def _obey(self, estimate: Estimate, commands: tuple[Command, ...], events: list[Event]) -> None:
         """Commands for the mode and for free-drive."""
@@ -252,14 +256,16 @@ class Supervisor:
         self._slow = self.settings.static.speed
         self._static_ticks = ticks(self.settings.static.time)
 
-    def _publish(self, events: list[Event]) -> Decision:
-        """What follows from all of it."""
+    def _publish(self, events: list[Event], looks: bool) -> Decision:
+        """What follows from all of it; `looks`: something asks for changes in contact."""
         law, haptics = self._robot.law(), self._haptics
         speeds = self._equipping.limits(self._safety.speed_limits(self.settings))
         if self.settings.haptics.on or haptics.busy:
             self._shake(law, events)
         self._holding = law is _HOLD and not (self._free.caught or self._tooling.changing or haptics.busy)
-        return self._publisher.step(law, events, contacts=self._contacts, speeds=speeds, shake=haptics.shake)
+        # A guided arm is not about to start a program, which would need the signals of the ticks before.
+        looks = looks or law is not _FREE
+        return self._publisher.step(law, events, contacts=self._contacts, looks=looks, speeds=speeds, shake=haptics.shake)
 
     def _shake(self, law: Law, events: list[Event]) -> None:
         """What is to be felt in this tick (HF-1)."""
@@ -270,4 +276,5 @@ class Supervisor:
         self._haptics.step(moment, self.settings.haptics)
 
 
-_BUTTON, _OFF, _HOLD, _RUN = Button.FREE_DRIVE, Phase.OFF, Law.HOLD, Mode.RUN  # looked up in every tick
+_BUTTON, _OFF, _RUN = Button.FREE_DRIVE, Phase.OFF, Mode.RUN  # looked up in every tick
+_HOLD, _FREE = Law.HOLD, Law.FREE

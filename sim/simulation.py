@@ -159,7 +159,10 @@ class Simulation:
         bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
         answered = references.answered
         estimate = estimator.update(sample, done, refusal, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
-        self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
+        if decided is None or decided.looks:
+            self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
+        else:
+            self.contact_sources.skip(estimate)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)

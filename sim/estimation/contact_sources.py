@@ -33,6 +33,8 @@ LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
 LISTED = ("tool side", "arm side", "elbow", "forearm")
 """Sources, in the order of their rows."""
+NOT_READ = ContactSignals(np.zeros(len(LISTED) * WIDTH), (False,) * len(LISTED))
+"""The signals of a tick in which nobody looks for contacts."""
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -131,6 +133,12 @@ class ContactSources:
             estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow)
         else:
             estimate.signals = ContactSignals(self._signals.copy(), valid)
+
+    def skip(self, estimate: Estimate) -> None:
+        """Nobody looks for contacts in this tick: a gap in the signals, and what was before counts no more."""
+        if estimate.signals is not NOT_READ:
+            self._own["turn"], self._drive["count"], self._started = np.nan, 0, False
+            estimate.signals = NOT_READ
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

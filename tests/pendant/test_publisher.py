@@ -76,15 +76,15 @@ class Parts:
             owner = next(one for one in owners if hasattr(one, name))
             setattr(owner, name, value)
 
-    def step(self, *events: Event, contacts: tuple[Contact, ...] = ()) -> Decision:
-        return self.publisher.step(Law.FREE, list(events), contacts=contacts, speeds=SPEEDS, shake=SHAKE)
+    def step(self, *events: Event, contacts: tuple[Contact, ...] = (), looks: bool = False) -> Decision:
+        return self.publisher.step(Law.FREE, list(events), contacts=contacts, looks=looks, speeds=SPEEDS, shake=SHAKE)
 
     def expected(self, **changes: object) -> dict[str, object]:
         """Of a tick of held free-drive."""
         return {
             "mode": Mode.FREE_DRIVE, "safety": Safety.REDUCED, "phase": Phase.HELD, "law": Law.FREE, "move": MOVE, "gain": 2.5,
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
-            "step": 3, "monitored": (), "contacts": (), "tool_on": True, "outputs": frozenset({3}),
+            "step": 3, "monitored": (), "contacts": (), "looks": False, "tool_on": True, "outputs": frozenset({3}),
             "walls": ("wall",), "grip": "in the middle",
             "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
@@ -135,6 +135,7 @@ def test_it_tells_what_is_and_where_it_applies(changes: dict[str, object], diffe
     assert told(parts.step()) == parts.expected(**differs)
     again = parts.step(EVENT, contacts=(CONTACT,))
     assert again == first
+    assert told(parts.step(looks=True)) == parts.expected(**differs, looks=True)
 
 
 @pytest.mark.parametrize("amplified", [True, False])

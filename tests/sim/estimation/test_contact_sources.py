@@ -5,8 +5,9 @@ import pytest
 
 from app.files.library import load_arm, load_tool
 from pendant.all_settings import Settings, apply
-from pendant.inputs import NOTHING, Command, Inputs
+from pendant.inputs import NOTHING, Button, Command, Inputs
 from pendant.program.steps import JointMove, Program
+from pendant.tick.modes import Mode
 from pendant.tick.source_signal import Signal
 from sim.arm.scenario import Load, Scenario
 from sim.estimation.momentum_observer import READY
@@ -177,6 +178,47 @@ def test_what_is_off_or_not_valid_gives_nothing() -> None:
     sim.tick(IDLE)
     sim.tick(IDLE)
     assert [signal is not None for signal in sim.snapshot().estimate.signals.each()] == [False, False, True, True]
+
+
+def guided(**changes: bool) -> Simulation:
+    """A simulation in free-drive, the button held."""
+    sim = simulation(**changes)
+    held = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
+    for _ in range(1200):
+        if sim.tick(held).mode is Mode.FREE_DRIVE:
+            return sim
+    raise AssertionError("free-drive was not entered")
+
+
+@pytest.mark.parametrize("on", [False, True])
+def test_in_free_drive_there_are_signals_where_contacts_are_looked_for(on: bool) -> None:
+    """Else nothing needs them: while the arm is free no program begins, which would need those of the ticks before."""
+    sim = guided(on=on)
+    held = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
+    sim.tick(held)
+    assert [signal is not None for signal in sim.estimate.signals.each()] == [on, False, on, on]
+    sim.tick(Wishes(Inputs(commands=(Command.DETECTION,)), (), ()))
+    for _ in range(2):
+        sim.tick(held)
+    assert [signal is not None for signal in sim.estimate.signals.each()] == [not on, False, not on, not on]
+
+
+def test_a_knock_is_found_soon_after_detection_was_switched_on_in_free_drive() -> None:
+    """The detectors begin with the first signal: what was before the gap is compared with nothing."""
+    sim = guided()
+    held = Inputs(held=frozenset({Button.FREE_DRIVE}))
+    sim.tick(Wishes(Inputs(held=held.held, commands=(Command.DETECTION,)), (), ()))
+    for _ in range(100):
+        assert not sim.tick(Wishes(held, (), ())).contacts
+    knock = (Push("tool", (0.0, 0.0, 0.1), (0.0, 60.0, 0.0)),)
+    assert any(sim.tick(Wishes(held, knock, ())).contacts for _ in range(25))
+
+
+def test_when_free_drive_is_over_there_are_signals() -> None:
+    sim = guided()
+    for _ in range(2):
+        sim.tick(Wishes(Inputs(commands=(Command.LEAVE_FREE_DRIVE,)), (), ()))
+    assert [signal is not None for signal in sim.estimate.signals.each()] == [True, False, True, True]
 
 
 def test_a_payload_configured_anew_is_the_mass_from_then_on() -> None:
