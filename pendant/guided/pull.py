@@ -92,8 +92,8 @@ def felt(force: Vector, *, sensed: float, usual: float, least: float, led: bool)
         led: somebody pays for the motion.
     """
     if not led and norm(force) < least:
-        return HandFelt.NOBODY
-    return HandFelt.LINK if sensed < least and usual < least else HandFelt.FLANGE
+        return _NOBODY
+    return _LINK if sensed < least and usual < least else _FLANGE
 
 
 class PullWatch:
@@ -127,3 +127,6 @@ def _probability(odds: float) -> float:
         return 1.0 / (1.0 + math.exp(-odds))
     ratio = math.exp(odds)
     return ratio / (1.0 + ratio)
+
+
+_NOBODY, _FLANGE, _LINK = HandFelt  # looked up in every tick

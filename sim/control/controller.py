@@ -86,7 +86,7 @@ class Controller:
         elif law is _FREE:
             self.references.skip()
             if self._law is not _FREE:
-                self.free_drive.start(estimate, self._torque)
+                self.free_drive.start(self._torque)
             torque = self.free_drive.torque(estimate, decision, jacobian, friction=friction, with_friction=use.friction)
         elif (commanded := self.references.commanded(estimate, decision)) is not None:
             torque = self.feed_forward.commanded(commanded, estimate, friction)

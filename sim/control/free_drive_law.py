@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.decision import Decision
 from pendant.guided.work import LEFT
+from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Phase
 from pendant.tick.pose import ORIGIN, Vector
@@ -26,9 +27,11 @@ from sim.sensing.calibration import Calibration
 Array = NDArray[np.float64]
 
 COMPENSATED = 1.0 - LEFT  # share of the friction estimate that is compensated
-HANDOVER = math.exp(-TICK / 0.05)
+HANDOVER_TIME = 0.05
 """What the motors bore in the hold, beyond what the model says, goes within some 0.05 s: at once, it would shake the arm. That is
 slower than the arm's lowest modes, and far shorter than the activation sequence, at whose end nothing of it is left."""
+HANDOVER = math.exp(-TICK / HANDOVER_TIME)
+HANDED_OVER = ticks(20.0 * HANDOVER_TIME)  # a part in 5e8 is left then
 
 
 class Pushed(NamedTuple):
@@ -58,11 +61,11 @@ class FreeDriveLaw:
         Args:
             arm: the arm's numbers.
             calibration: error of the constants that the controller uses.
-            dynamics: the controller's rigid model.
+            dynamics: the controller's rigid model, whose recursion has been run with the tick's angles.
             tcp: tool centre point in F (3,) [m].
             R_FT: its orientation in F (3, 3).
         """
-        self._dynamics, self._elbow = dynamics, arm.chain.elbow
+        self._gravity, self._elbow = dynamics.recursion.at_rest, arm.chain.elbow
         n = arm.n
         rotor = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia
         self._damping = ActiveDamping(np.array(arm.limits.torque), rotor, arm.chain.elbow)
@@ -74,6 +77,7 @@ class FreeDriveLaw:
         self._n = n
         self._hand = HandHelp(n)
         self._handover = np.zeros(n)  # what is left of the hold's torque beyond the model's [N·m]
+        self._handing_over = 0  # ticks until nothing is
 
     def _moving(self, part: str) -> int:
         """How many joints move a part."""
@@ -84,19 +88,21 @@ class FreeDriveLaw:
         """Torque (n,) that balances a load nobody told of, as far as it was found since free-drive began [N·m] (FD-10)."""
         return self._balancing.torque
 
-    def start(self, estimate: Estimate, held: Array | None) -> None:
+    def start(self, held: Array | None) -> None:
         """Free-drive begins: what the joints feel now is no hand.
 
         Args:
-            estimate: this tick's estimate.
             held: motor torque (n,) that held the arm until now [N·m]; None: the brakes did.
         """
-        self._handover[:] = 0.0 if held is None else held - self._dynamics.gravity(estimate.q)
+        self._handing_over = 0 if held is None else HANDED_OVER
+        if held is not None:
+            self._handover[:] = held - self._gravity
         self._hand.start()
         self._damping.start()
         self._balancing.start()
         self._constraint.release()
         self._shaker.stop()
+        self.singularity.forget()
 
     def torque(
         self, estimate: Estimate, decision: Decision, jacobian: Array, *, friction: AdaptiveFriction, with_friction: bool
@@ -111,7 +117,7 @@ class FreeDriveLaw:
             friction: its estimate.
             with_friction: take friction off the hand.
         """
-        torque = self._static(estimate, decision)
+        torque = self._static(decision)
         for wall in decision.walls:
             if wall.force != ORIGIN:
                 _push(jacobian, (estimate.p_BF, wall.p, wall.force, self._moving(wall.part)), torque)
@@ -122,12 +128,13 @@ class FreeDriveLaw:
             return torque
         if not decision.amplified and decision.phase is Phase.SEQUENCE:
             return torque
-        self.singularity.update(jacobian)
         locks = decision.locks
         constraint, static = self._constraint, torque
         if locks is None:
             constraint.release()
+            self.singularity.watch(jacobian, estimate.tick)
         else:
+            self.singularity.update(jacobian)
             static = torque.copy()
             constraint.prepare(estimate, locks, jacobian, static)
         help = 1.0
@@ -153,14 +160,15 @@ class FreeDriveLaw:
         self._shake(estimate, decision, friction, torque)
         return torque
 
-    def _static(self, estimate: Estimate, decision: Decision) -> Array:
+    def _static(self, decision: Decision) -> Array:
         """Torque against gravity (n,) [N·m], with what is left of the hold's."""
-        torque = self._dynamics.gravity(estimate.q)
-        if decision.balance is None:
+        torque = self._gravity.copy()
+        if decision.balance is not None:  # balancing begins with all that the motors bear
+            self._handing_over = 0
+        elif self._handing_over > 0:
             torque += self._handover
             self._handover *= HANDOVER
-        else:  # balancing begins with all that the motors bear
-            self._handover[:] = 0.0
+            self._handing_over -= 1
         return torque
 
     def _shake(self, estimate: Estimate, decision: Decision, friction: AdaptiveFriction, torque: Array) -> None:

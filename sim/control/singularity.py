@@ -27,7 +27,10 @@ EASED = 0.3
 """Below this share of `too_near` the resistance ends: in the singularity itself the way on is the way back."""
 
 ITERATIONS = 3
-"""Of the inverse iteration in a tick; the direction found lives on, and turns slowly."""
+"""Of the inverse iteration in an update; the direction found lives on, and turns slowly."""
+
+WATCHED = 5
+"""Ticks between two looks where nothing but a picture needs the value, which changes with the posture only."""
 
 
 class Singularity:
@@ -48,10 +51,19 @@ class Singularity:
         self.gradient = self._record["gradient"][0]
         self._u = np.full(6, 1.0 / math.sqrt(6.0))
 
+    def forget(self) -> None:
+        """Nothing is known of the posture."""
+        self.value = math.inf
+
     def update(self, jacobian: Array) -> None:
         """One tick. `jacobian`: of the flange (6, n), linear first."""
         if self.gradient.size >= 6:
             self.value = _smallest(jacobian, self._u, self.gradient)
+
+    def watch(self, jacobian: Array, tick: int) -> None:
+        """One tick in which how near it is is merely told."""
+        if tick % WATCHED == 0:
+            self.update(jacobian)
 
     def resist(self, near: float, too_near: float, *, speed: Array, static: Array, torque: Array) -> None:
         """Resist motion towards the singularity: damp it, and take away what drives it on. The way back is free.

@@ -20,6 +20,7 @@ class NewtonEuler:
 
     Attributes (valid until the next `run`):
         torque: (n,) [N·m], without rotors, friction and external forces.
+        at_rest: (n,) what of it holds the arm up in the same posture, at rest [N·m].
         p, R: flange position (3,) [m] and orientation (3, 3) in B.
         jacobian: (6, n), linear first, axes of B, at the flange origin.
         v_F: flange velocity (6,), linear [m/s], then angular [rad/s].
@@ -47,6 +48,7 @@ class NewtonEuler:
             gravity=(3,),
             elbow_joint="i8",
             torque=(n,),
+            at_rest=(n,),
             p=(3,),
             R=(3, 3),
             jacobian=(6, n),
@@ -65,6 +67,7 @@ class NewtonEuler:
         own["elbow_joint"] = elbow
         own["R"] = np.eye(3)
         self.torque, self.p, self.R, self.v_F = own["torque"], own["p"], own["R"], own["v_F"]
+        self.at_rest = own["at_rest"]
         self.jacobian, self.origins, self.energy = own["jacobian"], own["origins"], own["energy"]
         self.turns = own["turns"]
         self.tcp, self.elbow = own["tcp"], own["elbow"]
@@ -175,7 +178,7 @@ def _inverse(own, p, R, motion):
     """
     torque, bend, energy, gravity, elbow = own.torque, own.elbow, own.energy, own.gravity, own.elbow_joint
     n = torque.size
-    force, moment = np.empty((n, 3)), np.empty((n, 3))
+    force, moment, heavy = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     w, alpha, v = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     a = (-gravity[0], -gravity[1], -gravity[2])
     last = (0.0, 0.0, 0.0)
@@ -217,16 +220,23 @@ def _inverse(own, p, R, motion):
         for k in range(3):
             force[i, k] = mass * (a[k] + tangential[k] + normal[k])
             moment[i, k] = moment_com[k]
+            heavy[i, k] = mass * com[k]
         lever = cross(com, (force[i, 0], force[i, 1], force[i, 2]))
         for k in range(3):
             moment[i, k] += lever[k]
     f, m = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)  # what passes on at the joint after this
+    S, mass = (0.0, 0.0, 0.0), 0.0  # mass times centre, and mass, of all beyond
     for i in range(n - 1, -1, -1):
         if i < n - 1:
             ahead = (p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1], p[i + 1, 2] - p[i, 2])
             lever = cross(ahead, f)
             m = (m[0] + lever[0], m[1] + lever[1], m[2] + lever[2])
+            S = (S[0] + mass * ahead[0], S[1] + mass * ahead[1], S[2] + mass * ahead[2])
         f = (f[0] + force[i, 0], f[1] + force[i, 1], f[2] + force[i, 2])
         m = (m[0] + moment[i, 0], m[1] + moment[i, 1], m[2] + moment[i, 2])
+        S = (S[0] + heavy[i, 0], S[1] + heavy[i, 1], S[2] + heavy[i, 2])
+        mass += own.mass[i]
+        weight = cross(gravity, S)  # its moment, turned round
         torque[i] = m[0] * R[i, 0, 2] + m[1] * R[i, 1, 2] + m[2] * R[i, 2, 2]
+        own.at_rest[i] = weight[0] * R[i, 0, 2] + weight[1] * R[i, 1, 2] + weight[2] * R[i, 2, 2]
     return v_elbow

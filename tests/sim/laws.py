@@ -18,10 +18,12 @@ EXACT = nominal(UR5E)
 NOTHING = Body(0.0, np.zeros(3), np.zeros((3, 3)))
 
 
-def dynamics() -> Dynamics:
-    """The rigid model on the floor, with nothing beyond the flange."""
+def dynamics(q: np.ndarray | None = None) -> Dynamics:
+    """The rigid model on the floor, at rest at these angles or at zero, with nothing beyond the flange."""
     rigid = chain(UR5E)
-    return Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow)
+    model = Dynamics(rigid, rigid.links, NOTHING, mounting=[0.0, 0.0, 0.0], elbow=UR5E.chain.elbow)
+    model.recursion.run(np.zeros(N) if q is None else q, np.zeros((3, N)), np.zeros(3))  # as the estimator does in every tick
+    return model
 
 
 def estimate(**values: Any) -> Estimate:

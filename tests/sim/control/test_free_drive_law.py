@@ -25,12 +25,13 @@ Q = np.array(UR5E.chain.home)
 MODEL = dynamics()
 P, R, JACOBIAN = (part.copy() for part in MODEL.update(Q))
 GRAVITY = MODEL.gravity(Q).copy()
+MODEL_AT_Q = dynamics(Q)
 BREAKAWAY = AdaptiveFriction(UR5E).terms[:, 0]
 
 
 def law(held: np.ndarray | None = None) -> FreeDriveLaw:
-    module = FreeDriveLaw(UR5E, EXACT, dynamics(), tcp=np.zeros(3), R_FT=np.eye(3))
-    module.start(estimate(q=Q, R_BF=R), held)
+    module = FreeDriveLaw(UR5E, EXACT, dynamics(Q), tcp=np.zeros(3), R_FT=np.eye(3))
+    module.start(held)
     return module
 
 
@@ -56,6 +57,10 @@ def test_what_held_the_arm_is_handed_over_and_goes() -> None:
         for tick in range(126):
             torque = module.torque(seen, freed, JACOBIAN, friction=rubs, with_friction=True) - GRAVITY
             np.testing.assert_allclose(torque, handed * np.exp(-tick * 0.002 / 0.05), atol=1e-9)
+        for _ in range(374):
+            module.torque(seen, freed, JACOBIAN, friction=rubs, with_friction=True)
+        torque = module.torque(seen, freed, JACOBIAN, friction=rubs, with_friction=True)
+        np.testing.assert_array_equal(torque, MODEL_AT_Q.recursion.at_rest)  # after a second to the last bit
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -49,6 +49,21 @@ def test_it_follows_a_moving_arm() -> None:
             assert module.value < smallest(now) + 0.003
 
 
+def test_where_it_is_merely_told_every_fifth_tick_is_enough() -> None:
+    """At 1 rad/s of a joint it is that of 8 ms ago at most; before the first look nothing is known."""
+    module, q = Singularity(ROTOR), HOME.copy()
+    told = []
+    for tick in range(1, 201):
+        q[4] -= 0.002
+        module.watch(MODEL.update(q)[2], tick)
+        told.append(module.value - smallest(q))
+    assert told[:4] == [math.inf] * 4
+    assert np.abs(told[20:]).max() < 0.003
+    assert len(set(np.diff(told[20:]) > 0.0)) == 2, "it stands between two looks"
+    module.forget()
+    assert module.value == math.inf
+
+
 def test_in_a_singularity_nothing_blows_up() -> None:
     for q in (np.zeros(N), np.array([0.0, -1.2, 0.0, 0.0, -1.57, 0.0]), np.array([0.0, -1.2, 1.5, -1.87, 0.0, 0.0])):
         module = found(q)

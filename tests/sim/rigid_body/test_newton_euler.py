@@ -38,6 +38,7 @@ def test_torque_pose_and_jacobian_are_pinocchios(arm: Arm, load: Load) -> None:
         recursion.run(q, motion, TCP)
         expected = pin.rnea(dynamics.model, dynamics.model.createData(), q, motion[1], motion[2])
         assert np.abs(recursion.torque - expected).max() < 1e-9
+        assert np.abs(recursion.at_rest - dynamics.gravity(q)).max() < 1e-9
         p, R, jacobian = dynamics.update(q)
         assert np.abs(recursion.p - p).max() < 1e-12
         assert np.abs(recursion.R - R).max() < 1e-12
