@@ -29,12 +29,14 @@ WEIGHED = 10
 _FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
 
 
-class Pulling(NamedTuple):
-    """A virtual hand that pulls, one tick ago."""
+class Held(NamedTuple):
+    """How a virtual hand holds in a tick."""
 
-    goes: Triple  # where it had come to, in W [m]
+    point: Triple  # of the body [m]
+    goes: Triple  # where it had come to a tick ago, in W [m]
+    target: Triple  # where it is wanted, in W [m]
+    cap: float  # largest force [N]
     damping: float  # [N·s/m]
-    weighed: int  # ticks since the part was weighed
 
 
 class Bodies(NamedTuple):
@@ -66,7 +68,8 @@ class Hands:
         self._bodies = (data.xpos, data.xmat, data.xipos, data.cvel, data.subtree_com, data.xfrc_applied)
         self._applied = data.xfrc_applied
         self._pushed: set[int] = set()
-        self._holds: dict[tuple[str, Triple], Pulling] = {}  # by part and point
+        # By part and point: where a hand had come to, its damping, ticks since the part was weighed.
+        self._holds: dict[tuple[str, Triple], tuple[Triple, float, int]] = {}
         self.touched: tuple[tuple[str, Triple, Triple, Triple], ...] = ()
 
     def apply(self, touches: Sequence[Touch]) -> None:
@@ -88,9 +91,14 @@ class Hands:
         for touch in touches:
             body = self._parts[touch.part]
             if isinstance(touch, Pull):
-                goes, damping, _ = self._hold(touch, body, before.get((touch.part, touch.point)))
-                held = _floats(touch.point), goes, float(touch.cap), damping
-                point, force = _pull(bodies, self._roots[body], body, held)
+                place = touch.part, touch.point
+                at = _floats(touch.point)
+                goes, damping, weighed = before.get(place) or (_at(bodies, body, at), 0.0, WEIGHED)
+                if weighed == WEIGHED:
+                    damping, weighed = self._damping(at, body), 0
+                held = at, goes, _floats(touch.target), float(touch.cap), damping
+                point, force, goes = _pull(bodies, self._roots[body], body, held)
+                self._holds[place] = goes, damping, weighed + 1
                 torque = ZERO
             else:
                 force, torque = _floats(touch.force), _floats(touch.torque)
@@ -99,21 +107,9 @@ class Hands:
             seen.append((touch.part, point, force, torque))
         self.touched = tuple(seen)
 
-    def _hold(self, pull: Pull, body: int, before: Pulling | None) -> Pulling:
-        """How a pull holds in this tick; it begins where it takes hold."""
-        x, y, z = _at(self._bodies, body, _floats(pull.point)) if before is None else before.goes
-        a, b, c = pull.target
-        goes = float(x + _FOLLOWS * (a - x)), float(y + _FOLLOWS * (b - y)), float(z + _FOLLOWS * (c - z))
-        if before is None or before.weighed == WEIGHED:
-            now = Pulling(goes, self._damping(pull, body), 1)
-        else:
-            now = Pulling(goes, before.damping, before.weighed + 1)
-        self._holds[pull.part, pull.point] = now
-        return now
-
-    def _damping(self, pull: Pull, body: int) -> float:
-        """Of the hand that pulls [N·s/m]."""
-        place = np.array(_at(self._bodies, body, _floats(pull.point)))
+    def _damping(self, point: Triple, body: int) -> float:
+        """Of a hand that pulls at this point of the body [N·s/m]."""
+        place = np.array(_at(self._bodies, body, point))
         mujoco.mj_jac(*self._mujoco, self._jacobian, None, place, body)
         mujoco.mj_solveM(*self._mujoco, self._freed, self._jacobian)
         return _stable(self._jacobian, self._freed)
@@ -194,17 +190,19 @@ def _stable(jacobian, freed):
 def _pull(bodies, root, body, held):
     """Spring and damper of a virtual hand; the cap holds the whole force, so a far cursor pulls no harder.
 
-    `held`: point of the body (3,), where it shall be (3,), largest force, damping.
+    Returns the point that it holds, its force, and where it has come to.
     """
-    bodies = Bodies(*bodies)
-    hold, target, cap, damping = held
-    point = _push(bodies, body, hold, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    bodies, held = Bodies(*bodies), Held(*held)
+    x, y, z = held.goes
+    a, b, c = held.target
+    x, y, z = x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z)
+    point = _push(bodies, body, held.point, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     vx, vy, vz = _velocity(bodies, root, body, point)
-    fx = STIFFNESS * (target[0] - point[0]) - damping * vx
-    fy = STIFFNESS * (target[1] - point[1]) - damping * vy
-    fz = STIFFNESS * (target[2] - point[2]) - damping * vz
+    fx = STIFFNESS * (x - point[0]) - held.damping * vx
+    fy = STIFFNESS * (y - point[1]) - held.damping * vy
+    fz = STIFFNESS * (z - point[2]) - held.damping * vz
     size = np.sqrt(fx * fx + fy * fy + fz * fz)
-    share = cap / size if size > cap else 1.0
+    share = held.cap / size if size > held.cap else 1.0
     fx, fy, fz = fx * share, fy * share, fz * share
-    _push(bodies, body, hold, (fx, fy, fz, 0.0, 0.0, 0.0))
-    return point, (fx, fy, fz)
+    _push(bodies, body, held.point, (fx, fy, fz, 0.0, 0.0, 0.0))
+    return point, (fx, fy, fz), (x, y, z)
