@@ -198,7 +198,7 @@ class FreeDrive:
         """One tick of free-drive."""
         seen = arm.step(around, settings, periods.waits)
         self.pull = arm.pull
-        if seen.transition is Transition.LEFT:
+        if seen.transition is _LEFT:
             return seen
         wrench = self._bias.felt(around.estimate)
         happened = periods.step(around, settings, self._gate, user=arm.user, wrench=wrench, pressed=arm.pressed)
@@ -245,4 +245,4 @@ class FreeDrive:
         return [Event(Kind.WAY_BACK, around.estimate.tick, {"joints": joints, "posture": posture_text(posture)})]
 
 
-_OFF, _STAYS = Phase.OFF, Transition.STAYS  # looked up in every tick
+_OFF, _STAYS, _LEFT = Phase.OFF, Transition.STAYS, Transition.LEFT  # looked up in every tick

@@ -84,6 +84,11 @@ class EndingWatch:
         return self._unintended.led
 
     @property
+    def moved(self) -> bool:
+        """Somebody leads the arm, and it moves: at rest the noise of the speed pays for itself."""
+        return self._unintended.led and self._unintended.moves
+
+    @property
     def doubtful(self) -> bool:
         """It may be that nobody leads the moving arm: nothing helps it on (FD-19)."""
         return self._unintended.doubtful

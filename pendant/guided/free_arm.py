@@ -143,7 +143,7 @@ class FreeArm:
         self._watch_wrench(around, settings, driven)
         ending = operation.step(estimate, hand, baseline=baseline, driven=driven, slack=slack)
         self.damping, self.suspect, self.doubtful = operation.damping, operation.suspect, operation.doubtful
-        self.pull = self._pull(estimate, settings.unexplained.force + slack.force, settings.unexplained.speed)
+        self.pull = self._pull(estimate, settings.unexplained.force + slack.force)
         self.pressed = self._pressed(settings, tick)
         self.taken = taken(hand, slack, self._hung, use_wrench=bias.used)
         if ending is not None:
@@ -168,12 +168,10 @@ class FreeArm:
         limit = passes.max + self._bias.wrong(tick).force
         return Excess("user force", "arm", size, limit, "N") if size >= limit else None
 
-    def _pull(self, estimate: Estimate, least: float, moves: float) -> PullCauses:
-        """What pulls at the arm in this tick: a hand's force is at least so large [N], the arm moves from this speed on [m/s]."""
+    def _pull(self, estimate: Estimate, least: float) -> PullCauses:
+        """What pulls at the arm in this tick: a hand's force is at least so large [N]."""
         if not self._bias.used:
             return PullCauses(HandFelt.FLANGE if estimate.joints_feel is JointsFeel.HAND else HandFelt.NOBODY)
         hand = self._hand
-        vx, vy, vz = estimate.v_F.tolist()[:3]
-        led = self._operation.led and norm((vx, vy, vz)) >= moves  # at rest the noise of the speed pays for itself
-        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=led)
+        who = felt(hand.user, sensed=hand.sensed, usual=norm(hand.usual), least=least, led=self._operation.moved)
         return PullCauses(who, estimate.lost_odds, estimate.lost_share, estimate.step_odds)

@@ -7,7 +7,7 @@ from pendant.guided.bias_follower import SURE, Slack
 from pendant.guided.changing_wrench import ChangingWrench
 from pendant.guided.settings import Unexplained
 from pendant.guided.user_force import UserForce
-from pendant.guided.work import NO_WRENCH, Forces, Work
+from pendant.guided.work import ALL_SURE, NO_WRENCH, Forces, Shares, Work
 from pendant.limits.parameters import EntryValues
 from pendant.sensor.hand_model import LASTS, LIGHT
 from pendant.sensor.odds import HALF, KNOWN, NOISE
@@ -52,6 +52,7 @@ class UnintendedMotion:
 
     Attributes:
         led: somebody pays for the motion.
+        moves: the flange does.
         doubtful: half of what is allowed has gone by: nothing helps the motion on, so that who leads it pushes, and else it ends.
 
     A stretch of motion in which no hand is felt begins afresh whenever all of it was paid for (`pendant.guided.work`). Without
@@ -74,6 +75,7 @@ class UnintendedMotion:
         "_wrench",
         "doubtful",
         "led",
+        "moves",
     )
 
     def __init__(self, on: Unexplained, since: EntryValues, wrench: ChangingWrench) -> None:
@@ -94,7 +96,7 @@ class UnintendedMotion:
         self._again = False  # so that it goes as far again
         self._helped = 0.0  # so much of it was not doubtful [m]
         self._no_fall = KNOWN  # log of the odds that what is felt is no fall, against noise [nats]
-        self.led = self.doubtful = False
+        self.led = self.doubtful = self.moves = False
 
     def step(
         self,
@@ -125,11 +127,9 @@ class UnintendedMotion:
         changes = use_wrench and self._wrench.changes
         self._there = 0 if not use_wrench else LASTS if there or changes else max(self._there - 1, 0)
         self._again = self._again and self._there > 0
-        wrench, usual = NO_WRENCHES, norm(hand.usual)
+        wrench, usual = NOTHING_FELT, norm(hand.usual)
         if use_wrench and usual < LIGHT + slack.force:
-            force, drifts = _split(hand.usual, usual, slack.force)
-            turn, turn_drifts = _split(torque, norm(torque), slack.torque)
-            wrench = (force, turn), (drifts, turn_drifts)
+            wrench = (hand.usual, torque), (_certain(usual, slack.force), _certain(norm(torque), slack.torque))
         vx, vy, vz = estimate.v_F.tolist()[:3]
         speed = norm((vx, vy, vz))
         way = self._too_long(estimate, wrench, speed=speed, caused=driven or there, use_wrench=use_wrench)
@@ -144,14 +144,14 @@ class UnintendedMotion:
         return {"distance": 1000.0 * way.length(estimate), "time": self._ticks * TICK, "limit": self._on.speed}
 
     def _too_long(
-        self, estimate: Estimate, wrench: tuple[Forces, Forces], *, speed: float, caused: bool, use_wrench: bool
+        self, estimate: Estimate, wrench: tuple[Forces, Shares], *, speed: float, caused: bool, use_wrench: bool
     ) -> Way | None:
-        """One tick with this wrench of a hand at the flange, and this drift [N, N·m]; the flange has this speed [m/s].
+        """One tick with this wrench of a hand at the flange [N, N·m], and what of it is sure; the flange has this speed [m/s].
 
         Returns which way is too long.
         """
         stretch, whole = self._stretch, self._whole
-        moves = speed >= self._on.speed
+        self.moves = moves = speed >= self._on.speed
         if caused is not self._caused or not moves:
             self._caused, self._ticks = caused, 0
         if moves:
@@ -185,7 +185,7 @@ class UnintendedMotion:
         waits = self._doubted < HALF * self._allowed
         return stretch if moves and not (self.led or waits) and self._lasts(1.0) else None
 
-    def _since_rest(self, estimate: Estimate, wrench: tuple[Forces, Forces]) -> tuple[Way | None, bool]:
+    def _since_rest(self, estimate: Estimate, wrench: tuple[Forces, Shares]) -> tuple[Way | None, bool]:
         """The way of an arm that was at rest, if it is too long, and whether it is more than half of what is allowed."""
         whole, away = self._whole, self._on.distance
         if not self._at_rest:
@@ -241,11 +241,9 @@ class UnintendedMotion:
         self._doubted = 0
 
 
-NO_WRENCHES = (NO_WRENCH, NO_WRENCH)
+NOTHING_FELT = (NO_WRENCH, ALL_SURE)
 
 
-def _split(value: Vector, size: float, slack: float) -> tuple[Vector, Vector]:
-    """What of a value of this size is certain, and what is not."""
-    share = max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0
-    (x, y, z), rest = value, 1.0 - share
-    return (share * x, share * y, share * z), (rest * x, rest * y, rest * z)
+def _certain(size: float, slack: float) -> float:
+    """The share of a value of this size that is more than may be drift."""
+    return max(1.0 - slack / size, 0.0) if size > 0.0 else 0.0

@@ -109,7 +109,7 @@ class UserForce:
         by += _JOINTS * (y - residual * uy - by)
         bz += _JOINTS * (z - residual * uz - bz)
         self._by_joints = (bx, by, bz)
-        user = self._by_joints if estimate.joints_feel is JointsFeel.HAND else ORIGIN
+        user = self._by_joints if estimate.joints_feel is _HAND else ORIGIN
         self.by_joints = user is not ORIGIN
         if use_wrench:
             (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = estimate.R_BF.tolist()
@@ -145,3 +145,6 @@ def _triple(values: list[float]) -> Vector:
 def _less(a: Vector, along: float, up: Vector) -> Vector:
     """`a` without `along` in the direction `up`."""
     return a[0] - along * up[0], a[1] - along * up[1], a[2] - along * up[2]
+
+
+_HAND = JointsFeel.HAND  # looked up in every tick

@@ -15,7 +15,7 @@ so that an error of the friction estimate alone pays nothing.
 from pendant.sensor.odds import HALF
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from pendant.tick.pose import ORIGIN, Vector, dot
+from pendant.tick.pose import ORIGIN, Vector
 
 LEFT = 0.15
 """Share of its friction that the control law leaves to whoever leads the arm; `sim.control.free_drive_law` takes the rest off."""
@@ -24,6 +24,11 @@ Forces = tuple[Vector, Vector]
 """A force and a torque at the flange, axes of B [N, N·m]."""
 
 NO_WRENCH: Forces = (ORIGIN, ORIGIN)
+
+Shares = tuple[float, float]
+"""Of a force and of a torque."""
+
+ALL_SURE: Shares = (1.0, 1.0)
 
 
 class Work:
@@ -51,24 +56,25 @@ class Work:
         self._rubbed = 0.0  # what is asked for of the friction [J]
         self.unpaid = 0.0
 
-    def step(self, estimate: Estimate, wrench: Forces = NO_WRENCH, drift: Forces = NO_WRENCH, *, counts: bool = True) -> None:
+    def step(self, estimate: Estimate, wrench: Forces = NO_WRENCH, sure: Shares = ALL_SURE, *, counts: bool = True) -> None:
         """One tick of motion.
 
         What the joints feel pays only where it `counts`: beside a flange sensor that is not used it may be the sensor's error.
 
         Args:
             estimate: of this tick.
-            wrench: of a hand at the flange, axes of B [N, N·m].
-            drift: what is felt there and may be the sensor's drift.
+            wrench: what the flange sensor feels of a hand, axes of B [N, N·m].
+            sure: what of its force and of its torque is one; the rest may be the sensor's drift.
             counts: what the joints feel does.
         """
         x, y, z, a, b, c = estimate.v_F.tolist()
-        (force, torque), (more, turn) = wrench, drift
+        (fx, fy, fz), (tx, ty, tz) = wrench
+        pushed, turned = fx * x + fy * y + fz * z, tx * a + ty * b + tz * c  # without calls: in every tick, up to twice
+        at_flange = sure[0] * pushed + sure[1] * turned
         done, certain, rubbed = estimate.powers
         if done > 0.0:
-            drifted = min(dot(more, (x, y, z)) + dot(turn, (a, b, c)), 0.0)
-            done = max(done + drifted, min(certain, done), 0.0)
-        done = (done * counts + dot(force, (x, y, z)) + dot(torque, (a, b, c))) * TICK
+            done = max(done + min(pushed + turned - at_flange, 0.0), min(certain, done), 0.0)
+        done = (done * counts + at_flange) * TICK
         rubbed *= HALF * LEFT * TICK
         self._ticks += 1
         self._slower = self._energy - estimate.energy

@@ -1,7 +1,7 @@
 """The parameters that limits bound: how each is read from what the controller knows in one tick (FD-9, FD-13, FD-18)."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from operator import sub, truediv
 from typing import NamedTuple
 
@@ -111,12 +111,16 @@ def _largest(values: list[float], view: Observed) -> tuple[float, str]:
     return -least, view.joints[values.index(least)]
 
 
+def _nearest(torques: list[float], scale: Sequence[float], view: Observed, base: float = 1.0) -> Read:
+    """Of torques with limits of `base` times `scale`, the one that is nearest to its limit."""
+    _, part = _largest(list(map(truediv, torques, scale)), view)
+    joint = view.joints.index(part)
+    return abs(torques[joint]), part, base * scale[joint]
+
+
 def _motor_torque(view: Observed, base: float) -> Read:
     """The motor that comes nearest to its limit; its limit is the parameter's, in N·m."""
-    torques = view.estimate.tau_m.tolist()
-    _, part = _largest(list(map(truediv, torques, view.scale)), view)
-    joint = view.joints.index(part)
-    return abs(torques[joint]), part, base * view.scale[joint]
+    return _nearest(view.estimate.tau_m.tolist(), view.scale, view, base)
 
 
 def _motor_current(view: Observed, base: float) -> Read:
@@ -127,15 +131,11 @@ def _motor_current(view: Observed, base: float) -> Read:
 
 def _joint_torque(view: Observed, base: float) -> Read:
     """The joint that comes nearest to its limit; its limit is the parameter's, in N·m."""
-    share, felt = view.share, view.estimate
-    nearest, size, part, high = -1.0, 0.0, 0, base
-    torques = zip(felt.tau_ext.tolist(), view.since.torques, view.scale, felt.tau_J.tolist(), strict=True)
-    for joint, (now, then, rated, load) in enumerate(torques):
-        change = now - then if now > then else then - now  # without a call, six times in every tick: as `abs`
-        limit = base * rated + (share * load if load > 0.0 else -share * load)
-        if change > nearest * limit:
-            nearest, size, part, high = change / limit, change, joint, limit
-    return size, view.joints[part], high
+    changes, share = list(map(sub, view.estimate.tau_ext.tolist(), view.since.torques)), view.share
+    if share == 0.0:
+        return _nearest(changes, view.scale, view, base)
+    loads = zip(view.scale, view.estimate.tau_J.tolist(), strict=True)
+    return _nearest(changes, [base * rated + share * abs(load) for rated, load in loads], view)
 
 
 def _payload_force(view: Observed, base: float) -> Read:

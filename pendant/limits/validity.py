@@ -30,9 +30,9 @@ def motion_ok(estimate: Estimate) -> bool:
 
 
 def _finite(estimate: Estimate) -> bool:
-    angles = sum(estimate.q.tolist()) + sum(estimate.theta.tolist())
-    speeds = sum(estimate.qd.tolist()) + sum(estimate.theta_d.tolist()) + sum(estimate.v_F.tolist())
-    return math.isfinite(angles + speeds + sum(estimate.tau_ext.tolist()) + sum(estimate.tau_J.tolist()))
+    angles = *estimate.q.tolist(), *estimate.theta.tolist()
+    speeds = *estimate.qd.tolist(), *estimate.theta_d.tolist(), *estimate.v_F.tolist()
+    return math.isfinite(sum([*angles, *speeds, *estimate.tau_ext.tolist(), *estimate.tau_J.tolist()]))
 
 
 def wrench_ok(estimate: Estimate) -> bool:

@@ -81,7 +81,6 @@ class Estimator:
         self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
         self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
         self._started, self._free = False, False  # `_free`: free-drive was on in the last tick
-        self._used = True  # the flange sensor is
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
@@ -122,7 +121,6 @@ class Estimator:
         """
         dynamics = self._dynamics
         self.tick += 1
-        self._used = math.isfinite(unsure)
         theta, q = self._theta, self._q
         angles = (sample.theta, sample.q, sample.current) if sample.joints_valid else self._made_up(sample)
         if angles is not None:
@@ -143,7 +141,9 @@ class Estimator:
         self._started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
-        self._observe(sample, self._estimate_torques(sample, use, learn) and learn)
+        # Valid and used, and so since free-drive began, if it is on.
+        sensed = sample.wrench_valid and math.isfinite(unsure) and not self.fall.blind
+        self._observe(sample, sensed, self._estimate_torques(sample, use, learn) and learn)
         self.forces.update(sample, self.q, q, self.transmission.external)
         known, valid = self._known, sample.joints_valid
         if known is None:
@@ -159,12 +159,8 @@ class Estimator:
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
         if bias is not None or self._free:
             self._free = bias is not None
-            self._ask_whose(known, bias if self._sensed(sample) else None, unsure)
+            self._ask_whose(known, bias if sensed else None, unsure)
         return known
-
-    def _sensed(self, sample: Sample) -> bool:
-        """The flange sensor is valid and used, and was so since free-drive began, if it is on."""
-        return sample.wrench_valid and self._used and not self.fall.blind
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
@@ -221,12 +217,12 @@ class Estimator:
             current=self._current,
         )
 
-    def _observe(self, sample: Sample, learn: bool) -> None:
-        """External torques by the momentum."""
+    def _observe(self, sample: Sample, sensed: bool, learn: bool) -> None:
+        """External torques by the momentum; `sensed`: the flange sensor is used."""
         friction, motor = self.friction, self.transmission.ways[MOTOR]
         gears = (self._deflection, motor, friction.total, friction.deviation, self._stiction, self._ways)
-        valid, with_sensor = sample.joints_valid, self._sensed(sample)
-        self.momentum.update((self.q, *gears, sample.wrench), with_sensor=with_sensor, valid=valid, learn=learn)
+        driven = (self.q, *gears, sample.wrench)
+        self.momentum.update(driven, with_sensor=sensed, valid=sample.joints_valid, learn=learn)
 
     def _estimate_torques(self, sample: Sample, use: JointControl, learn: bool) -> bool:
         """Friction and transmission torque. Returns whether any joint moves."""

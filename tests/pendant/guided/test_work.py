@@ -14,6 +14,7 @@ from tests.pendant.estimates import estimate
 
 FRICTION = (0.0, 10.0, 0.0, 2.0, 0.0, 0.0)
 SPEED = 0.2  # of shoulder and wrist 1 [rad/s]
+NOTHING_SURE = (0.0, 0.0)  # all may be drift
 PAYS = HALF * LEFT * (FRICTION[1] + FRICTION[3])  # [N·m] on either, as both turn alike
 
 
@@ -106,7 +107,7 @@ def test_what_may_be_drift_against_the_motion_is_taken_off_what_the_joints_feel(
     work = Work()
     work.begin(value)
     for _ in range(100):
-        work.step(value, drift=(ORIGIN, drift) if turns else (drift, ORIGIN))
+        work.step(value, (ORIGIN, drift) if turns else (drift, ORIGIN), NOTHING_SURE)
     assert work.unpaid == pytest.approx(owed * 100 * TICK * PAYS * SPEED)
 
 
@@ -118,7 +119,7 @@ def test_no_drift_is_taken_off_what_the_joints_feel_for_certain(sure: float, owe
     work = Work()
     work.begin(value)
     for _ in range(100):
-        work.step(value, drift=((-9.0 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN))
+        work.step(value, ((-9.0 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN), NOTHING_SURE)
     assert work.unpaid == pytest.approx(owed * 100 * TICK * PAYS * SPEED)
 
 
@@ -127,7 +128,7 @@ def test_what_is_not_a_number_is_not_certain() -> None:
     value.v_F[0] = 0.05
     work = Work()
     work.begin(value)
-    work.step(value, drift=((-9.0 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN))
+    work.step(value, ((-9.0 * PAYS * SPEED / 0.05, 0.0, 0.0), ORIGIN), NOTHING_SURE)
     assert work.unpaid == pytest.approx(TICK * PAYS * SPEED)
 
 
@@ -137,7 +138,7 @@ def test_no_drift_makes_what_the_joints_feel_against_the_motion_worse() -> None:
     one, other = Work(), Work()
     for _ in range(100):
         one.step(value)
-        other.step(value, drift=((-5.0, 0.0, 0.0), ORIGIN))
+        other.step(value, ((-5.0, 0.0, 0.0), ORIGIN), NOTHING_SURE)
     assert state_of(one) == state_of(other)
 
 
