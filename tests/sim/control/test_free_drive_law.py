@@ -216,6 +216,23 @@ def test_unless_a_hand_may_push_it_on(way: float, share: float, braked: float) -
     np.testing.assert_allclose(alone - GRAVITY, full, rtol=1e-6)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("then", [1.5, 1.0, 0.7, 0.2])
+def test_who_pushes_a_joint_on_keeps_up_its_speed(way: float, then: float) -> None:
+    """One that slows down is braked again, as far as its kinetic energy is less than lately: who was felt there has let go."""
+    module, speed, rubs = law(), 2.0 * BRAKE_SPEED, AdaptiveFriction(UR5E)
+    free, along = decision(Law.FREE, gain=1.0), np.full(N, way * 9.0)
+    for fast in (*[1.0] * 500, then):
+        seen = estimate(q=Q, R_BF=R, theta_d=np.full(N, way * fast * speed), tau_hand=along)
+        torque = module.torque(seen, free, JACOBIAN, friction=rubs, with_friction=True) - GRAVITY
+    lately = 1.0 + (1.0 - np.exp(-0.002 / 0.05)) * (then - 1.0)
+    braked = max(1.0 - (then / lately) ** 2, 0.0)
+    np.testing.assert_allclose(torque, -way * braked * BRAKE * BREAKAWAY * np.tanh(2.0 * then), rtol=1e-3, atol=1e-3)
+    module.start(held=None)
+    torque = module.torque(seen, free, JACOBIAN, friction=rubs, with_friction=True) - GRAVITY
+    np.testing.assert_allclose(torque, 0.0, atol=1e-9)  # nothing is known of its speed before
+
+
 def test_who_leads_the_arm_by_its_elbow_leads_it_smoothly() -> None:
     """AF-7: links that swing on their springs passed for a hand, and what was done for it kept the arm shaking at 30 Hz."""
     load = Load(mass=1.0, com=[0.0, 0.0, 0.05])
