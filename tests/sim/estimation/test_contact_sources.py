@@ -208,7 +208,7 @@ def test_a_knock_is_found_soon_after_detection_was_switched_on_in_free_drive() -
     sim = guided()
     held = Inputs(held=frozenset({Button.FREE_DRIVE}))
     sim.tick(Wishes(Inputs(held=held.held, commands=(Command.DETECTION,)), (), ()))
-    for _ in range(100):
+    for _ in range(50):
         assert not sim.tick(Wishes(held, (), ())).contacts
     knock = (Push("tool", (0.0, 0.0, 0.1), (0.0, 60.0, 0.0)),)
     assert any(sim.tick(Wishes(held, knock, ())).contacts for _ in range(25))
