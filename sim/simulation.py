@@ -159,10 +159,7 @@ class Simulation:
         bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
         answered = references.answered
         estimate = estimator.update(sample, done, refusal, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
-        if decided is None or decided.looks:
-            self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact)
-        else:
-            self.contact_sources.skip(estimate)
+        self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)

@@ -107,7 +107,7 @@ class ContactSources:
         self._own["reach"] = self._range - [np.abs(zero[:3]).max(), np.abs(zero[3:]).max()]
         self._momentum.forget_zero()
 
-    def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse) -> None:
+    def read(self, sample: Sample, estimate: Estimate, jacobian: Array, use: ContactUse, *, looks: bool) -> None:
         """Put this tick's signals into `estimate`.
 
         Args:
@@ -115,7 +115,13 @@ class ContactSources:
             estimate: this tick's estimate.
             jacobian: of the flange (6, n), axes of B.
             use: which sources are on; the others give None.
+            looks: somebody looks for contacts; else there is a gap, and what was before it counts no more.
         """
+        if not looks:
+            if estimate.signals is not NOT_READ:
+                self._own["turn"], self._drive["count"], self._started = np.nan, 0, False
+                estimate.signals = NOT_READ
+            return
         if estimate.tick % MASS_TICKS == 1:
             lightest = _effective_mass(self._dynamics.mass(estimate.q), estimate.R_BF, jacobian, self._load)
             self._out[:, EFFECTIVE_MASS] = max(LEAST_MASS, lightest)
@@ -133,12 +139,6 @@ class ContactSources:
             estimate.signals = ContactSignals(self._numbers.copy(), valid, self._joints, self._elbow)
         else:
             estimate.signals = ContactSignals(self._signals.copy(), valid)
-
-    def skip(self, estimate: Estimate) -> None:
-        """Nobody looks for contacts in this tick: a gap in the signals, and what was before counts no more."""
-        if estimate.signals is not NOT_READ:
-            self._own["turn"], self._drive["count"], self._started = np.nan, 0, False
-            estimate.signals = NOT_READ
 
 
 def _effective_mass(mass: Array, R: Array, jacobian: Array, load: Body) -> float:

@@ -29,7 +29,7 @@ WEIGHED = 10
 _FOLLOWS = 1.0 - math.exp(-TICK / RESPONSE)
 
 
-class Held(NamedTuple):
+class Pulling(NamedTuple):
     """How a virtual hand holds in a tick."""
 
     point: Triple  # of the body [m]
@@ -192,7 +192,7 @@ def _pull(bodies, root, body, held):
 
     Returns the point that it holds, its force, and where it has come to.
     """
-    bodies, held = Bodies(*bodies), Held(*held)
+    bodies, held = Bodies(*bodies), Pulling(*held)
     x, y, z = held.goes
     a, b, c = held.target
     x, y, z = x + _FOLLOWS * (a - x), y + _FOLLOWS * (b - y), z + _FOLLOWS * (c - z)
