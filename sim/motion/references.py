@@ -83,7 +83,7 @@ class References:
 
     def skip(self) -> None:
         """A tick without a reference: free-drive."""
-        self._law = _FREE
+        self._law = Law.FREE
         self.refusal = ""
         self._past.clear()
         self.commanding = False
@@ -278,6 +278,3 @@ class References:
         if isinstance(before, ToolStream):
             return before.renew(move)
         return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=limits, pace=pace)
-
-
-_FREE = Law.FREE  # looked up in every tick
