@@ -33,8 +33,7 @@ LEAST_MASS = 0.3  # of the arm behind the sensor [kg]
 MASS, EFFECTIVE_MASS, LEVER, DRIVEN = (Signal._fields.index(name) for name in ("mass", "effective_mass", "lever", "driven"))
 LISTED = ("tool side", "arm side", "elbow", "forearm")
 """Sources, in the order of their rows."""
-NOT_READ = ContactSignals(np.zeros(len(LISTED) * WIDTH), (False,) * len(LISTED))
-"""The signals of a tick in which nobody looks for contacts."""
+NOT_READ = ContactSignals(np.zeros(len(LISTED) * WIDTH), (False,) * len(LISTED))  # nobody looks for contacts
 SINGULAR = 0.2
 """Damping of the least-squares force on a link [m]: levers shorter than this say little about a force."""
 
@@ -129,10 +128,8 @@ class ContactSources:
         links = use.links and sample.joints_valid and self._momentum.ready
         flange = pair and use.flange
         watched = (pair, flange, links, self._started)
-        motion = (sample.values, estimate.qd, estimate.qdd)
-        torques = self._momentum
-        models = (self._dynamics.recursion.record, torques.record, torques.errors.record, self._drive)
-        _read(self._record, models, motion, watched)
+        models = (self._dynamics.recursion.record, self._momentum.record, self._momentum.errors.record, self._drive)
+        _read(self._record, models, (sample.values, estimate.qd, estimate.qdd), watched)
         self._started = links
         valid = (pair, flange, links, links)
         if links:
