@@ -18,7 +18,7 @@ INTENT = 0.12  # of the breakaway torque: a hand that asks for this much is help
 DEAD_ZONE = 0.05  # of the breakaway torque: less than this is the sensor's noise, no hand
 HELP_BANDWIDTH = 12.0  # of that help [Hz]: a hand is slower, the wrists' own modes and the flange sensor's noise are faster
 BRAKE, BRAKE_SPEED = 1.5, 0.15  # of the breakaway torque, added to the friction of a joint of which nothing is asked; [rad/s]
-LATELY = 0.05
+PACE_TIME = 0.05
 """Time constant of the speed that a joint had lately [s]: as the help for the hand follows it near a limit."""
 
 
@@ -57,13 +57,13 @@ class HandHelp:
             asked=(n,),  # that, filtered
             felt=(n,),  # by the joints, filtered
             pace=(n,),  # speed lately, filtered [rad/s]
-            lately=(),  # weight of a tick in it
+            pace_share=(),  # weight of a tick in it
             smooth=(),  # weight of a tick in both
         )
         own = self._own = self._record[0]
         self.capped = own["capped"]
         own["smooth"] = 1.0 - math.exp(-2.0 * math.pi * HELP_BANDWIDTH * TICK)
-        own["lately"] = 1.0 - math.exp(-TICK / LATELY)
+        own["pace_share"] = 1.0 - math.exp(-TICK / PACE_TIME)
 
     def start(self) -> None:
         """Free-drive begins: nothing is asked."""
@@ -141,7 +141,7 @@ def _take_off(law, friction, joints, torque) -> None:
         torque[i] += math.copysign(most * share * max(abs(sliding[i]), breakaway), ask)
         # A joint of which nothing is asked comes to rest sooner than by its friction alone, unless a hand may push it on: then it
         # keeps its speed.
-        own.pace[i] += own.lately * (abs(speed[i]) - own.pace[i])
+        own.pace[i] += own.pace_share * (abs(speed[i]) - own.pace[i])
         along = tau_hand[i] if speed[i] > 0.0 else -tau_hand[i]
         pushed = min(max(along / (INTENT * breakaway), 0.0), 1.0) if breakaway > 0.0 and most > 0.0 else 0.0
         if own.pace[i] > abs(speed[i]):

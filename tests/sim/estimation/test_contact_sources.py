@@ -18,6 +18,7 @@ from sim.simulation import Simulation
 
 ARM, TOOL = load_arm("ur5e"), load_tool("sphere")
 IDLE = Wishes(NOTHING, (), ())
+HELD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
 
 
 def simulation(soft: bool = False, **changes: bool) -> Simulation:
@@ -183,9 +184,8 @@ def test_what_is_off_or_not_valid_gives_nothing() -> None:
 def guided(**changes: bool) -> Simulation:
     """A simulation in free-drive, the button held."""
     sim = simulation(**changes)
-    held = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
     for _ in range(1200):
-        if sim.tick(held).mode is Mode.FREE_DRIVE:
+        if sim.tick(HELD).mode is Mode.FREE_DRIVE:
             return sim
     raise AssertionError("free-drive was not entered")
 
@@ -194,24 +194,22 @@ def guided(**changes: bool) -> Simulation:
 def test_in_free_drive_there_are_signals_where_contacts_are_looked_for(on: bool) -> None:
     """Else nothing needs them: while the arm is free no program begins, which would need those of the ticks before."""
     sim = guided(on=on)
-    held = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
-    sim.tick(held)
+    sim.tick(HELD)
     assert [signal is not None for signal in sim.estimate.signals.each()] == [on, False, on, on]
     sim.tick(Wishes(Inputs(commands=(Command.DETECTION,)), (), ()))
     for _ in range(2):
-        sim.tick(held)
+        sim.tick(HELD)
     assert [signal is not None for signal in sim.estimate.signals.each()] == [not on, False, not on, not on]
 
 
 def test_a_knock_is_found_soon_after_detection_was_switched_on_in_free_drive() -> None:
     """The detectors begin with the first signal: what was before the gap is compared with nothing."""
     sim = guided()
-    held = Inputs(held=frozenset({Button.FREE_DRIVE}))
-    sim.tick(Wishes(Inputs(held=held.held, commands=(Command.DETECTION,)), (), ()))
+    sim.tick(Wishes(Inputs(held=HELD.inputs.held, commands=(Command.DETECTION,)), (), ()))
     for _ in range(50):
-        assert not sim.tick(Wishes(held, (), ())).contacts
+        assert not sim.tick(HELD).contacts
     knock = (Push("tool", (0.0, 0.0, 0.1), (0.0, 60.0, 0.0)),)
-    assert any(sim.tick(Wishes(held, knock, ())).contacts for _ in range(25))
+    assert any(sim.tick(Wishes(HELD.inputs, knock, ())).contacts for _ in range(25))
 
 
 def test_when_free_drive_is_over_there_are_signals() -> None:
