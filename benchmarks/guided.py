@@ -128,14 +128,18 @@ def place_of(device: Simulation, part: str) -> Array:
     return data.xpos[body] + data.xmat[body].reshape(3, 3) @ grip(part)
 
 
-def across(device: Simulation, part: str) -> Array:
-    """The two directions (2, 3) in W in which a part goes best; the second is nothing where it goes in one alone."""
+def levers(device: Simulation, part: str) -> Array:
+    """Way in W (3, n) of where a hand takes a part, for each turn of a joint [m]."""
     plant = device.plant
     jacobian = np.zeros((3, plant.model.nv))
     body = plant.model.body("flange" if part == "tool" else part).id
     mujoco.mj_jac(plant.model, plant.data, jacobian, None, place_of(device, part), body)
-    dofs = [plant.model.joint(f"q/{name}").dofadr[0] for name in device.arm.chain.joints]
-    directions, sizes, _ = np.linalg.svd(jacobian[:, dofs])
+    return jacobian[:, [plant.model.joint(f"q/{name}").dofadr[0] for name in device.arm.chain.joints]]
+
+
+def across(device: Simulation, part: str) -> Array:
+    """The two directions (2, 3) in W in which a part goes best; the second is nothing where it goes in one alone."""
+    directions, sizes, _ = np.linalg.svd(levers(device, part))
     return np.stack([directions[:, 0], directions[:, 1] * float(sizes[1] >= LEAST_LEVER)])
 
 
