@@ -59,27 +59,28 @@ def measure_hand(hand: Hand) -> Result:
     for _ in range(WAITS):
         device.tick(IDLE)
     rng = np.random.default_rng([hand.case.seed, hand.case.number, 23])
-    jacobian = levers(device, hand.part)
-    pull = _direction(device, hand.part, rng)
-    while float(np.abs(pull @ jacobian).max()) < LEVER:
-        pull = _direction(device, hand.part, rng)
+    pull, lever = _drawn(device, hand.part, rng)
     start, way, ended = place_of(device, hand.part), 0.0, False
     for tick in range(LASTS):
         x, y, z = (min(tick / RISES, 1.0) * hand.force * pull).tolist()
         decision = device.tick(Wishes(NOTHING, (Push(hand.part, grip(hand.part), (x, y, z)),), ()))
         way = max(way, 1000.0 * float(np.linalg.norm(place_of(device, hand.part) - start)))
         ended = ended or decision.mode is not Mode.FREE_DRIVE
-    return Result(hand, True, float(np.abs(pull @ jacobian).max()), way, ended)
+    return Result(hand, True, lever, way, ended)
 
 
-def _direction(device: Simulation, part: str, rng: np.random.Generator) -> Array:
-    """Of length 1, in W (3,); at a link across it."""
-    pull = rng.normal(size=3)
-    if part in LINKS:
-        data, model = device.plant.data, device.plant.model
-        along = place_of(device, part) - data.xpos[model.body(LINKS[part]).id]
-        pull -= (pull @ along) / (along @ along) * along
-    return pull / np.linalg.norm(pull)
+def _drawn(device: Simulation, part: str, rng: np.random.Generator) -> tuple[Array, float]:
+    """A direction in W (3,) of length 1, at a link across it, and the largest lever of a pull there on a joint [m]."""
+    data, model, jacobian = device.plant.data, device.plant.model, levers(device, part)
+    while True:
+        pull = rng.normal(size=3)
+        if part in LINKS:
+            along = place_of(device, part) - data.xpos[model.body(LINKS[part]).id]
+            pull -= (pull @ along) / (along @ along) * along
+        pull /= np.linalg.norm(pull)
+        lever = float(np.abs(pull @ jacobian).max())
+        if lever >= LEVER:
+            return pull, lever
 
 
 def measure(report: Report) -> None:
