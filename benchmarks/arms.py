@@ -1,11 +1,17 @@
-"""The arms that benches run on: those that are shipped, and a UR5e whose flange sensor is noisier or is not there."""
+"""The arms that benches run on: those that are shipped, and a UR5e whose flange sensor is noisier or is not there.
+
+Bars and hands are those of the usual arm. What of them another arm can be asked for is said here, from the arm's own numbers: a
+hand is as strong as the payload is heavy; what rubs more asks for more; what only joints feel has to be more than they may miss.
+"""
 
 from collections.abc import Callable
 
+import numpy as np
 from msgspec.structs import replace
 
 from app.files.library import load_arm, robots
 from sim.arm.arm_file import Arm, Channels, SensorNumbers
+from sim.sensing.calibration import ripple_torque
 
 USUAL = "ur5e"
 """The arm whose results are in docs/results."""
@@ -17,6 +23,9 @@ BENCHES = frozenset(
 
 NOISIER = 3.0  # times
 HEAVIEST = 5.0  # [kg] that benches hang on an arm that can bear it
+LEVER = 0.2
+"""Of a push on at least one joint [m]: a hand that pushes an arm through its axes turns nothing; a skin alone would feel it."""
+WRIST = slice(-3, None)  # joints that turn the flange in place
 
 
 def _without_sensor(sensors: SensorNumbers) -> SensorNumbers:
@@ -63,3 +72,26 @@ def senses(name: str) -> bool:
 def heaviest(name: str) -> float:
     """The largest payload that benches hang on an arm [kg]."""
     return min(HEAVIEST, load(name).payload)
+
+
+def strength(name: str) -> float:
+    """Of a hand on an arm, as a share of the same hand's on the usual one.
+
+    Where an arm bears less than others a hand is as much weaker, or its shoulder would not withstand it, and its joints would be
+    driven to their limits.
+    """
+    return heaviest(name) / HEAVIEST
+
+
+def wrist_friction(name: str, speed: float) -> float:
+    """Of an arm's wrist at a speed [rad/s], in the usual arm's, at least 1: a hand does not get less for a light wrist."""
+    own, usual = (
+        np.mean([np.interp(speed, each.frictions.speed, torque) for torque in each.frictions.torque[WRIST]])
+        for each in (load(name), load(USUAL))
+    )
+    return max(float(own / usual), 1.0)
+
+
+def missed(name: str) -> float:
+    """What joints may miss of a torque where no flange sensor tells a hand: the ripple of their encoders, at most [N·m]."""
+    return 0.0 if senses(name) else float(ripple_torque(load(name).transmissions).max())

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.arms import heaviest, senses
+from benchmarks.arms import heaviest, senses, strength
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import IDLE, enter, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
@@ -93,7 +93,7 @@ def measure_drop(drop: Drop) -> Fall:
 
 
 def measure_hands(case: Case) -> Touched:
-    """Grabs, snatches and let-goes of 10 to 60 N in any direction, one after the other."""
+    """Grabs, snatches and let-goes of 10 to 60 N in any direction, one after the other, on a weaker arm by weaker hands."""
     rng = np.random.default_rng([case.seed, case.number, 11])
     device = simulation(case, LONG)
     entered = enter(device)
@@ -102,7 +102,7 @@ def measure_hands(case: Case) -> Touched:
     for _ in range(HANDS if entered else 0):
         direction = rng.normal(size=3)
         direction /= np.linalg.norm(direction)
-        size, rise, held = rng.uniform(10.0, 60.0), int(rng.integers(5, 26)), int(rng.integers(10, 60))
+        size, rise, held = strength(case.arm) * rng.uniform(10.0, 60.0), int(rng.integers(5, 26)), int(rng.integers(10, 60))
         sudden = rng.uniform() < 0.5  # the let-go: at once, or as the grab came
         touched += 1
         for tick in range(rise + held + rise + 200):

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.arms import LEVER
 from benchmarks.common import Report, main, spread
-from benchmarks.contacts.hands import LEVER
 from benchmarks.guided import grip, levers, place_of
 from benchmarks.hold import IDLE, MOUNTINGS, enter
 from benchmarks.payload import SETTINGS, Case, draw, simulation

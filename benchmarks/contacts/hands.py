@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.files.library import load_tool
-from benchmarks.arms import HEAVIEST, heaviest, load
+from benchmarks.arms import LEVER, load, strength
 from benchmarks.contacts.approaches import START
 from benchmarks.contacts.motion import program
 from benchmarks.contacts.recording import TICK
@@ -23,8 +23,6 @@ Array = NDArray[np.float64]
 TOOL = load_tool("sphere")
 LOW, HIGH = np.array([-3.0, -2.4, -2.3, -3.0, -3.0, -3.0]), np.array([3.0, -0.6, 2.3, 3.0, 3.0, 3.0])
 START_AFTER, PAUSE = 150, 350  # ticks at rest before the first push, and between two
-LEVER = 0.2
-"""Of a push on at least one joint [m]: a hand that pushes an arm through its axes turns nothing; a skin alone would feel it."""
 FELT, UNFELT = 0.1, 0.02
 """The link's own joint feels a push from this lever on, and does not below that [m]: between, either link may be named."""
 LATEST = 0.1  # s
@@ -76,8 +74,8 @@ def hands(case: LinkHands) -> list[LinkTouch]:
 
 
 def forces(arm: str) -> list[float]:
-    """Of hands [N]. Where an arm bears less than others, they are as much weaker, or its shoulder would not withstand them."""
-    return [force * heaviest(arm) / HEAVIEST for force in (60.0, 80.0, 120.0, 200.0, 300.0)]
+    """Of hands [N]."""
+    return [force * strength(arm) for force in (60.0, 80.0, 120.0, 200.0, 300.0)]
 
 
 def wait(simulation: Simulation, ticks: int) -> None:
