@@ -150,8 +150,8 @@ def measure(report: Report) -> None:
         for r in short[:6]:
             case = r.push.case
             report.notes.append(
-                f"{label}: {r.way:.0f} mm with {r.push.force:.0f} N at {r.push.pace:.2f} m/s, lever {r.lever:.2f} m, {case.true:.1f} kg, "
-                f"{case.mounting}, case {case.number}: held {r.caught} times, {r.left or 'stayed'}"
+                f"{label}: {r.way:.0f} mm with {r.push.force:.0f} N at {r.push.pace:.2f} m/s, lever {r.lever:.2f} m, "
+                f"{case.true:.1f} kg, {case.mounting}, case {case.number}: held {r.caught} times, {r.left or 'stayed'}"
             )
 
 
