@@ -10,9 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from benchmarks import arms, common, drift, realtime, recording, tick
+from benchmarks import arms, common, drift, free_drive_forces, realtime, recording, tick
 from benchmarks.common import Options, Report
 
 FOLDER = Path(common.__file__).parent
@@ -124,6 +125,35 @@ def test_a_variant_has_another_flange_sensor_and_the_controller_knows(tmp_path: 
     tried.options = replace(tried.options, arm="ur5e-without-sensor")
     drift.measure(tried)
     assert tried.rows == [], "what does not apply is no bar that was held"
+
+
+@pytest.mark.parametrize(
+    ("arm", "strength", "wrist", "missed"),
+    [
+        ("ur5e", 1.0, 1.0, 0.0),
+        ("ur5e-noisy-sensor", 1.0, 1.0, 0.0),
+        ("ur5e-without-sensor", 1.0, 1.0, 2.2),  # 0.1 mrad of the encoder times 22 kN·m/rad of the shoulder
+        ("ur3e", 0.6, 1.0, 0.0),  # 3 of 5 kg; a light wrist does not get a lighter hand
+        ("ur10e", 1.0, 1.53, 0.0),  # 2.73, 2.98 and 2.81 N·m at 0.3 rad/s, of 2.01, 1.72 and 1.82
+        ("ur16e", 1.0, 1.53, 0.0),
+    ],
+)
+def test_what_an_arm_can_be_asked_for_follows_from_its_numbers(arm: str, strength: float, wrist: float, missed: float) -> None:
+    known = arms.strength(arm), arms.wrist_friction(arm, 0.3), arms.missed(arm)
+    assert known == pytest.approx((strength, wrist, missed), abs=0.01)
+    bars = [free_drive_forces.allowed(name, usual, arm) for name, _, _, usual in free_drive_forces.FORCES]
+    felt = missed / arms.LEVER
+    assert bars == pytest.approx([12.0 + felt, 2.0 * wrist + missed, 30.0 + felt, 15.0 + felt], abs=0.1)
+
+
+@pytest.mark.parametrize("arm", ["ur5e", "ur5e-without-sensor"])
+def test_an_end_that_looks_like_a_fall_is_counted_by_itself_where_it_can_be_one(arm: str, tmp_path: Path) -> None:
+    tried = report(tmp_path)
+    tried.options = replace(tried.options, arm=arm)
+    free_drive_forces.report_ends(tried, "lead", np.array([3.0, free_drive_forces.ENDED, free_drive_forces.FALL, 4.0]))
+    ended, falls = tried.rows[0], tried.rows[1:]
+    assert (ended["value"], ended["held"]) == (0.25, False)
+    assert [row["value"] for row in falls] == ([] if arms.senses(arm) else [0.25])
 
 
 def binomial(hits: int, n: int, share: float) -> float:
