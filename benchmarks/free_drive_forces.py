@@ -133,10 +133,11 @@ def measure(report: Report) -> None:
     report.row("speed while a hand holds on, RMS, worst", max(row.hum for row in helped), "rad/s", at_most=HUM, n=n)
     long = np.array([row.long for row in helped])
     report_ends(report, "a long free-drive", long[:, 0])
-    _, rest, drift = long[long[:, 0] == STAYED].max(axis=0, initial=0.0)
-    n = int(np.sum(long[:, 0] == STAYED))
-    report.row("a long free-drive: rest after it, worst", rest if n else NO_CASE, "s", at_most=0.3, n=n)
-    report.row("a long free-drive: drift after it, hands off, worst", drift if n else NO_CASE, "mm", at_most=2.0, n=n)
+    stayed = long[long[:, 0] == STAYED].tolist()
+    n = len(stayed)
+    for k, what, unit, bar in ((1, "rest after it", "s", 0.3), (2, "drift after it, hands off", "mm", 2.0)):
+        worst = max((each[k] for each in stayed), default=NO_CASE)
+        report.row(f"a long free-drive: {what}, worst", worst, unit, at_most=bar, n=n)
     over = [row for row, _ in rows[2 * count :] if row.entered]
     n = len(over)
     what = "20 % too much: fastest joint long after letting go, worst"
