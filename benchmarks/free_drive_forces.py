@@ -96,9 +96,9 @@ def allowed(name: str, usual: float, arm: str) -> float:
 
 def report_ends(report: Report, what: str, values: Array) -> None:
     """Rows of how many of them ended."""
-    report.share(f"{what}: free-drive ended meanwhile", int(np.isnan(values).sum()), values.size, at_most=0.0)
+    report.share(f"{what} ended meanwhile", int(np.isnan(values).sum()), values.size, at_most=0.0)
     if not senses(report.options.arm):
-        report.share(f"{what}: taken for the payload's fall", int(np.isinf(values).sum()), values.size)
+        report.share(f"{what} ended as if the payload fell", int(np.isinf(values).sum()), values.size)
 
 
 def measure(report: Report) -> None:
@@ -116,7 +116,7 @@ def measure(report: Report) -> None:
     for name, what, unit, usual in FORCES:
         bar = allowed(name, usual, arm)
         values, others = (np.concatenate([row.forces[name] for row in side]) for side in (helped, plain))
-        report_ends(report, what, values)
+        report_ends(report, f"{what}: free-drive", values)
         values, others = values[np.isfinite(values)], others[np.isfinite(others)]
         if not (values.size and others.size):
             report.row(f"{what}, p95", NO_CASE, unit, at_most=bar, n=0)
@@ -132,7 +132,7 @@ def measure(report: Report) -> None:
     report.row("drift hands off, 10 s, worst", max(row.drift for row in helped), "mm", at_most=2.0, n=n)
     report.row("speed while a hand holds on, RMS, worst", max(row.hum for row in helped), "rad/s", at_most=HUM, n=n)
     long = np.array([row.long for row in helped])
-    report_ends(report, "a long free-drive", long[:, 0])
+    report_ends(report, "a long free-drive:", long[:, 0])
     stayed = long[long[:, 0] == STAYED].tolist()
     n = len(stayed)
     for k, what, unit, bar in ((1, "rest after it", "s", 0.3), (2, "drift after it, hands off", "mm", 2.0)):

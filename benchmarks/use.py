@@ -138,7 +138,7 @@ def measure(report: Report) -> None:
         report.share(f"{label}: pushes, entered", len(entered), len(results))
         known = entered
         if not senses(report.options.arm):
-            report.share(f"{label}: taken for the payload's fall", sum(r.fall for r in entered), len(entered))
+            report.share(f"{label}: ended as if the payload fell", sum(r.fall for r in entered), len(entered))
             through = [r for r in entered if not r.far and r.lever < LEVER]
             report.share(f"{label}: pulled through the axes in the end", len(through), len(entered))
             known = [r for r in entered if not (r.fall or r in through)]
