@@ -5,6 +5,7 @@ hand is as strong as the payload is heavy; what rubs more asks for more; what on
 """
 
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 from msgspec.structs import replace
@@ -25,7 +26,7 @@ NOISIER = 3.0  # times
 HEAVIEST = 5.0  # [kg] that benches hang on an arm that can bear it
 LEVER = 0.2
 """Of a push on at least one joint [m]: a hand that pushes an arm through its axes turns nothing; a skin alone would feel it."""
-WRIST = slice(-3, None)  # joints that turn the flange in place
+Part = Literal["elbow", "flange", "wrist"]
 
 
 def _without_sensor(sensors: SensorNumbers) -> SensorNumbers:
@@ -83,13 +84,24 @@ def strength(name: str) -> float:
     return heaviest(name) / HEAVIEST
 
 
-def wrist_friction(name: str, speed: float) -> float:
-    """Of an arm's wrist at a speed [rad/s], in the usual arm's, at least 1: a hand does not get less for a light wrist."""
-    own, usual = (
-        np.mean([np.interp(speed, each.frictions.speed, torque) for torque in each.frictions.torque[WRIST]])
-        for each in (load(name), load(USUAL))
-    )
-    return max(float(own / usual), 1.0)
+def rubs(name: str, part: Part, speed: float) -> float:
+    """What friction asks of a hand that leads a part at a speed [m/s], as a share of the same on the usual arm, at least 1.
+
+    A hand does not get less to do for a light arm. The wrist turns in place, so its speed is an angular one [rad/s].
+    """
+    own, usual = (_friction(load(each), part, speed) for each in (name, USUAL))
+    return max(own / usual, 1.0)
+
+
+def _friction(arm: Arm, part: Part, speed: float) -> float:
+    """Mean over the joints that move a part: their friction over its furthest lever [N]; of the wrist their friction [N·m]."""
+    joints, lever = {
+        "elbow": (slice(0, 2), abs(arm.chain.a[1])),
+        "flange": (slice(0, 3), arm.reach),
+        "wrist": (slice(3, None), 1.0),
+    }[part]
+    friction = arm.frictions
+    return float(np.mean([np.interp(speed / lever, friction.speed, torque) for torque in friction.torque[joints]])) / lever
 
 
 def missed(name: str) -> float:

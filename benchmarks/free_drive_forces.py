@@ -6,9 +6,9 @@ in the posture as drawn, free-drive just entered: an arm that was pushed about s
 Besides, one long free-drive is measured: the arm is led and turned along all directions, pushed at the elbow, and let go. Truth
 is read for scoring alone.
 
-Another arm has the same bars, but for what its own numbers ask (`benchmarks.arms`): a wrist that rubs more may be harder to
-turn, and without a flange sensor a hand has to be more than the joints may miss. Such an arm cannot tell a hand that lifts as
-hard as the payload weighs from the payload's fall, and stops: these are counted by themselves.
+Another arm has the same bars, but for what its own numbers ask (`benchmarks.arms`): one that rubs more may be harder to lead and
+to turn, and without a flange sensor a hand has to be more than the joints may miss. Such an arm stops where the payload's fall
+would explain what its joints feel, as well as its gears are known; these ends are counted by themselves.
 """
 
 from collections.abc import Callable
@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.arms import LEVER, missed, senses, wrist_friction
+from benchmarks.arms import LEVER, missed, rubs, senses
 from benchmarks.common import NO_CASE, Report, main, spread
-from benchmarks.controls.leading_hand import TURN, Array, Case, Hand, directions, elbow_directions
+from benchmarks.controls.leading_hand import PACE, TURN, Array, Case, Hand, directions, elbow_directions
 
 STAYED, ENDED, FALL = 0.0, np.nan, np.inf  # free-drive; FALL: ended as the joints felt what a payload that fell makes them feel
 HUM = 0.005  # joint speed that counts as a limit cycle [rad/s]; a tenth of a millimetre at 10 Hz
@@ -90,8 +90,8 @@ FORCES = (
 def allowed(name: str, usual: float, arm: str) -> float:
     """What one of `FORCES` may be at most, on an arm [N], [N·m]. A torque at the flange is felt by joints in full."""
     if name == "turn":
-        return usual * wrist_friction(arm, TURN) + missed(arm)
-    return usual + missed(arm) / LEVER
+        return usual * rubs(arm, "wrist", TURN) + missed(arm)
+    return usual * rubs(arm, "elbow" if name == "elbow" else "flange", PACE) + missed(arm) / LEVER
 
 
 def report_ends(report: Report, what: str, values: Array) -> None:

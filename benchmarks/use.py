@@ -3,8 +3,8 @@
 A hand is a spring to a point that walks away along a straight line, its force capped; or it pushes with the whole force all the
 time, along that line. A hand on another arm is as strong as the payload is heavy; without a flange sensor it is at least as
 strong as what the joints may miss needs (`benchmarks.arms`). Counted by themselves are then those that led the arm until they
-pulled through its axes, where joints feel little of them, and those that were taken for the payload's fall, as they lifted as
-hard as it weighs. Truth is read for scoring alone.
+pulled through its axes, where joints feel little of them, and those that ended where the payload's fall, too, would explain
+what the joints felt. Truth is read for scoring alone.
 """
 
 from typing import NamedTuple

@@ -128,22 +128,25 @@ def test_a_variant_has_another_flange_sensor_and_the_controller_knows(tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("arm", "strength", "wrist", "missed"),
+    ("arm", "strength", "rubs", "missed"),
     [
-        ("ur5e", 1.0, 1.0, 0.0),
-        ("ur5e-noisy-sensor", 1.0, 1.0, 0.0),
-        ("ur5e-without-sensor", 1.0, 1.0, 2.2),  # 0.1 mrad of the encoder times 22 kN·m/rad of the shoulder
-        ("ur3e", 0.6, 1.0, 0.0),  # 3 of 5 kg; a light wrist does not get a lighter hand
-        ("ur10e", 1.0, 1.53, 0.0),  # 2.73, 2.98 and 2.81 N·m at 0.3 rad/s, of 2.01, 1.72 and 1.82
-        ("ur16e", 1.0, 1.53, 0.0),
+        ("ur5e", 1.0, (1.0, 1.0, 1.0), 0.0),
+        ("ur5e-noisy-sensor", 1.0, (1.0, 1.0, 1.0), 0.0),
+        ("ur5e-without-sensor", 1.0, (1.0, 1.0, 1.0), 2.2),  # 0.1 mrad of the encoder times 22 kN·m/rad of the shoulder
+        ("ur3e", 0.6, (1.0, 1.0, 1.0), 0.0),  # 3 of 5 kg; a light arm does not get a lighter hand
+        # 2.73, 2.98 and 2.81 N·m in the wrist at 0.3 rad/s, of 2.01, 1.72 and 1.82; longer levers than a UR16e
+        ("ur10e", 1.0, (1.13, 1.0, 1.54), 0.0),
+        ("ur16e", 1.0, (1.59, 1.31, 1.54), 0.0),
     ],
 )
-def test_what_an_arm_can_be_asked_for_follows_from_its_numbers(arm: str, strength: float, wrist: float, missed: float) -> None:
-    known = arms.strength(arm), arms.wrist_friction(arm, 0.3), arms.missed(arm)
-    assert known == pytest.approx((strength, wrist, missed), abs=0.01)
+def test_what_an_arm_can_be_asked_for_follows_from_its_numbers(
+    arm: str, strength: float, rubs: tuple[float, float, float], missed: float
+) -> None:
+    elbow, flange, wrist = arms.rubs(arm, "elbow", 0.1), arms.rubs(arm, "flange", 0.1), arms.rubs(arm, "wrist", 0.3)
+    assert (arms.strength(arm), elbow, flange, wrist, arms.missed(arm)) == pytest.approx((strength, *rubs, missed), abs=0.01)
     bars = [free_drive_forces.allowed(name, usual, arm) for name, _, _, usual in free_drive_forces.FORCES]
     felt = missed / arms.LEVER
-    assert bars == pytest.approx([12.0 + felt, 2.0 * wrist + missed, 30.0 + felt, 15.0 + felt], abs=0.1)
+    assert bars == pytest.approx([12.0 * flange + felt, 2.0 * wrist + missed, 30.0 * elbow + felt, 15.0 * flange + felt])
 
 
 @pytest.mark.parametrize("arm", ["ur5e", "ur5e-without-sensor"])
