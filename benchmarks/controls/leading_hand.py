@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from benchmarks.arms import LEVER, USUAL, load
-from benchmarks.postures import posture
+from benchmarks.postures import REACH, posture
 from pendant.all_settings import Settings, apply
 from pendant.inputs import NOTHING, Button, Inputs
 from pendant.tick.estimate import JointsFeel
@@ -161,11 +161,14 @@ def directions() -> Array:
 
 
 def elbow_directions(hand: Hand) -> Array:
-    """Both ways the elbow can go: about the shoulder and, unless it is within `LEVER` of its axis, about the base (k, 3)."""
+    """Both ways the elbow can go: about the shoulder and, unless it is too near its axis, about the base (k, 3).
+
+    That is within `LEVER`, which goes with the arm's reach as postures do.
+    """
     elbow = hand.place("elbow") - np.array([0.0, 0.0, hand.simulation.arm.chain.d[0]])
     round_base = np.cross([0.0, 0.0, 1.0], elbow)
     up = np.cross(round_base, elbow)
     axes = [up / np.linalg.norm(up)]
-    if float(np.linalg.norm(round_base)) > LEVER:
+    if float(np.linalg.norm(round_base)) > LEVER * hand.simulation.arm.reach / REACH:
         axes.append(round_base / np.linalg.norm(round_base))
     return np.array([sign * row for row in axes for sign in (1.0, -1.0)])
