@@ -1,14 +1,17 @@
 """Drop: payloads of 0.5 to 5 kg fall off an arm at rest or guided; and hands that grab, snatch and let go suddenly.
 
-A grab rises in 10 to 50 ms, as a hand's does; a let-go takes no time at all. Truth is read for scoring alone.
+A grab rises in 10 to 50 ms, as a hand's does; a let-go takes no time at all. And a hand comes to carry a payload's weight, the
+gripper opens, and the hand takes the payload away: nothing that is measured changes in that moment. Truth is read for scoring
+alone.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.arms import heaviest, senses, strength
-from benchmarks.common import Report, main, spread
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.hold import IDLE, enter, flange
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from benchmarks.use import free_way
@@ -18,6 +21,9 @@ from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 from sim.plant.changes import DropPayload
 from sim.plant.touch import Pull, Push, Touch
+from sim.simulation import Simulation
+
+Array = NDArray[np.float64]
 
 LONG = apply(SETTINGS, {"free_drive.period": 10.0})
 PACE = 0.25  # [m/s] of the hand that guides
@@ -60,8 +66,6 @@ def measure_drop(drop: Drop) -> Fall:
     device = simulation(drop.case, settings)
     way = free_way(device, np.random.default_rng([drop.case.seed, drop.case.number, 9])) if drop.guided else None
     entered = enter(device)
-    up = -np.array(device.plant.model.opt.gravity)
-    up /= np.linalg.norm(up)
     target, pace = flange(device) / 1000.0, 0.0
     before, speed = flange(device), np.zeros(3)
 
@@ -77,10 +81,15 @@ def measure_drop(drop: Drop) -> Fall:
         device.tick(Wishes(IDLE.inputs, touches(), ()))
         now = flange(device)
         speed, before = (now - before) * 0.5, now
-    start, delay, highest, mode = before, float("inf"), 0.0, Mode.FREE_DRIVE
-    noticed = False
+    # the hand that guided lets go with the drop: it has nothing to hold on to
+    return fall(device, drop, entered, speed)
+
+
+def fall(device: Simulation, drop: Drop, entered: bool, speed: Array) -> Fall:
+    """The payload falls, and nobody touches the arm, whose flange goes at that speed (3,) [m/s]."""
+    start, up = flange(device), upward(device)
+    delay, highest, mode, noticed = float("inf"), 0.0, Mode.FREE_DRIVE, False
     for tick in range(1500):
-        # the hand that guided lets go with the drop: it has nothing to hold on to
         decision = device.tick(Wishes(IDLE.inputs, (), (DropPayload(),) if tick == 0 else ()))
         mode = decision.mode
         noticed = noticed or any(event.kind is Kind.STOPPED_PAYLOAD for event in decision.events)
@@ -90,6 +99,26 @@ def measure_drop(drop: Drop) -> Fall:
     own = max(float(speed @ up), 0.0)
     stopping = 1000.0 * own * 0.06  # [mm] what a stop from that speed takes anyway: 15 mm from 250 mm/s
     return Fall(drop, entered, float(np.linalg.norm(speed)), delay, highest - stopping, mode is not Mode.FREE_DRIVE, noticed)
+
+
+def upward(device: Simulation) -> Array:
+    """Against gravity (3,), in W."""
+    up = -np.array(device.plant.model.opt.gravity)
+    return up / np.linalg.norm(up)
+
+
+def measure_taken(case: Case) -> Fall:
+    """A hand comes to carry the payload, and takes it away after another 0.3 s; entered is an arm that is still free then."""
+    device = simulation(case, LONG)
+    enter(device)
+    weight = 9.81 * case.true * float(np.random.default_rng([case.seed, case.number, 13]).uniform(0.9, 1.1)) * upward(device)
+    before, speed, mode = flange(device), np.zeros(3), Mode.TEACH
+    for tick in range(400):
+        push = Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 250.0, 1.0) * weight).tolist()))
+        mode = device.tick(Wishes(IDLE.inputs, (push,), ())).mode
+        now = flange(device)
+        speed, before = (now - before) * 0.5, now
+    return fall(device, Drop(case, True), mode is Mode.FREE_DRIVE, speed)
 
 
 def measure_hands(case: Case) -> Touched:
@@ -154,6 +183,11 @@ def measure(report: Report) -> None:
     for f in sorted(falls, key=lambda f: -f.rise)[:4]:
         how = "guided" if f.drop.guided else "at rest"
         report.notes.append(f"{f.drop.case.true:.1f} kg, {how}, {f.speed:.2f} m/s: STOP {f.delay:.0f} ms, rise {f.rise:.1f} mm")
+    taken_away = [case._replace(true=(mass := float(rng.uniform(2.0, heaviest(arm)))), configured=mass) for case in cases]
+    some = [each for each in spread(measure_taken, taken_away) if each.entered]
+    what = "a hand carries the payload, 2 kg or more, and takes it away"
+    report.share(f"{what}: out of free-drive", sum(each.ended for each in some), len(some))
+    report.row(f"{what}: rise beyond stopping", max((each.rise for each in some), default=NO_CASE), "mm", n=len(some))
     runs = spread(measure_hands, [case._replace(configured=case.true) for case in hands(report)])
     touches = sum(run.touches for run in runs)
     report.share("grabs, snatches and let-goes: STOP", sum(run.stops for run in runs), touches, at_most=0.01)
