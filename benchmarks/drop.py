@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from benchmarks.arms import heaviest, senses, strength
 from benchmarks.common import NO_CASE, Report, main, spread
-from benchmarks.hold import IDLE, enter, flange
+from benchmarks.hold import IDLE, enter, flange, lift
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from benchmarks.use import free_way
 from pendant.all_settings import Settings, apply
@@ -87,7 +87,8 @@ def measure_drop(drop: Drop) -> Fall:
 
 def fall(device: Simulation, drop: Drop, entered: bool, speed: Array) -> Fall:
     """The payload falls, and nobody touches the arm, whose flange goes at that speed (3,) [m/s]."""
-    start, up = flange(device), upward(device)
+    start, up = flange(device), lift(device, 1.0)
+    up /= np.linalg.norm(up)
     delay, highest, mode, noticed = float("inf"), 0.0, Mode.FREE_DRIVE, False
     for tick in range(1500):
         decision = device.tick(Wishes(IDLE.inputs, (), (DropPayload(),) if tick == 0 else ()))
@@ -101,17 +102,11 @@ def fall(device: Simulation, drop: Drop, entered: bool, speed: Array) -> Fall:
     return Fall(drop, entered, float(np.linalg.norm(speed)), delay, highest - stopping, mode is not Mode.FREE_DRIVE, noticed)
 
 
-def upward(device: Simulation) -> Array:
-    """Against gravity (3,), in W."""
-    up = -np.array(device.plant.model.opt.gravity)
-    return up / np.linalg.norm(up)
-
-
 def measure_taken(case: Case) -> Fall:
     """A hand comes to carry the payload, and takes it away after another 0.3 s; entered is an arm that is still free then."""
     device = simulation(case, LONG)
     enter(device)
-    weight = 9.81 * case.true * float(np.random.default_rng([case.seed, case.number, 13]).uniform(0.9, 1.1)) * upward(device)
+    weight = lift(device, case.true) * np.random.default_rng([case.seed, case.number, 13]).uniform(0.9, 1.1)
     before, speed, mode = flange(device), np.zeros(3), Mode.TEACH
     for tick in range(400):
         push = Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 250.0, 1.0) * weight).tolist()))

@@ -62,6 +62,11 @@ def flange(simulation: Simulation) -> np.ndarray:
     return 1000.0 * plant.data.xpos[plant.model.body("flange").id]
 
 
+def lift(simulation: Simulation, mass: float) -> np.ndarray:
+    """The force (3,) in W that carries a mass [N]."""
+    return -np.array(simulation.plant.model.opt.gravity) * mass
+
+
 def enter(device: Simulation, touches: tuple[Touch, ...] = ()) -> bool:
     """Hold the button until free-drive is on, then let go, with hands on the arm."""
     for _ in range(1000):

@@ -18,7 +18,7 @@ from benchmarks.hold import HOLD, IDLE, MOUNTINGS, RELEASE, flange, smallest_sin
 from benchmarks.payload import SETTINGS, Case, draw, simulation
 from pendant.all_settings import Settings, apply
 from pendant.event_table import TABLE
-from pendant.events.event import Event, Kind
+from pendant.events.event import Kind
 from pendant.events.event_row import LEAVING
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import Mode
@@ -92,20 +92,19 @@ def measure_push(push: Guiding) -> Result:
     entered = device.tick(RELEASE).mode is Mode.FREE_DRIVE
     start = flange(device)
     target, pace, way = start / 1000.0, 0.0, 0.0
-    events, fall = list[Event](), False
+    left, caught, fall = list[str](), 0, False
     for tick in range(round(500 * SECONDS)):
         pace = min(pace + 0.002 * 1.0, push.pace)  # a quarter of a second to get going
         target = target + 0.002 * pace * direction
         touch: Touch = Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), push.force)
         if push.steady:
             touch = Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 50.0, 1.0) * push.force * direction).tolist()))
-        now = device.tick(Wishes(IDLE.inputs, (touch,), ())).events
-        events += now
-        if any(TABLE[event.kind].effect in LEAVING for event in now):
-            fall = device.estimate.joints_feel is JointsFeel.FALL
+        for event in device.tick(Wishes(IDLE.inputs, (touch,), ())).events:
+            caught += event.kind is Kind.WALL_REACHED
+            if TABLE[event.kind].effect in LEAVING:
+                left.append(event.kind.value)
+                fall = device.estimate.joints_feel is JointsFeel.FALL
         way = max(way, float(np.linalg.norm(flange(device) - start)))
-    left = [event.kind.value for event in events if TABLE[event.kind].effect in LEAVING]
-    caught = sum(event.kind is Kind.WALL_REACHED for event in events)
     force = device.plant.hands.touched[0][2] if device.plant.hands.touched else np.zeros(3)
     lever = float(np.abs(force @ levers(device, "flange")).max() / max(float(np.linalg.norm(force)), 1e-9))
     return Result(push, entered, way, ", ".join(left), fall, caught, lever)

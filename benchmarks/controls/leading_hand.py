@@ -5,9 +5,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from benchmarks.arms import LEVER, USUAL, load
+from benchmarks.hold import HOLD, IDLE, RELEASE
 from benchmarks.postures import REACH, posture
 from pendant.all_settings import Settings, apply
-from pendant.inputs import NOTHING, Button, Inputs
+from pendant.inputs import NOTHING
 from pendant.tick.estimate import JointsFeel
 from pendant.tick.modes import TICK, TICK_RATE, Mode
 from sim.arm.scenario import Load, Scenario
@@ -17,9 +18,6 @@ from sim.simulation import Simulation
 
 Array = np.ndarray
 CENTRE = (0.0, 0.0, 0.0)
-IDLE = Wishes(NOTHING, (), ())
-HOLD = Wishes(Inputs(held=frozenset({Button.FREE_DRIVE})), (), ())
-RELEASE = Wishes(Inputs(released=frozenset({Button.FREE_DRIVE})), (), ())
 PACE, TURN = 0.1, 0.3  # [m/s], [rad/s]
 TURN_STIFFNESS, TURN_DAMPING = 40.0, 1.0  # of the turning hand [N·m/rad], [N·m·s/rad]
 PAYLOAD = Load(mass=1.0, com=[0.0, 0.0, 0.05])
@@ -34,8 +32,8 @@ class Case(NamedTuple):
 
     number: int
     seed: int
-    helped: bool = True  # friction is taken off
-    over: bool = False  # by 20 % too much
+    helped: bool = True  # with friction compensation
+    over: bool = False  # which compensates 20 % too much
     rest: float = 10.0  # hands off after letting go [s]
     mismatch: Mismatch = "on"
     arm: str = USUAL

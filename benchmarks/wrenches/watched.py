@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.drop import LONG, PACE
-from benchmarks.hold import IDLE, enter, flange
+from benchmarks.hold import IDLE, enter, flange, lift
 from benchmarks.payload import Case, simulation
 from benchmarks.use import free_way
 from pendant.all_settings import Settings, apply
@@ -96,8 +96,7 @@ def measure_fall(fall: Fall) -> list[Seen]:
         return []
     rng = np.random.default_rng([case.seed, case.number, 9])
     way = free_way(device, rng) if how in ("guided", "hand stays") else None
-    up = -np.array(device.plant.model.opt.gravity)
-    lift = up * case.true * rng.uniform(0.97, 1.03)
+    weight = lift(device, case.true) * rng.uniform(0.97, 1.03)
     target, pace = flange(device) / 1000.0, 0.0
 
     def touches(tick: int) -> tuple[Touch, ...]:
@@ -107,7 +106,7 @@ def measure_fall(fall: Fall) -> list[Seen]:
             target = target + 0.002 * pace * way
             return (Pull("flange", (0.0, 0.0, 0.0), tuple(target.tolist()), 40.0),)
         if how == "carried":
-            return (Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 50, 1.0) * lift).tolist())),)
+            return (Push("flange", (0.0, 0.0, 0.0), tuple((min(tick / 50, 1.0) * weight).tolist())),)
         return ()
 
     if not all(both.tick(touches(tick)) for tick in range(100 if how == "rest" else 300)):
