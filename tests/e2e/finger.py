@@ -69,9 +69,33 @@ class Finger(Mouse):
         """Press and lift on a control."""
         control.tap()
 
+    def flick(self, at: Point, up: float) -> None:
+        """Press at a place, slide up by so many pixels in 0.2 s, lift: whatever the page takes to answer.
+
+        A finger that waits for a busy page rests for longer than half a second: that is a long press, and scrolls nothing.
+        """
+        x, y = at
+        steps = 12
+        self._start("touchStart", at)
+        for step in range(1, steps + 1):
+            self._page.wait_for_timeout(16)
+            self._start("touchMove", (x, y - up * step / steps))
+        self._send("touchEnd")
+
     def _send(self, kind: str, *points: Point) -> None:
-        touched: list[dict[str, Any]] = [{"x": x, "y": y} for x, y in points]
-        self._driver.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touched})
+        self._driver.send(TOUCH, _touch(kind, *points))
+
+    def _start(self, kind: str, *points: Point) -> None:
+        """The same, and the page's answer is not waited for, for which Playwright has no call."""
+        driver: Any = self._driver
+        driver._loop.create_task(driver._impl_obj.send(TOUCH, _touch(kind, *points), None))
+
+
+TOUCH = "Input.dispatchTouchEvent"
+
+
+def _touch(kind: str, *points: Point) -> dict[str, Any]:
+    return {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]}
 
 
 _pointers: WeakKeyDictionary[Page, Mouse] = WeakKeyDictionary()

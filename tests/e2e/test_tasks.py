@@ -12,7 +12,7 @@ from sim.arm.frames import matrix_from_quaternion
 from sim.arm.scenario import BoxObject
 from sim.simulation import Simulation
 from tests.e2e.cell import SETTINGS, Cell
-from tests.e2e.finger import middle, pointer, tap
+from tests.e2e.finger import Finger, middle, pointer, tap
 
 pytestmark = pytest.mark.e2e
 Visit = Callable[..., Page]
@@ -187,11 +187,7 @@ def test_a_finger_that_scrolls_from_a_jog_button_moves_nothing_and_the_next_pres
     page = visit(820, 1180)
     tap(page.get_by_role("tab", name="Jog"))
     button = page.get_by_role("button", name="Shoulder −", exact=True)
-    at, hand = middle(button), pointer(page)
-    hand.down(at)
-    hand.move((at[0], at[1] - 60.0))
-    hand.move((at[0], at[1] - 120.0))
-    hand.up()
+    Finger(page).flick(middle(button), 120.0)
     page.wait_for_function("[...document.querySelectorAll('*')].some(one => one.scrollTop > 40)")
     cell.pass_time(0.6)
     assert not cell.happened(Kind.JOG_STARTED)
