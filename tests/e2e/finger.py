@@ -70,7 +70,7 @@ class Finger(Mouse):
         control.tap()
 
     def flick(self, at: Point, up: float) -> None:
-        """Press at a place, slide up by so many pixels in 0.2 s, lift: whatever the page takes to answer.
+        """Press at a place, slide up by so many pixels, lift, faster than a page can draw: whatever it takes to answer.
 
         A finger that waits for a busy page rests for longer than half a second: that is a long press, and scrolls nothing.
         """
@@ -78,7 +78,6 @@ class Finger(Mouse):
         steps = 12
         self._start("touchStart", at)
         for step in range(1, steps + 1):
-            self._page.wait_for_timeout(16)
             self._start("touchMove", (x, y - up * step / steps))
         self._send("touchEnd")
 
