@@ -188,7 +188,8 @@ def test_a_finger_that_scrolls_from_a_jog_button_moves_nothing_and_the_next_pres
     tap(page.get_by_role("tab", name="Jog"))
     button = page.get_by_role("button", name="Shoulder −", exact=True)
     button.tap(trial=True)  # waits until it stays where it is
-    hand = Finger(page)
+    hand = pointer(page)
+    assert isinstance(hand, Finger)
     for _ in range(PRESSES):
         hand.flick(middle(button), 120.0)
         cell.pass_time(2.0)
