@@ -22,6 +22,10 @@ hundredths of a newton metre. So whoever touches a link is told by a far smaller
 another one, so nothing helps a motion that follows. But a joint whose torque changed by more than what the model leaves on a
 moving arm was touched: what it feels is the hand's for a while, and pays for the motion.
 
+Both may have a hand in them: one that holds the arm in its pauses, for seconds. Once it has let go, both tell its torque the
+other way round, as that of a new hand, which would be helped as a whole. So the longer a joint may have been held, the less of a
+change is certain: at last only what no error explains.
+
 What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
 believed whichever of both says that it leads the arm.
 """
@@ -57,8 +61,8 @@ class LinkHand:
 
     Attributes:
         torque: of a hand on a link (n,) [N·m]; zeros where errors may be all that is felt, and was lately.
-        certain: what of it a hand makes for certain in this tick (n,) [N·m]: a change against what was felt lately as a whole, of
-            the change since entry what no error explains.
+        certain: what of it a hand makes for certain in this tick (n,) [N·m]: of a change against what was felt lately the whole,
+            or what no error explains if a hand may have been felt then; of the change since entry what no error explains.
         force: the force (3,) at the flange, in B, that would make these torques best [N].
         touch: the same of what the joints of a standing arm feel, beside what they felt lately [N].
 
@@ -78,6 +82,7 @@ class LinkHand:
             lasts=f"{arm.n}i8",  # ticks for which who was felt by a joint may be there still
             left=(3, arm.n),  # what errors do not explain as far as they are known, against each of these [N·m]
             sure=(3, arm.n),  # what of it they do not explain at all
+            held=(arm.n,),  # share of what was felt before in which who is felt by a joint may have been there
             torque=(arm.n,),
             certain=(arm.n,),
             force=(3,),
@@ -91,7 +96,7 @@ class LinkHand:
     def forget(self) -> None:
         """Free-drive is to begin, or the sensor is out: nothing is felt."""
         self._own["ticks"], self._own["lasts"], self._own["stood"] = 0, 0, 0
-        self.torque[:], self.certain[:], self.force[:], self.touch[:] = 0.0, 0.0, 0.0, 0.0
+        self.torque[:], self.certain[:], self.force[:], self.touch[:], self._own["held"] = 0.0, 0.0, 0.0, 0.0, 0.0
 
     def update(self, bias: tuple[float, ...], qd: Array, by_deflection: NDArray[np.bool_]) -> None:
         """One tick.
@@ -122,7 +127,7 @@ def _update(memory, known, model, told) -> None:
     lately, stands = False, True
     for i in range(qd.size):
         new = changed and own.sure[LATELY, i] != 0.0 and own.sure[BEFORE, i] != 0.0
-        own.certain[i] = own.left[LATELY, i] if new else 0.0
+        own.certain[i] = _certain(own, i) if new else 0.0
         lately = lately or new
         own.lasts[i] = LASTS if new or own.sure[ENTRY, i] != 0.0 else max(own.lasts[i] - 1, 0)
         if own.lasts[i] == 0:
@@ -132,6 +137,8 @@ def _update(memory, known, model, told) -> None:
         _follow(own.felt[BEFORE], errors.felt, 1.0 / LONG)
         for k in range(ZERO):
             own.bias[BEFORE, k] += (bias[k] - own.bias[BEFORE, k]) / LONG
+        for i in range(qd.size):
+            own.held[i] += ((1.0 if own.lasts[i] > 0 else 0.0) - own.held[i]) / LONG
         if stands or not lately:
             _follow(own.felt[LATELY], errors.felt, FOLLOW)
             _keep(own, bias, LATELY)
@@ -146,6 +153,14 @@ def _update(memory, known, model, told) -> None:
     else:
         own.force[:] = 0.0
     _touch(own, jacobian, (errors.felt, known[0][0].floor), (by_deflection, stands))
+
+
+@kernel
+def _certain(own, i) -> float:
+    """What of a joint's change a hand makes for certain [N·m]: the whole; if it may have been held what no error explains."""
+    whole = own.left[LATELY, i]
+    least = min(abs(own.sure[LATELY, i]), abs(own.sure[BEFORE, i]))
+    return np.copysign(abs(whole) - own.held[i] * (abs(whole) - least), whole)
 
 
 @kernel

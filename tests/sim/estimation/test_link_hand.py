@@ -200,6 +200,35 @@ def test_a_hand_that_rested_on_the_arm_seems_to_pull_the_other_way_to_nobody() -
     assert joints.hand.certain[1] == pytest.approx(3.0 * LEAST, rel=0.05)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("held", [0.0, 0.4, 1.0])
+def test_the_longer_a_joint_may_have_been_held_the_less_of_a_change_is_certain(held: float, way: float) -> None:
+    """A hand that held on in its pauses has gone, and seems to push the other way. Errors explain most of it."""
+    joints = Joints().begun()
+    before = joints.hand._own["felt"]
+    before[LATELY, 1, 0], before[BEFORE, 1, 0] = way * 1.2 * LEAST, way * 1.1 * LEAST
+    joints.hand._own["held"][1] = held
+    torque = joints.tick()
+    assert torque == pytest.approx(-way * 1.2 * LEAST * np.eye(N)[1]), "it is felt as a whole"
+    assert joints.hand.certain[1] == pytest.approx(-way * (1.2 - held * (1.2 - 0.1)) * LEAST)
+
+
+@pytest.mark.parametrize("away", [True, False])
+def test_for_how_long_a_joint_may_have_been_held_follows_as_what_was_felt_before_does(away: bool) -> None:
+    """Who is felt against entry is not followed, so that no more of a hand is in it."""
+    joints = Joints().moving().begun()
+    joints.hand._own["lasts"][2] = 2 * LONG
+    joints.felt[0, 0] = 1.5 * LEAST * away
+    joints.tick(LONG)
+    assert joints.hand._own["held"] == pytest.approx((1.0 - np.exp(-1.0)) * np.eye(N)[2] * (not away), rel=1e-3)
+    joints.felt[0, 0] = 0.0
+    joints.hand._own["lasts"], joints.hand._own["held"] = 0, 0.5
+    joints.tick(LONG)
+    assert joints.hand._own["held"] == pytest.approx(0.5 * np.exp(-1.0), rel=1e-3)
+    joints.hand.forget()
+    assert not joints.hand._own["held"].any()
+
+
 @pytest.mark.parametrize("k", range(ZERO))
 def test_what_is_followed_of_the_sensors_bias_is_so_before_as_well(k: int) -> None:
     joints = Joints().begun()
