@@ -17,14 +17,14 @@ is forgotten once it has gone. But what was felt lately may have been a hand tha
 other way once it has gone. So a change is a hand's only if it is one against what was felt before, too, which follows so slowly
 that no hand holds still for as long.
 
+Yet a hand that holds the arm in its pauses, for seconds, is in both. Once it has let go, both tell its torque the other way
+round, as that of a new hand, which would be helped as a whole. So the longer a joint may have been held, the less of a change is
+certain: at last only what no error explains.
+
 On an arm that stands for longer, gears, friction and posture change nothing: within a second the torques keep within some
 hundredths of a newton metre. So whoever touches a link is told by a far smaller change. As soon as a joint moves its friction is
 another one, so nothing helps a motion that follows. But a joint whose torque changed by more than what the model leaves on a
 moving arm was touched: what it feels is the hand's for a while, and pays for the motion.
-
-Both may have a hand in them: one that holds the arm in its pauses, for seconds. Once it has let go, both tell its torque the
-other way round, as that of a new hand, which would be helped as a whole. So the longer a joint may have been held, the less of a
-change is certain: at last only what no error explains.
 
 What was felt lately tells better than entry. What a joint felt of a hand a moment ago may still be one's that turns round: it is
 believed whichever of both says that it leads the arm.
