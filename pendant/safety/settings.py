@@ -16,7 +16,7 @@ class FollowingSettings(Section, frozen=True, forbid_unknown_fields=True, kw_onl
     joint: Annotated[
         float,
         _number(0.2, 1.0, "", "RL-1", text="largest error of a joint, as a share of that at which it gives its rated torque"),
-    ] = 0.5
+    ] = 0.6
     tool: Annotated[
         float, _number(0.005, 0.1, "m", "RL-1", text="largest distance of the tool centre point from where it should be")
     ] = 0.025

@@ -44,7 +44,7 @@ SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
 GONE = 0.01  # [N·m]
 HELD = 0.25
-"""Share of the largest following error from which on the arm is not at the reference; what begins then begins at the arm."""
+"""Share of the largest following error from which on the arm is not at the reference, and a stop begins at the arm."""
 
 ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
@@ -122,7 +122,7 @@ class References:
         commanded, self.refusal, self.commanding = self.commanding, "", False
         begins = law is Law.FOLLOW and decision.move is not self._move
         ends = law is not Law.FOLLOW and self._law is Law.FOLLOW
-        self.caught_up = self._lost(estimate, law, ends or (begins and not self._renews(decision.move)))
+        self.caught_up = self._lost(estimate, law, ends or (begins and isinstance(decision.move, GentleStop | RunScript)))
         self.fresh = self.now is None or self._law is Law.FREE or self.caught_up
         if self.now is None or self.fresh:
             self._restart(estimate, known=self.caught_up or commanded)
@@ -156,29 +156,21 @@ class References:
         self._law = law
         return answer
 
-    def _lost(self, estimate: Estimate, law: Law, turns: bool) -> bool:
-        """Whether the arm is not where the reference is, so that what begins in this tick begins at the arm.
+    def _lost(self, estimate: Estimate, law: Law, ends: bool) -> bool:
+        """Whether the arm is not where the reference is, so that a stop that begins in this tick begins at the arm.
 
-        No stop and no motion then goes on from where the arm never came; and an arm that is pushed away while it is stopped is
-        braked from where it is, not drawn back (RL-2).
+        No stop then goes on from where the arm never came; and an arm that is pushed away while it is stopped is braked from where
+        it is, not drawn back (RL-2).
 
         Args:
+            estimate: of this tick.
             law: of this tick.
-            turns: a motion ends in this tick, or another one begins.
+            ends: a motion ends in this tick.
         """
         if self.now is None or self._law is Law.FREE:
             return False
         share = estimate.following.share
-        return share > 1.0 if law is Law.BRAKE and not turns else turns and share > HELD
-
-    def _renews(self, move: Move | None) -> bool:
-        """A stream goes on with another target."""
-        before = self._motion
-        if isinstance(move, ServoJoints):
-            return isinstance(before, ServoStream)
-        if isinstance(move, SpeedJoints):
-            return isinstance(before, SpeedStream)
-        return isinstance(move, SpeedTool | ServoTool) and isinstance(before, ToolStream)
+        return share > HELD if ends else law is Law.BRAKE and share > 1.0
 
     def _restart(self, estimate: Estimate, *, known: bool) -> None:
         """Come to rest from where the arm is, as fast as it is; nothing is left of what was wanted before.
