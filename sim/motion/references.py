@@ -159,8 +159,8 @@ class References:
     def _lost(self, estimate: Estimate, law: Law, ends: bool) -> bool:
         """Whether the arm is not where the reference is, so that a stop that begins in this tick begins at the arm.
 
-        No stop then goes on from where the arm never came; and an arm that is pushed away while it is stopped is braked from where
-        it is, not drawn back (RL-2).
+        No stop then goes on from where the arm never came; and an arm that is pushed away while it is stopped is braked from
+        where it is, not drawn back (RL-2).
 
         Args:
             estimate: of this tick.
