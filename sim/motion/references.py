@@ -22,9 +22,10 @@ from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunSc
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
+from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
-from sim.motion.force_move import ForceTrajectory
+from sim.motion.force_move import ForceTrajectory, pushed_on
 from sim.motion.jog import JogTrajectory, at_manual_speed
 from sim.motion.line import Line
 from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, shaken, stop_time
@@ -40,8 +41,6 @@ Array = NDArray[np.float64]
 SETTLE_TICKS = 300  # of the reference after a stop: some swings of the lowest mode
 STANDING = 0.02  # [rad/s]
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
-PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
-GONE = 0.01  # [N·m]
 ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
 
@@ -54,6 +53,7 @@ class References:
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
+        keeper: keeps it in the workspace.
         commanding: in this tick the joints had torques that a script commands.
         push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
@@ -65,6 +65,7 @@ class References:
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
+        self.keeper = WorkspaceKeeper(dynamics, tcp, R_FT, self._strength.stopping())
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -95,9 +96,11 @@ class References:
             return None
         self.skip()
         self.now = Reference(estimate.q.copy(), estimate.qd.copy(), self._standing)
+        begins = not isinstance(self._move, DirectTorque)
         self._move, self._compliance, self._leaving, self.push = move, None, False, None
         self.move_done, self.commanding = move.id, True
-        self.refusal = self._strength.broken(self.now, self._limits)
+        self.keeper.take(decision, estimate.q, begins=begins)
+        self.refusal = self._strength.broken(self.now, self._limits) or self.keeper.watch(estimate)
         return move
 
     @property
@@ -124,6 +127,7 @@ class References:
         begins = law is Law.FOLLOW and decision.move is not self._move
         if self._compliance is not None and (law is not Law.FOLLOW or decision.force is None):
             self._compliance, begins = None, law is Law.FOLLOW  # the motion goes on from where the force has brought the tool
+        self.keeper.take(decision, estimate.q if self.now is None else self.now.q, begins=begins)
         if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
@@ -131,11 +135,12 @@ class References:
         before = self.now
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
-            self.refusal = self._motion.problem
+            self.refusal = self._motion.problem or self.keeper.watch(estimate)
         motion = self.now = self._advance(self._motion, decision, begins)
         if law is Law.FOLLOW and decision.force is not None:
             self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
-        self.push = self._pushing(self._motion, self.now)
+        self.refusal = self.refusal or self.keeper.problem
+        self.push = pushed_on(self._motion, None if self.fresh else self.push, bool(self.now.qd.any()))
         answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
         self._past.append(answer)
         if law is Law.FOLLOW and self._move is not None and not self.refusal:
@@ -147,28 +152,21 @@ class References:
 
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
+        keeper = self.keeper if decision.force is None else None
         if isinstance(motion, Planned | Blended):
             limits = at_manual_speed(decision.move, decision.speed_limits)
             if begins:
                 moving = isinstance(motion, Blended | ProcessTrajectory) and motion.moving
                 self._pace.begin(motion, limits, decision.speed, moving=moving)
-            return motion.step(self._pace.step(motion, limits, decision.speed))
+            rate = self._pace.step(motion, limits, decision.speed)
+            self._pace.rate = rate if keeper is None else keeper.rate(motion, rate)
+            return motion.step(self._pace.rate)
         if isinstance(motion, JogTrajectory | JointStream):
-            reference = motion.step(decision.speed, decision.speed_limits)
+            reference = motion.step(decision.speed, decision.speed_limits, keeper)
             self.refusal = self.refusal or motion.problem
             return reference
         assert isinstance(motion, Stop | ForceTrajectory)
         return motion.step()
-
-    def _pushing(self, motion: Motion, now: Reference) -> Array | None:
-        """Torque (n,) with which the joints push in this tick [N·m]."""
-        if isinstance(motion, ForceTrajectory):
-            return motion.push
-        if self.fresh or self.push is None:
-            return None
-        if now.qd.any():  # on the next way the integral of the position takes it over
-            return None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
-        return self.push
 
     def _comply(
         self, force: ForceMode, motion: Reference, before: Reference | None, *, estimate: Estimate, decision: Decision
@@ -183,7 +181,7 @@ class References:
                 return motion
         self._compliance.follow(motion)
         self._compliance.feel(estimate, force)
-        reference = self._compliance.step(1.0, decision.speed_limits)
+        reference = self._compliance.step(1.0, decision.speed_limits, self.keeper)
         self.refusal = self.refusal or self._compliance.problem
         return reference
 
@@ -244,7 +242,7 @@ class References:
             speed = np.abs(now.qd).max()
             if move.of == "tool":
                 speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
-            length = max(length, 0.5 * np.pi * float(speed) / move.deceleration)
+            length = self.keeper.stop_length(now, max(length, 0.5 * np.pi * float(speed) / move.deceleration))
         return Stop(now.q, now.qd, length)
 
     def _line(self, q: Array, move: LinearMove) -> LinearTrajectory | ProcessTrajectory:
