@@ -83,7 +83,11 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
     Kind.MOTION_AT_WALL: EventRow(
-        Effect.INFO, Severity.NOTICE, "Stopped at {wall}: {part}", "The motion leads out. Back is {way} of the base.", WALL
+        Effect.INFO,
+        Severity.NOTICE,
+        "Stopped at {wall}: {part}",
+        "At {px:.3f}, {py:.3f}, {pz:.3f} m, {distance:.1f} mm out. Back is {way} of the base.",
+        WALL,
     ),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
     Kind.JOG_ENDED: info("Jogging {what} ended after {moved}", "{reason}.", ("what", "moved", "reason")),
