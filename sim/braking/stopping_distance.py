@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 LOOKS = (0.25, 0.5, 0.75, 1.0)
 """Shares of the way that are looked at: whatever lies ahead comes past each of them."""
 
-REFINED = 3
-"""Times that the place of a border on the way is refined (regula falsi)."""
+REFINED = 5
+"""Times that the place of a border on the way is refined (regula falsi, the Illinois way)."""
 
 
 class StoppingDistance:
@@ -73,7 +73,7 @@ def free_way(out: Callable[[Array], float], q: Array, qd: Array, way: float) -> 
     for look in LOOKS:
         value = out(q + look * way * qd)
         if not value <= 0.0:
-            return _crossing(out, (q, qd), (at, inside), (look * way, value))
+            return _crossing(out, (q, qd), (at, inside), (look * way, value)) if value > 0.0 else at
         at, inside = look * way, value
     return way
 
@@ -88,7 +88,7 @@ def _crossing(
         middle = a + (b - a) * at_a / (at_a - at_b)
         value = out(q + middle * qd)
         if not value <= 0.0:
-            b, at_b = middle, value
+            b, at_b, at_a = middle, value, 0.5 * at_a
         else:
-            a, at_a = middle, value
+            a, at_a, at_b = middle, value, 0.5 * at_b
     return a
