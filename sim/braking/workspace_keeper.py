@@ -41,7 +41,7 @@ class WorkspaceKeeper:
         self._dynamics, self._tcp, self._R_FT, self._stopping = dynamics, tcp, R_FT, stopping
         self._workspace: Workspace | None = None
         self._q = np.zeros(0)  # where the arm is led (n,)
-        self._following = False  # a motion was followed in the last tick
+        self._follows = False  # a motion was followed in the last tick
         self._limits = OutwardLimits(0)
         self._look: LookAhead | None = None
         self._levers = np.zeros(0)
@@ -49,18 +49,18 @@ class WorkspaceKeeper:
 
     def take(self, decision: Decision, q: Array, *, begins: bool) -> None:
         """One tick begins, the arm being led at angles (n,); `begins`: so does a motion."""
-        going_on = self._following and not (q == self._q).all()
-        self._q, self._following = q, decision.law is _FOLLOW
         space = decision.workspace
-        if self._following and not begins and space is self._workspace:
+        if space is None and self._workspace is None:
+            return
+        follows = decision.law is _FOLLOW
+        going_on = self._follows and space is self._workspace and not (q == self._q).all()
+        self._q, self._follows = q, follows
+        if follows and not begins and space is self._workspace:
             return
         self._look, self.problem, self.wall = None, "", ""
-        if not self._following:
-            return
         if space is not self._workspace:
             self._workspace, self._limits = space, OutwardLimits(0 if space is None else len(space.areas))
-            going_on = False
-        if space is not None and not going_on:  # else it is the same way on which only the command is new
+        if space is not None and follows and not going_on:  # else it is the same way on which only the command is new
             self._limits.begin(self._distances(q))
             self._levers = self._dynamics.levers(float(np.linalg.norm(self._tcp)))
 

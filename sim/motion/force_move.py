@@ -93,16 +93,16 @@ class ForceTrajectory:
         return Reference(self._q, qd, qdd)
 
 
-def pushed_on(motion: Motion, push: Array | None, moves: bool) -> Array | None:
+def pushed_on(motion: Motion, push: Array | None, now: Reference) -> Array | None:
     """Torque (n,) with which the joints push in this tick [N·m], None for none.
 
     Args:
         motion: that is followed.
         push: of the tick before (n,).
-        moves: it is on a way; on the next one after a force the integral of the position takes the torque over.
+        now: the reference; on the next way after a force the integral of the position takes the torque over.
     """
     if isinstance(motion, ForceTrajectory):
         return motion.push
-    if push is None or not moves:
+    if push is None or not now.qd.any():
         return push
     return None if float(np.abs(push).max()) < GONE else PUSH_DECAY * push

@@ -140,7 +140,7 @@ class References:
         if law is Law.FOLLOW and decision.force is not None:
             self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
         self.refusal = self.refusal or self.keeper.problem
-        self.push = pushed_on(self._motion, None if self.fresh else self.push, bool(self.now.qd.any()))
+        self.push = pushed_on(self._motion, None if self.fresh else self.push, self.now)
         answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
         self._past.append(answer)
         if law is Law.FOLLOW and self._move is not None and not self.refusal:

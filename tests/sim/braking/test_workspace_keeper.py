@@ -199,10 +199,10 @@ def test_an_arm_that_begins_beyond_is_not_trapped() -> None:
     course.play(course.line(z=-0.05))
     assert "108 mm beyond floor" in str(course.last(Kind.PROGRAM_FAILED).values["reason"])
     assert min(course.heights) > HEIGHT - 0.005
-    course.jog(JogMove(frame="base", axis=2, sign=1))
-    assert course.heights[-1] > above + 0.1
+    course.jog(JogMove(frame="base", axis=2, sign=1), 1.5)
+    assert course.heights[-1] > above + 0.05
     course.heights.clear()
-    stopped_at_the_floor(course.jog(JogMove(frame="base", axis=2, sign=-1)), above)
+    stopped_at_the_floor(course.jog(JogMove(frame="base", axis=2, sign=-1), 4.0), above)
 
 
 def test_an_area_that_moves_with_the_tool_stops_an_arm_that_folds() -> None:
