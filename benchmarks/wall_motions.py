@@ -131,7 +131,7 @@ def draw(report: Report, count: int) -> list[Case]:
 
 def measure(report: Report) -> None:
     """Fill the report."""
-    found = spread(begins_twice, draw(report, 1000 if report.options.full else 200))
+    found = spread(begins_twice, draw(report, 200 if report.options.full else 40))
     results = [each for each in found if each.area is not None]
     report.row("motions with an area", len(results), "", n=len(found))
     inside = [r for r in results if not r.case.way.startswith("begins beyond")]

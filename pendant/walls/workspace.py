@@ -146,12 +146,9 @@ def measures(flange: Vector, gravity: Vector, load: float) -> dict[Measure, floa
 
 
 def told(near: Nearby) -> str:
-    """Why a motion ends there, in words: which part, which area, where, and the way back."""
-    x, y, z = (1000.0 * value for value in near.p)
+    """Why a motion ends there, in words: which part, which area, and the way back."""
     out = f"{1000.0 * near.distance:.0f} mm beyond" if near.distance > 2.0 * TOLERANCE else "at the border of"
-    return (
-        f"{near.border.part} {out} {near.border.name}, at {x:.0f}, {y:.0f}, {z:.0f} mm; back is {way(near.outward)} of the base"
-    )
+    return f"{near.border.part} {out} {near.border.name}; back is {way(near.outward)} of the base"
 
 
 def way(outward: Vector) -> str:

@@ -134,11 +134,11 @@ def test_a_look_ahead_changes_nothing() -> None:
     assert ahead.place == [0.01]
 
 
-def test_what_is_told_says_part_area_place_and_the_way_back() -> None:
+def test_what_is_told_says_part_area_and_the_way_back() -> None:
     near = space(FLOOR).nearby(0, points(tcp=(0.3126, -0.1, -0.1004)))
-    assert told(near) == "tcp at the border of floor, at 313, -100, -100 mm; back is +z of the base"
+    assert told(near) == "tcp at the border of floor; back is +z of the base"
     near = space(FLOOR).nearby(0, points(tcp=(0.0, 0.0, -0.15)))
-    assert told(near) == "tcp 50 mm beyond floor, at 0, 0, -150 mm; back is +z of the base"
+    assert told(near) == "tcp 50 mm beyond floor; back is +z of the base"
     assert way((0.6, -0.6, 0.3)) == "-x +y"
 
 
