@@ -5,13 +5,14 @@ then with this area and up to two others that it passes. Four arms, four mountin
 every shape, areas that move with the tool, sizes that follow the posture. Truth is read for scoring alone.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
 from app.files.library import load_arm
-from benchmarks.common import Report, main, spread
+from benchmarks.common import NO_CASE, Report, main, spread
 from benchmarks.hold import ARMS, MOUNTINGS
 from benchmarks.postures import posture
 from benchmarks.walled.borders import WANTED, Lay, lay
@@ -31,6 +32,7 @@ WAYS = tuple(WANTED)
 SHARES = (0.5, 0.25, 0.1, 0.075, 0.075)
 """How often each of `WAYS` is drawn."""
 COME = ("comes to it", "begins beyond, goes on")
+AS_WITHOUT = {"passes at 50 mm or more": "passes it", "comes back": "begins beyond, comes back"}
 TIMED = ("script: speedj", "script: speedl")
 """Motions of a script that end by their time, be it that they have slowed down before a border in it."""
 TRIES = 12
@@ -62,7 +64,7 @@ class Result(NamedTuple):
 
 def scenario(rng: np.random.Generator, case: Case) -> tuple[str, Scenario]:
     """An arm, and what it carries."""
-    name = ARMS[case.number % len(ARMS)]
+    name = ARMS[int(rng.integers(len(ARMS)))]
     arm = load_arm(name)
     tool = ToolModel(name="drawn", mass=0.5, com=[0.0, 0.0, 0.05], tcp=[0.02, 0.0, float(rng.uniform(0.05, 0.2))])
     mass = float(rng.uniform(0.0, arm.payload - 0.5))
@@ -134,31 +136,37 @@ def measure(report: Report) -> None:
     found = spread(begins_twice, draw(report, 200 if report.options.full else 40))
     results = [each for each in found if each.area is not None]
     report.row("motions with an area", len(results), "", n=len(found))
-    inside = [r for r in results if not r.case.way.startswith("begins beyond")]
     outside = [r for r in results if r.case.way.startswith("begins beyond")]
-    worst = max(r.beyond for r in inside)
-    report.row("beyond a border, at most", worst, "mm", at_most=BEYOND, n=len(inside))
-    report.row("begun beyond: further out, at most", max(r.beyond for r in outside), "mm", at_most=BEYOND, n=len(outside))
-    for what, ways in (
-        ("passes at 50 mm or more: as without walls", "passes it"),
-        ("comes back: as without walls", "begins beyond, comes back"),
-    ):
-        these = [r for r in results if r.case.way == ways]
-        report.share(what, sum(r.same for r in these), len(these), at_least=1.0)
+    inside = [r for r in results if r not in outside]
+    report.row("beyond a border, at most", largest(r.beyond for r in inside), "mm", at_most=BEYOND, n=len(inside))
+    report.row("begun beyond: further out, at most", largest(r.beyond for r in outside), "mm", at_most=BEYOND, n=len(outside))
+    for what, way in AS_WITHOUT.items():
+        these = [r for r in results if r.case.way == way]
+        report.share(f"{what}: as without walls", sum(r.same for r in these), len(these), at_least=1.0)
     near = [r for r in results if r.case.way == "passes near"]
     report.share("passes nearer: as without walls", sum(r.same for r in near), len(near))
     come = [r for r in results if r.case.way in COME and r.case.what not in TIMED]
     report.share("comes to the border: the end names area and part", sum(r.told for r in come), len(come), at_least=1.0)
     for kind in ("program", "script", "jog"):
-        rests = [r.rests for r in results if r.case.way == "comes to it" and r.told and r.case.what.startswith(kind)]
-        report.row(f"{kind}: stands before the border, median", float(np.median(rests)), "mm", n=len(rests))
-        report.row(f"{kind}: stands before the border, at most", max(rests), "mm", n=len(rests))
+        rests = [r.rests for r in come if r.case.way == COME[0] and r.case.what.startswith(kind)]
+        report.row(f"{kind}: stands before the border, median", float(np.median(rests)) if rests else NO_CASE, "mm", n=len(rests))
+        report.row(f"{kind}: stands before the border, at most", largest(rests), "mm", n=len(rests))
     for r in sorted(results, key=lambda r: -r.beyond)[:5]:
-        report.notes.append(f"{r.beyond:.2f} mm beyond: {r.case.number} {r.arm} {r.case.what}, {r.case.way}, {r.text}")
-    for r in [r for r in results if not r.same and r.case.way in ("passes it", "begins beyond, comes back")][:8]:
-        report.notes.append(f"slowed by {100.0 * r.slowed:.1f} %: {r.case.number} {r.arm} {r.case.what}, {r.case.way}, {r.text}")
+        report.notes.append(f"{r.beyond:.2f} mm beyond: {told_of(r)}")
+    for r in [r for r in results if not r.same and r.case.way in AS_WITHOUT.values()][:8]:
+        report.notes.append(f"slowed by {100.0 * r.slowed:.1f} %: {told_of(r)}")
     for r in [r for r in come if not r.told][:8]:
-        report.notes.append(f"not told: {r.case.number} {r.arm} {r.case.what}, {r.case.way}, {r.text}")
+        report.notes.append(f"not told: {told_of(r)}")
+
+
+def largest(values: Iterable[float]) -> float | str:
+    """The largest of any values."""
+    return max(values, default=NO_CASE)  # pyright: ignore[reportArgumentType]
+
+
+def told_of(r: Result) -> str:
+    """A case in a note."""
+    return f"case {r.case.number}, {r.arm}, {r.case.what}, {r.case.way}: {r.text}"
 
 
 if __name__ == "__main__":
