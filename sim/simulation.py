@@ -18,6 +18,7 @@ from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.control.controller import Controller
+from sim.control.feedback import following_limit
 from sim.estimation.contact_sources import ContactSources
 from sim.estimation.estimator import Estimator
 from sim.exchange.desk import Wishes
@@ -76,7 +77,7 @@ class Simulation:
         self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
-        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
+        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp, following=following_limit(arm))
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
         self.supervisor = Supervisor(

@@ -72,6 +72,7 @@ class Kind(StrEnum):
     RUN_ENABLING = "run_enabling"
     EMERGENCY_STOP = "emergency_stop"
     PROTECTIVE_STOP = "protective_stop"
+    PATH_LEFT = "path_left"
     EMERGENCY_STOP_RELEASED = "emergency_stop_released"
     POWERED_OFF = "powered_off"
     SAFEGUARD_STOP = "safeguard_stop"

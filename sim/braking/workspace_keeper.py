@@ -94,8 +94,9 @@ class WorkspaceKeeper:
 
     def watch(self, estimate: Estimate) -> str:
         """Of joints that no reference leads: why they must brake now, when they can only just stop inside, or ""."""
-        q, qd, stopping = estimate.q, estimate.qd, self._stopping
+        stopping = self._stopping
         if self._workspace is not None:
+            q, qd = estimate.q, estimate.theta_d + stopping.reaction * estimate.theta_dd  # as fast as they are by then
             way = stopping.way(stopping.seconds(q, qd), stopping.reaction)
             if self._free(q, qd, way, self._out(q)) < way:
                 self._tell_ahead(q, qd, way)

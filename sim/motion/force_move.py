@@ -9,7 +9,7 @@ from pendant.program.steps import ApplyForce
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.motion.line import Line
-from sim.motion.moves import Motion, MoveRefused, Reference, check_range
+from sim.motion.moves import MoveRefused, Reference, check_range
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]
@@ -17,8 +17,6 @@ Array = NDArray[np.float64]
 INTEGRAL = 4.0  # of the force that is missing, into the force that the joints push with [1/s]
 BANDWIDTH = 15.0  # of the force that is looked at [Hz]
 FOLLOWING = 0.05  # time in which the line's reference comes after the tool [s]
-PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
-GONE = 0.01  # [N·m]
 STANDS = 2e-5  # slower it does not move: friction fed forward would change its sign with the noise [m/s]
 
 
@@ -91,18 +89,3 @@ class ForceTrajectory:
             self.problem = str(refusal)
         self.push = self._line.torque(self._q, self._size * self._line.way)
         return Reference(self._q, qd, qdd)
-
-
-def pushed_on(motion: Motion, push: Array | None, now: Reference) -> Array | None:
-    """Torque (n,) with which the joints push in this tick [N·m], None for none.
-
-    Args:
-        motion: that is followed.
-        push: of the tick before (n,).
-        now: the reference; on the next way after a force the integral of the position takes the torque over.
-    """
-    if isinstance(motion, ForceTrajectory):
-        return motion.push
-    if push is None or not now.qd.any():
-        return push
-    return None if float(np.abs(push).max()) < GONE else PUSH_DECAY * push
