@@ -151,7 +151,7 @@ class Simulation:
         if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
-        done, refusal = references.move_done, references.refusal
+        told = references.move_done, references.refusal, references.keeper.wall
         decided = self._decision
         before = None if decided is None else decided.law
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
@@ -159,7 +159,7 @@ class Simulation:
         learn = before is _FOLLOW and not references.commanding
         bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
         answered = references.answered
-        estimate = estimator.update(sample, done, refusal, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
+        estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value

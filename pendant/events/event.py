@@ -97,6 +97,7 @@ class Kind(StrEnum):
     PROGRAM_FINISHED = "program_finished"
     PROGRAM_FAILED = "program_failed"
     PROGRAM_TELLS = "program_tells"
+    MOTION_AT_WALL = "motion_at_wall"
     JOG_STARTED = "jog_started"
     JOG_ENDED = "jog_ended"
     JOG_REFUSED = "jog_refused"

@@ -77,6 +77,7 @@ class Estimate:
     v_elbow: float  # speed of the elbow [m/s]
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
+    move_wall: str = ""  # the area at whose border it has stopped that move
     following: FollowingError = ON_PATH  # of the arm against its reference
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
     theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]

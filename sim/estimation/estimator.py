@@ -105,6 +105,7 @@ class Estimator:
         sample: Sample,
         move_done: int,
         move_refused: str,
+        move_wall: str = "",
         *,
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
@@ -112,7 +113,7 @@ class Estimator:
         bias: tuple[float, ...] | None = None,
         unsure: float = 0.0,
     ) -> Estimate:
-        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
+        """Take one tick's measurements; `move_done` and the like as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
         as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
@@ -154,7 +155,7 @@ class Estimator:
         known.joints_valid, known.wrench_valid, known.acceleration_valid = valid, sample.wrench_valid, sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
-        known.move_done, known.move_refused = move_done, move_refused
+        known.move_done, known.move_refused, known.move_wall = move_done, move_refused, move_wall if move_refused else ""
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pendant.haptics import Shake
 from pendant.tick.modes import TICK
+from sim.braking.stopping_distance import StoppingDistance
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import LATENCY
 
@@ -85,6 +86,11 @@ class Strength(NamedTuple):
     dynamics: Dynamics
     rotor: Array  # inertia referred to the output (n,) [kg·m²]
     torque: Array  # limits (n,) [N·m]
+
+    def stopping(self) -> StoppingDistance:
+        """What it takes to come to rest."""
+        dynamics, rotor, torque = self
+        return StoppingDistance(lambda q, qd: stop_time(dynamics, q, qd, rotor=rotor, torque=torque), SHORTEST_STOP, REACTION)
 
     def broken(self, now: Reference, limits: tuple[Array, Array, Array], changing: Array) -> str:
         """Which limit joints that no reference leads have broken, or can no longer keep when they brake; "" for none.

@@ -22,6 +22,7 @@ from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunSc
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
+from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
@@ -60,6 +61,7 @@ class References:
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
+        keeper: keeps it in the workspace.
         commanding: in this tick the joints had torques that a script commands.
         push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
@@ -71,6 +73,7 @@ class References:
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
+        self.keeper = WorkspaceKeeper(dynamics, tcp, R_FT, self._strength.stopping())
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -102,9 +105,11 @@ class References:
             return None
         self.skip()
         self.now = Reference(estimate.q.copy(), estimate.theta_d.copy(), self._standing)
+        begins = not isinstance(self._move, DirectTorque)
         self._move, self._compliance, self._leaving, self.push = move, None, False, None
         self.move_done, self.commanding = move.id, True
-        self.refusal = self._strength.broken(self.now, self._limits, estimate.theta_dd)
+        self.keeper.take(decision, estimate.q, begins=begins)
+        self.refusal = self._strength.broken(self.now, self._limits, estimate.theta_dd) or self.keeper.watch(estimate)
         return move
 
     @property
@@ -133,6 +138,7 @@ class References:
         self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
         if self._compliance is not None and (law is not Law.FOLLOW or decision.force is None):
             self._compliance, begins = None, law is Law.FOLLOW  # the motion goes on from where the force has brought the tool
+        self.keeper.take(decision, estimate.q if self.now is None else self.now.q, begins=begins)
         if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
@@ -140,10 +146,11 @@ class References:
         before = self.now
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
-            self.refusal = self._motion.problem
+            self.refusal = self._motion.problem or self.keeper.watch(estimate)
         motion = self.now = self._advance(self._motion, decision, begins)
         if law is Law.FOLLOW and decision.force is not None:
             self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
+        self.refusal = self.refusal or self.keeper.problem
         self.push = self._pushing(self._motion, self.now)
         answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
         if self.fresh and not self.before:
@@ -195,14 +202,17 @@ class References:
 
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
+        keeper = self.keeper if decision.force is None else None
         if isinstance(motion, Planned | Blended):
             limits = at_manual_speed(decision.move, decision.speed_limits)
             if begins:
                 moving = isinstance(motion, Blended | ProcessTrajectory) and motion.moving
                 self._pace.begin(motion, limits, decision.speed, moving=moving)
-            return motion.step(self._pace.step(motion, limits, decision.speed))
+            rate = self._pace.step(motion, limits, decision.speed)
+            self._pace.rate = rate if keeper is None else keeper.rate(motion, rate)
+            return motion.step(self._pace.rate)
         if isinstance(motion, JogTrajectory | JointStream):
-            reference = motion.step(decision.speed, decision.speed_limits)
+            reference = motion.step(decision.speed, decision.speed_limits, keeper)
             self.refusal = self.refusal or motion.problem
             return reference
         assert isinstance(motion, Stop | ForceTrajectory)
@@ -231,7 +241,7 @@ class References:
                 return motion
         self._compliance.follow(motion)
         self._compliance.feel(estimate, force)
-        reference = self._compliance.step(1.0, decision.speed_limits)
+        reference = self._compliance.step(1.0, decision.speed_limits, self.keeper)
         self.refusal = self.refusal or self._compliance.problem
         return reference
 
@@ -292,7 +302,7 @@ class References:
             speed = np.abs(now.qd).max()
             if move.of == "tool":
                 speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
-            length = max(length, 0.5 * np.pi * float(speed) / move.deceleration)
+            length = self.keeper.stop_length(now, max(length, 0.5 * np.pi * float(speed) / move.deceleration))
         return Stop(now.q, now.qd, length)
 
     def _line(self, q: Array, move: LinearMove) -> LinearTrajectory | ProcessTrajectory:
