@@ -11,7 +11,7 @@ PROTECTION: dict[Kind, EventRow] = {
     ),
     Kind.COLLISION: protected(
         "Protective stop: collision",
-        "{part}: {force:.0f} N at {speed:.0f} mm/s, limit {limit:.0f} N. Take it away, or reset and jog or guide the arm off.",
+        "{part}: {force:.0f} N at {speed:.0f} mm/s, limit {limit:.0f} N. Reset, then jog or guide it away.",
         ("part", "force", "limit", "speed"),
     ),
 }
