@@ -177,7 +177,7 @@ class LinearTrajectory:
 
     def _course(self, q: Array, move: LinearMove, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> tuple[Line, float]:
         """The line, and its length, or the turn's [m]."""
-        end = np.array(move.position)
+        end, tcp = np.array(move.position), tcp.copy()  # a tool that is changed on the way counts from the next motion on
         if isinstance(move, ScriptedArc):
             line = Arc(dynamics, tcp, q, via=np.array(move.via), end=end)
             length = line.radius * line.angle

@@ -50,12 +50,13 @@ class ProcessTrajectory:
             MoveRefused: it leads out of reach or range.
         """
         self._q, self._qd, self.goal = q.copy(), np.zeros_like(q), q
-        self._R_FT, self._limits = R_FT, limits
+        self._tool, self._limits = (tcp, R_FT), limits
+        self._planned_tool = (tcp.copy(), R_FT.copy())  # of the path; a tool that is changed on the way counts from the next on
         self._place = (0.0, 0.0, 0.0)  # on the path, speed and acceleration along it, at full rate [m, m/s, m/s²]
         self._time, self._braking = 0.0, move.acceleration
         self.done = self.slowing = False
         self._trajectory = ruckig.Trajectory(1)
-        self._path = Lines(dynamics, tcp, q)
+        self._path = Lines(dynamics, self._planned_tool[0], q)
         self._path.begin(*self._end(move))
         if self._path.length < 1e-6:
             self.done = self.slowing = True
@@ -65,11 +66,14 @@ class ProcessTrajectory:
     def goes_on(self, move: ScriptedProcess, radius: float) -> bool:
         """Put another line at the end, with a blend of at most `radius` [m]; False: it cannot, and ends where it would have.
 
+        It cannot where the path has come to its end, or the tool is another by now.
+
         Raises:
             MoveRefused: the line leads out of reach or range.
         """
+        same = all(map(np.array_equal, self._tool, self._planned_tool))
         p, R = self._end(move)
-        path = None if self.done else self._path.goes_on(p, R, radius=radius, s=self._place[0])
+        path = None if self.done or not same else self._path.goes_on(p, R, radius=radius, s=self._place[0])
         return path is not None and self._plan(path, move)
 
     def nearing(self, radius: float) -> bool:
@@ -103,7 +107,7 @@ class ProcessTrajectory:
 
     def _end(self, move: ScriptedProcess) -> tuple[Array, Array]:
         """Tool centre point (3,) [m] and orientation of the flange (3, 3) at the end of a line, in B."""
-        return np.array(move.position), matrix_from_quaternion(move.quaternion) @ self._R_FT.T
+        return np.array(move.position), matrix_from_quaternion(move.quaternion) @ self._tool[1].T
 
     def _plan(self, path: Lines, move: ScriptedProcess) -> bool:
         """Plan the way from here along a path; False, and nothing is changed: it could not stop at its end."""
