@@ -120,6 +120,10 @@ class ServedRobot:
         """Delay what is heard on an interface, until the next call."""
         self._ask("network", {"interface": interface, "delay": seconds})
 
+    def conveyor(self, ticks_per_second: float, encoder: int = 0) -> None:
+        """Turn an encoder of the robot from now on, as a conveyor does; a program has to set the encoder up."""
+        self._ask("conveyor", {"encoder": encoder, "ticks_per_second": ticks_per_second})
+
     def pace(self, speed: float) -> None:
         """Let simulated time pass at a share of the clock's speed, 0.01 to 1."""
         self._ask("pace", {"speed": speed})

@@ -14,7 +14,7 @@ from pendant.limits.axis_locks import AxisLocks
 from pendant.limits.nearness import Nearness
 from pendant.limits.parameters import ZEROS
 from pendant.limits.soft_limits import Damping
-from pendant.motion.script_requests import ForceMode
+from pendant.motion.script_requests import ForceMode, PathOffset
 from pendant.program.steps import Move, ProgramState
 from pendant.robot.reduced import SpeedLimits
 from pendant.signals.enabling_device import Grip
@@ -62,11 +62,13 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     fitting: Fitting | None = None  # tool and payload, from the next tick on
     wizard: Progress = IDLE  # of the payload
     zero: Wrench = ZEROS  # subtracted from the flange sensor's values from the next tick on, axes of F [N, N·m]
+    reading_zero: Wrench = ZEROS  # F_user that counts as none where forces are told or pushed with, axes of F [N, N·m]
     zero_due: bool = False  # the untouched arm feels what may soon refuse free-drive: the sensor should be zeroed
     limits: str = ""  # checksum of all limits
     static: bool = True  # the arm stands still
     speed: float = 1.0  # share of its own speed at which a planned motion runs, under Law.FOLLOW
     force: ForceMode | None = None  # with which the arm pushes while it moves, under Law.FOLLOW
+    offset: PathOffset | None = None  # beside its motion, under Law.FOLLOW
     signs: int = 0  # that were to be heard so far: of steps that tell the user, and of changes in contact (CD-15)
     script_done: int = 0  # number of the last motion of a script that is done
     pull: PullCauses | None = None  # what pulls at the free arm (FD-19); None while free-drive is off

@@ -47,6 +47,7 @@ class Command(Word):
     WIZARD_APPLY = "wizard_apply"  # configure what was found
     WIZARD_CLEAR = "wizard_clear"  # forget the postures; an arm that turns its wrist for them comes to rest
     ZERO_SENSOR = "zero_sensor"  # what the flange force/torque sensor says of the untouched arm is subtracted from now on
+    ZERO_READING = "zero_reading"  # forces are told, and pushed with, against what is felt now; free-drive goes by the sensor's
     DETECTION = "detection"  # switch contact detection on or off (CD-1)
 
 
@@ -73,6 +74,7 @@ class Inputs:
     jog_released: bool = False  # that button was let go
     script: Scripted | None = None  # what the running script wants, said in this tick (a keep-alive)
     borders: tuple[AnyBorder, ...] | None = None  # walls and areas from now on, all of them; None: as they were
+    load_time: float | None = None  # in which the arm goes over to tool and payload of this tick [s]; None: as the settings say
 
 
 NOTHING = Inputs()

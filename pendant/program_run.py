@@ -10,7 +10,7 @@ from pendant.events.event import Event, Kind, Values
 from pendant.inputs import Command, Inputs
 from pendant.limits.validity import JOINTS_SENSED, WrenchMean, joints_ok, motion_ok
 from pendant.motion.scripting import Scripting
-from pendant.program.steps import ApplyForce, LinearMove, Program, ProgramState, misfit
+from pendant.program.steps import ApplyForce, LinearMove, Program, ProgramState, is_script, misfit
 from pendant.robot.jogging import Jogging
 from pendant.robot.robot_mode import Robot
 from pendant.settings.schema import ticks
@@ -221,7 +221,8 @@ class ProgramRun:
             return f"enabling device {robot.grip}: hold it in its middle position"
         if not joints_ok(estimate):
             return f"check {JOINTS_SENSED}"
-        if changing:
+        program = robot.sequencer.program
+        if changing and not (program is not None and is_script(program)):  # a script changes it while it moves
             return "the payload is being changed"
         return None if robot.static else "the arm still moves"
 

@@ -16,7 +16,7 @@ from pendant.sensor.sensor_spec import SensorSpec
 from pendant.sensor.taring import Taring
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase
-from pendant.tick.pose import flat, turned
+from pendant.tick.pose import Wrench, flat, turned
 from pendant.tooling.tool_in_use import Tooling
 
 STANDING = (Wait, ZeroSensor)
@@ -34,7 +34,7 @@ class ForceReaders(NamedTuple):
 class TareRun:
     """Steers `Taring` by what the robot does."""
 
-    __slots__ = ("_calls", "_haptics", "_mean", "_monitor", "_robot", "_run", "_tooling", "taring")
+    __slots__ = ("_calls", "_gone", "_haptics", "_mean", "_monitor", "_robot", "_run", "_tooling", "taring")
 
     def __init__(
         self,
@@ -56,6 +56,7 @@ class TareRun:
             readers: of forces.
         """
         self.taring = Taring(sensor)
+        self._gone: Wrench | None = None  # by how much F_user is less from this tick on, axes of F [N, N·m]
         self._robot, self._run, self._tooling, self._haptics = robot, run, tooling, haptics
         self._calls, self._monitor, self._mean = readers
 
@@ -72,6 +73,9 @@ class TareRun:
             wrench_ok: the user's wrench is valid and finite.
         """
         robot, taring = self._robot, self.taring
+        if self._gone is not None:
+            taring.shift_reading(self._gone)
+            self._gone = None
         move = robot.sequencer.move
         if self._tooling.changing or not wrench_ok:
             taring.restart(lost=not wrench_ok)
@@ -79,6 +83,8 @@ class TareRun:
             freed = robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE or self._haptics.busy
             stands = robot.static and not freed and (move is None or isinstance(move, STANDING) or self._scripted)
             events += taring.step(estimate, self._mean, stands, settings.limits.activation)
+        if commands and Command.ZERO_READING in commands:
+            self._zero_reading(estimate, events, wrench_ok=wrench_ok)
         if commands and Command.ZERO_SENSOR in commands:
             running = robot.sequencer.state is ProgramState.RUNNING and not self._scripted
             why_not = "a program runs: pause or stop it first" if running else self._why_not(estimate, wrench_ok)
@@ -93,6 +99,14 @@ class TareRun:
                 self._run.zeroed(estimate.tick, events)
             elif robot.sequencer.impatient():
                 self._run.fail(f"force sensor not zeroed, {why_not}", estimate.tick, events)
+
+    def _zero_reading(self, estimate: Estimate, events: list[Event], *, wrench_ok: bool) -> None:
+        """As a robot's script does it: at once, in every state; a hand on the arm is told, and not waited for."""
+        if not wrench_ok:
+            events.append(Event(Kind.ZERO_REFUSED, estimate.tick, {"reason": "the flange force sensor is not valid"}))
+            return
+        wrench = tuple(estimate.F_user.tolist()) if self._tooling.changing else self._mean.mean()
+        events.append(self.taring.zero_reading(estimate, wrench))
 
     @property
     def _scripted(self) -> bool:
@@ -117,6 +131,7 @@ class TareRun:
     def _tare(self, estimate: Estimate, events: list[Event]) -> None:
         """Zero the sensor. The change of all forces in the next tick is no push."""
         gone, event = self.taring.tare(estimate)
+        self._gone = gone
         events.append(event)
         x, y, z, a, b, c = gone
         R_BF = flat(estimate.R_BF)

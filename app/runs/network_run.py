@@ -13,6 +13,7 @@ from app.session.session_file import Session
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
 from app.urscript.running.told import Telling, Told
+from app.urscript.running.whole_text import run_text
 from pendant.decision import Decision
 from pendant.events.event import Event
 from pendant.settings.schema import ticks
@@ -85,7 +86,7 @@ class NetworkRun:
     def _send(self, place: int, action: SendScript) -> None:
         self._sent.append((place, action, []))
         try:
-            self._scripts.offer(action.text)
+            run_text(self._scripts, action.text)
         except ScriptTrouble as trouble:
             self._troubles[place] = trouble
 

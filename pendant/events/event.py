@@ -123,6 +123,8 @@ class Kind(StrEnum):
     WIZARD_REFUSED = "wizard_refused"
     SENSOR_ZEROED = "sensor_zeroed"
     ZERO_REFUSED = "zero_refused"
+    READING_ZEROED = "reading_zeroed"
+    READING_ZEROED_PULLED = "reading_zeroed_pulled"
     ZERO_DUE = "zero_due"
     SETTING_CHANGED = "setting_changed"
     SETTING_REFUSED = "setting_refused"

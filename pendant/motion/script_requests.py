@@ -176,6 +176,22 @@ class ForceMode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
                 raise ValueError(f"wrench: a {what} of {size:.4g}, allowed: {most:g} at most")
 
 
+class PathOffset(msgspec.Struct, frozen=True, kw_only=True, gc=False):
+    """The tool goes beside the way of its motions: at their pose, turned and moved as a body that is fixed to a frame.
+
+    The frame is the base; or it has its origin in the tool centre point of the motion, and the tool's axes, or those of the way:
+    x along it, y = x × the tool's z. Source: URScript manual, path_offset_set and track_conveyor_circular.
+    """
+
+    frame: Literal["base", "tool", "way"] = "base"
+    position: Vector  # that the frame's origin gets [m]
+    turn: Vector  # axis times angle [rad]
+    turns_tool: bool = True  # else the tool keeps the orientation of its motion
+
+    def __post_init__(self) -> None:
+        _finite(*self.position, *self.turn)
+
+
 class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """What the running script wants of the arm. It is said in every tick: without it the arm comes to rest (FD-23).
 
@@ -185,6 +201,7 @@ class Scripted(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
     move: ScriptedMove | None = None  # None: none yet, the arm stands
     force: ForceMode | None = None  # while it moves; None: the arm only moves
+    offset: PathOffset | None = None  # beside its motions, in place of a force; None: it is on their way
     feeling: bool = False  # changes in contact are to be looked for
     over: bool = False  # the script has ended; the arm comes to rest
     equips: bool = False  # tool and payload in the inputs of this tick are the script's

@@ -1,6 +1,6 @@
 """Who sees, in every tick, what the running script wants: its motions are done one after the other while it says so."""
 
-from pendant.motion.script_requests import ForceMode, Guided, Scripted, ScriptedMove
+from pendant.motion.script_requests import ForceMode, Guided, PathOffset, Scripted, ScriptedMove
 from pendant.program.sequencer import Sequencer
 from pendant.program.steps import RunScript
 
@@ -17,7 +17,7 @@ class Scripting:
         done: number of the last motion that is done.
     """
 
-    __slots__ = ("_asked", "_feeling", "_force", "_sequencer", "_silent", "done")
+    __slots__ = ("_asked", "_feeling", "_force", "_offset", "_sequencer", "_silent", "done")
 
     def __init__(self, sequencer: Sequencer) -> None:
         self._sequencer = sequencer
@@ -25,11 +25,12 @@ class Scripting:
         self._silent = 0  # ticks without a word
         self._feeling = False
         self._force: ForceMode | None = None
+        self._offset: PathOffset | None = None
         self.done = 0
 
     def begin(self) -> None:
         """The program starts or goes on: what the script wants is begun, or begun again."""
-        self._asked, self._silent, self._feeling, self._force = None, 0, False, None
+        self._asked, self._silent, self._feeling, self._force, self._offset = None, 0, False, None, None
 
     @property
     def feeling(self) -> bool:
@@ -40,6 +41,11 @@ class Scripting:
     def force(self) -> ForceMode | None:
         """How the script has the arm push while it moves."""
         return self._force if self._sequencer.scripted else None
+
+    @property
+    def offset(self) -> PathOffset | None:
+        """How far beside its motions the script has the arm go."""
+        return self._offset if self._sequencer.scripted else None
 
     @property
     def guided(self) -> Guided | None:
@@ -67,7 +73,7 @@ class Scripting:
             self._silent += 1
             return SILENT if self._silent > silence else ""
         self._silent = 0
-        self._feeling, self._force = wish.feeling, wish.force
+        self._feeling, self._force, self._offset = wish.feeling, wish.force, wish.offset
         move = sequencer.move
         if asked is not None and move is not None and (move.id == move_done or isinstance(move, RunScript)):
             self.done = max(self.done, asked.id)

@@ -61,6 +61,7 @@ COMMANDS = {
     "wizard_apply": "Using the measured payload",
     "wizard_clear": "Ending the measurement",
     "zero_sensor": "Zeroing the force sensor",
+    "zero_reading": "Zeroing the force reading",
     "detection": "Switching contact detection",
 }
 """What each command asks for, in words."""
@@ -132,6 +133,16 @@ PROGRAM: dict[Kind, EventRow] = {
     # The flange sensor's zero
     Kind.SENSOR_ZEROED: info(
         "Force sensor zeroed", "{force:.1f} N and {torque:.2f} N·m subtracted.", ("force", "torque", "x", "y", "z")
+    ),
+    Kind.READING_ZEROED: info(
+        "Force reading zeroed", "Forces are told against {force:.1f} N and {torque:.2f} N·m.", ("force", "torque")
+    ),
+    Kind.READING_ZEROED_PULLED: EventRow(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Force reading zeroed while something pulls",
+        "Forces are told against {force:.1f} N and {torque:.2f} N·m; {reason}.",
+        ("force", "torque", "reason"),
     ),
     Kind.ZERO_REFUSED: denied("Force sensor not zeroed", "{reason}.", ("reason",)),
     Kind.ZERO_DUE: EventRow(

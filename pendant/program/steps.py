@@ -216,6 +216,11 @@ def script_program(name: str) -> Program:
     return Program(name=name, steps=cast("tuple[AnyStep, ...]", (RunScript(),)))
 
 
+def is_script(program: Program) -> bool:
+    """A script runs as this program."""
+    return any(isinstance(step, RunScript) for step in program.steps)
+
+
 class ProgramState(StrEnum):
     """What the sequencer does."""
 

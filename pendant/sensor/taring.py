@@ -40,13 +40,16 @@ class Taring:
 
     Attributes:
         zero: is subtracted from the sensor's values, axes of F [N, N·m].
+        reading_zero: F_user of this tick that counts as none where it is told, or pushed with, axes of F [N, N·m]; nothing else
+            goes by it.
         due: an untouched arm feels what may soon refuse free-drive.
     """
 
-    __slots__ = ("_count", "_known", "_reference", "_sensor", "_tick", "_weight", "_windows", "due", "zero")
+    __slots__ = ("_count", "_known", "_reference", "_sensor", "_tick", "_weight", "_windows", "due", "reading_zero", "zero")
 
     def __init__(self, sensor: SensorSpec) -> None:
         self.zero: Wrench = ZEROS
+        self.reading_zero: Wrench = ZEROS
         self.due = False
         self._sensor = sensor
         self._known = PayloadKnown(sensor)
@@ -116,6 +119,21 @@ class Taring:
         x, y, z = (-value for value in gone[:3])  # F_user is minus what the sensor has too much
         values: Values = {"force": math.hypot(x, y, z), "torque": math.hypot(*gone[3:]), "x": x, "y": y, "z": z}
         return gone, Event(Kind.SENSOR_ZEROED, estimate.tick, values)
+
+    def shift_reading(self, gone: Wrench) -> None:
+        """F_user is less by so much from this tick on, axes of F: what was told as none stays so."""
+        if self.reading_zero is not ZEROS:
+            self.reading_zero = _less(self.reading_zero, gone)
+
+    def zero_reading(self, estimate: Estimate, wrench: Wrench) -> Event:
+        """Tell forces against this F_user from now on, axes of B [N, N·m], whatever it comes from; the event."""
+        present = self.reading_zero = in_flange(estimate, wrench)
+        values: Values = {"force": math.hypot(*present[:3]), "torque": math.hypot(*present[3:])}
+        pulled = "" if self._reference is None or not self._windows else self._pulled(estimate, present, self._reference)
+        reason = f"{pulled} more than on the untouched arm" if pulled else self._beyond(estimate, present)
+        if reason:
+            return Event(Kind.READING_ZEROED_PULLED, estimate.tick, {**values, "reason": reason})
+        return Event(Kind.READING_ZEROED, estimate.tick, values)
 
     def explains(self, estimate: Estimate, wrench: Wrench) -> bool:
         """The bias of the sensor can be so far off that it alone makes this F_user, axes of B [N, N·m]."""

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+from msgspec.structs import replace
+
 from pendant.equipment.load import NOTHING, Load, problem
 from pendant.equipment.tools import Equipment, Tool, first_problem
 from pendant.events.event import Event, Kind, Values
@@ -60,6 +62,8 @@ class Tooling:
         if not (inputs.tool or inputs.load or inputs.tools or steered or self.changing or self.wizard.left):
             return []
         events: list[Event] = []
+        if inputs.load_time is not None:
+            use = replace(use, ramp=inputs.load_time)
         why_not = "" if phase is Phase.OFF else "free-drive is being tried"
         if mode in (Mode.RUN, Mode.FREE_DRIVE):
             why_not = way_out(mode)

@@ -40,6 +40,7 @@ class Wishes(msgspec.Struct, frozen=True, gc=False):
             ours.jog_released or theirs.jog_released,
             theirs.script or ours.script,
             ours.borders if theirs.borders is None else theirs.borders,
+            ours.load_time if theirs.load_time is None else theirs.load_time,
         )
         return Wishes(inputs, self.touches + other.touches, self.changes + other.changes)
 

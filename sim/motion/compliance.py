@@ -1,4 +1,4 @@
-"""The reference of an arm that pushes along some axes of a frame, and goes along the others as it should (force_mode)."""
+"""References beside those of a motion: of an arm that pushes along some axes (force_mode), and of one that goes at an offset."""
 
 import math
 from collections import deque
@@ -6,10 +6,11 @@ from collections import deque
 import numpy as np
 from numpy.typing import NDArray
 
-from pendant.motion.script_requests import SIX_WAYS, ForceMode
+from pendant.decision import Decision
+from pendant.motion.script_requests import SIX_WAYS, ForceMode, PathOffset
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from sim.arm.frames import cross, rotation_vector
+from sim.arm.frames import cross, rotation_by, rotation_vector
 from sim.motion.moves import Reference
 from sim.motion.pace import Pace
 from sim.motion.streams import LineStream
@@ -17,10 +18,10 @@ from sim.paths.curves import LEVER
 from sim.paths.tool_point import ToolPoint
 
 Array = NDArray[np.float64]
+Limits = tuple[Array, Array, Array]
 
 STILL = 5e-3
 """Slower the tool's way is lost in noise [m/s]; nearer to a point the way to it says nothing [m]."""
-
 
 LINE_GAIN = 20.0
 """Pulls the reference back to the motion across the free axes [1/s]."""
@@ -114,31 +115,34 @@ class Compliance(LineStream):
         MoveRefused: the tool cannot go everywhere from here.
     """
 
-    def __init__(self, now: Reference, tool: ToolPoint, limits: tuple[Array, Array, Array], pace: Pace) -> None:
+    def __init__(self, now: Reference, tool: ToolPoint, limits: Limits, pace: Pace) -> None:
         super().__init__(now, tool, limits, pace)
         self._axes = _untouched()
         self._under = now
         self._U = np.eye(3)  # the frame, in B
         self._mode: ForceMode | None = None
 
-    def feel(self, estimate: Estimate, mode: ForceMode) -> None:
-        """Take this tick's wrench and place in, and how it should push."""
+    def serves(self, decision: Decision) -> bool:
+        """Whether it is still wanted."""
+        return decision.force is not None
+
+    def take(self, motion: Reference, estimate: Estimate, decision: Decision) -> None:
+        """Take in what the arm would do without the force, this tick's wrench and place, and how it should push."""
+        self._under, mode = motion, decision.force
+        assert mode is not None
         if mode is not self._mode:
             self._begin(mode)
         if not estimate.wrench_valid:
             self.problem = "force mode: needs the flange force sensor"
             return
-        at, force = estimate.tcp[:3], -estimate.F_user[:3]  # of the arm on the outside
-        torque = -estimate.F_user[3:] - cross(at - estimate.p_BF, force)
+        at, gone = estimate.tcp[:3], np.array(decision.reading_zero)
+        force = estimate.R_BF @ gone[:3] - estimate.F_user[:3]  # of the arm on the outside
+        torque = estimate.R_BF @ gone[3:] - estimate.F_user[3:] - cross(at - estimate.p_BF, force)
         self._turn(mode, estimate)
         felt = np.concatenate((self._U.T @ force, self._U.T @ torque))
         for axis, value in zip(self._axes, felt, strict=True):
             axis.feel(float(value))
         self._check(self._apart(at, estimate.R_BF, self._under.q), mode)
-
-    def follow(self, motion: Reference) -> None:
-        """What the arm would do without the force."""
-        self._under = motion
 
     def _begin(self, mode: ForceMode) -> None:
         if self._mode is None or mode.free != self._mode.free:
@@ -195,3 +199,84 @@ class Compliance(LineStream):
 def _untouched() -> list[Admittance]:
     """Of six axes that feel nothing yet."""
     return [Admittance(1.0 if k < 3 else LEVER) for k in range(len(SIX_WAYS))]
+
+
+TRIES = 24
+"""Even steps back from a place at an offset to the place of the motion, and as many of Newton's method."""
+
+
+class Displaced(LineStream):
+    """The tool is at an offset from where its motion has it; the joints go there as fast as they can.
+
+    Args:
+        now: where the reference is, at this `offset` already; tool, limits, pace: as of Compliance.
+        R_FT: orientation of the tool in F (3, 3).
+
+    Attributes:
+        under: reference of the motion itself.
+    """
+
+    def __init__(self, now: Reference, tool: ToolPoint, limits: Limits, pace: Pace, *, R_FT: Array, offset: PathOffset) -> None:
+        super().__init__(now, tool, limits, pace)
+        self._R_FT = R_FT
+        self._way = (tool.pose(now.q)[1] @ R_FT)[:, 0]  # along it, in B; before the motion has one, the tool's x
+        self._offset, self.under, self._goal = offset, now, tool.pose(now.q)
+        if any(offset.position) or any(offset.turn):
+            self.under = Reference(self._back(), *np.zeros((2, now.q.size)))
+
+    def serves(self, decision: Decision) -> bool:
+        """Whether it is still wanted."""
+        return decision.offset is not None
+
+    def take(self, motion: Reference, estimate: Estimate, decision: Decision) -> None:
+        """Take in what the arm would do on the motion's own way, and the offset."""
+        assert decision.offset is not None
+        self.under, self._offset = motion, decision.offset
+
+    def _frame(self, at: Array, R: Array) -> tuple[Array, Array]:
+        """Origin (3,) and axes (3, 3) of the offset's frame in B, for a motion's tool centre point and orientation of F."""
+        kind = self._offset.frame
+        if kind == "base":
+            return np.zeros(3), np.eye(3)
+        axes = R @ self._R_FT
+        if kind == "way":
+            across = cross(self._way, axes[:, 2])
+            size = float(np.linalg.norm(across))
+            y = across / size if size > STILL else axes[:, 1]
+            axes = np.column_stack((self._way, y, cross(self._way, y)))
+        return at, axes
+
+    def _back(self) -> Array:
+        """Joint angles (n,) of the motion whose tool, at the offset, is where it is now [rad]."""
+        tool, position, turn = self._tool, np.array(self._offset.position), rotation_by(np.array(self._offset.turn))
+        start, R = tool.pose(self._q)
+        if self._offset.frame == "base":
+            R_B, p = turn, turn.T @ (start - position)
+        else:  # the frame goes with the tool: back in its axes, which the offset has turned
+            _, axes = self._frame(start, R)
+            R_B = axes @ turn @ axes.T
+            p = start - R_B.T @ axes @ position
+        goal, q = R_B.T @ R if self._offset.turns_tool else R, self._q.copy()
+        for k in range(2 * TRIES):
+            at, now = tool.pose(q)
+            share = 1.0 / max(TRIES - k, 1)  # of what is left: even steps, then Newton's
+            q = q + share * tool.speeds(q, p - at, now @ rotation_vector(now.T @ goal))
+        return q
+
+    def _wanted(self) -> Array:
+        self._look()
+        tool, under = self._tool, self.under
+        at, R = tool.pose(under.q)
+        if self._offset.frame == "way":
+            v, _ = tool.twist(under.q, under.qd)
+            speed = float(np.linalg.norm(v))
+            self._way = v / speed if speed > STILL else self._way
+        origin, axes = self._frame(at, R)
+        turn = axes @ rotation_by(np.array(self._offset.turn)) @ axes.T
+        goal = origin + turn @ (at - origin) + axes @ np.array(self._offset.position)
+        R_goal = turn @ R if self._offset.turns_tool else R
+        (before, R_before), self._goal = self._goal, (goal, R_goal)
+        p, R_now = tool.pose(self._q)
+        v = (goal - before) / TICK + LINE_GAIN * (before - p)
+        w = rotation_vector(R_goal @ R_before.T) / TICK + LINE_GAIN * (R_now @ rotation_vector(R_now.T @ R_before))
+        return tool.speeds(self._q, v, w)

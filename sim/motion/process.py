@@ -42,21 +42,23 @@ class ProcessTrajectory(ToolTrajectory):
             MoveRefused: it leads out of reach or range.
         """
         end, R_end = np.array(move.position), flange(move, R_FT)
+        self._shared, self._own = (tool.tcp, R_FT), (tool.tcp.copy(), R_FT.copy())
         path = Path.of(straight_to(*tool.pose(q), end, R_end), end, R_end)
         super().__init__(q, path, tool, what="process move", limits=limits, strength=strength)
-        self._R_FT = R_FT
         if not self.done:
             self.plan(path, move.speed, move.acceleration)
 
     def goes_on(self, move: ScriptedProcess, radius: float) -> bool:
         """Put another line at the end, with a blend of at most `radius` [m]; False: it cannot, and ends where it would have.
 
+        It cannot where the path has come to its end, or the tool is another by now.
+
         Raises:
             MoveRefused: the line leads out of reach or range.
         """
-        if self.done:
+        if self.done or not all(map(np.array_equal, self._shared, self._own)):
             return False
-        path = self._path.goes_on(np.array(move.position), flange(move, self._R_FT), radius=radius, s=self._place.s)
+        path = self._path.goes_on(np.array(move.position), flange(move, self._own[1]), radius=radius, s=self._place.s)
         if path is None:
             return False
         try:

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.motion.script_requests import DirectTorque, ForceMode, GentleStop
+from pendant.motion.script_requests import DirectTorque, GentleStop
 from pendant.program.steps import Move, RunScript
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
 from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves
-from sim.motion.compliance import Compliance
+from sim.motion.compliance import Compliance, Displaced
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory, at_manual_speed
 from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, led_to, shaken, stop_room, stop_time
@@ -55,7 +55,7 @@ class References:
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
-        self._dynamics, self._tool = dynamics, ToolPoint(dynamics, tcp)
+        self._dynamics, self._tool, self._R_FT = dynamics, ToolPoint(dynamics, tcp), R_FT
         self._pace = Pace(dynamics, tcp)
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
@@ -65,7 +65,7 @@ class References:
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
-        self._compliance: Compliance | None = None  # the arm pushes while it moves
+        self._beside: Compliance | Displaced | None = None  # the arm pushes while it moves, or goes beside its motion
         self._leaving = False  # the motion has come to where the next one may begin
         self._settling = 0  # ticks for which a stop's reference still leans towards the arm
         self._standing = np.zeros(arm.n)
@@ -74,17 +74,14 @@ class References:
         self.fresh, self.caught_up = True, False
         self.before: list[Reference] = []
         self.driven = False
-        self.move_done = 0
-        self.refusal = ""
+        self.move_done, self.refusal = 0, ""
         self.push: Array | None = None
         self.commanding = False
 
     def skip(self) -> None:
         """A tick without a reference: free-drive."""
-        self._law = Law.FREE
-        self.refusal = ""
+        self._law, self.refusal, self.commanding = Law.FREE, "", False
         self._past.clear()
-        self.commanding = False
 
     def commanded(self, estimate: Estimate, decision: Decision) -> DirectTorque | None:
         """A script's torques of this tick, refused from the next on where they break a limit; None: a reference is followed."""
@@ -94,7 +91,7 @@ class References:
         self.skip()
         self.now = Reference(estimate.q.copy(), estimate.theta_d.copy(), self._standing)
         begins = not isinstance(self._move, DirectTorque)
-        self._move, self._compliance, self._leaving, self.push = move, None, False, None
+        self._move, self._beside, self._leaving, self.push = move, None, False, None
         self.move_done, self.commanding = move.id, True
         self.keeper.take(decision, estimate.q, begins=begins)
         self.refusal = self._strength.broken(self.now, self._limits, estimate.theta_dd) or self.keeper.watch(estimate)
@@ -129,20 +126,23 @@ class References:
         elif self._settling and self._motion is not None and self._motion.done:
             self._motion = self._settle(estimate, self.now)
         self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
-        if self._compliance is not None and (law is not Law.FOLLOW or decision.force is None):
-            self._compliance, begins = None, law is Law.FOLLOW  # the motion goes on from where the force has brought the tool
+        if self._beside is not None and not (law is Law.FOLLOW and self._beside.serves(decision)):
+            self._beside, begins = None, law is Law.FOLLOW  # the motion goes on from where the tool has come to
+        if self._beside is None and law is Law.FOLLOW and (decision.force or decision.offset):
+            begins = self._go_beside(decision) or begins
         self.keeper.take(decision, estimate.q if self.now is None else self.now.q, begins=begins)
         if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
         assert self._motion is not None
-        before = self.now
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
             self.refusal = self._motion.problem or self.keeper.watch(estimate)
         motion = self.now = self._advance(self._motion, decision, begins)
-        if law is Law.FOLLOW and decision.force is not None:
-            self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
+        if self._beside is not None:
+            self._beside.take(motion, estimate, decision)
+            self.now = self._beside.step(1.0, decision.speed_limits, self.keeper)
+            self.refusal = self.refusal or self._beside.problem
         self.refusal = self.refusal or self.keeper.problem
         self.push = self._pushing(self._motion, self.now)
         answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
@@ -181,7 +181,7 @@ class References:
                 led is held where it was measured.
         """
         self._past.clear()
-        self._compliance, self._leaving, self.push, self.before = None, False, None, []
+        self._beside, self._leaving, self.push, self.before = None, False, None, []
         q, speed = estimate.q, estimate.qd
         if known:
             speed = estimate.theta_d + LATENCY * TICK * estimate.theta_dd
@@ -195,7 +195,7 @@ class References:
 
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
-        keeper = self.keeper if decision.force is None else None
+        keeper = self.keeper if self._beside is None else None
         if isinstance(motion, Planned | Blended):
             limits = at_manual_speed(decision.move, decision.speed_limits)
             if begins:
@@ -221,22 +221,17 @@ class References:
             return None if float(np.abs(self.push).max()) < GONE else PUSH_DECAY * self.push
         return self.push
 
-    def _comply(
-        self, force: ForceMode, motion: Reference, before: Reference | None, *, estimate: Estimate, decision: Decision
-    ) -> Reference:
-        """The next reference of an arm that pushes while it moves; `before`: the last one."""
-        if self._compliance is None:
-            now = before or motion
-            try:
-                self._compliance = Compliance(now, self._tool, self._limits, self._pace)
-            except MoveRefused as refusal:
-                self.refusal = self.refusal or f"force mode: {refusal}"
-                return motion
-        self._compliance.follow(motion)
-        self._compliance.feel(estimate, force)
-        reference = self._compliance.step(1.0, decision.speed_limits, self.keeper)
-        self.refusal = self.refusal or self._compliance.problem
-        return reference
+    def _go_beside(self, decision: Decision) -> bool:
+        """The arm begins to push while it moves, or to go at an offset from its motion; whether that begins elsewhere."""
+        assert self.now is not None
+        try:
+            if decision.force is not None:
+                self._beside = Compliance(self.now, self._tool, self._limits, self._pace)
+            elif (offset := decision.offset) is not None:
+                self._beside = Displaced(self.now, self._tool, self._limits, self._pace, R_FT=self._R_FT, offset=offset)
+        except MoveRefused as refusal:
+            self.refusal = f"{'force mode' if decision.force else 'path offset'}: {refusal}"
+        return self.own is not self.now
 
     def _near_its_end(self, motion: Motion, move: Move, now: Reference) -> bool:
         """The tool comes to the blend at the end of a script's motion."""
@@ -257,8 +252,13 @@ class References:
         self._settling -= 1
         return Stop(reference.q + SETTLE_RATE * (estimate.q - reference.q), self._standing)
 
+    @property
+    def own(self) -> Reference | None:
+        """The last reference of the motion itself, without an offset."""
+        return self._beside.under if isinstance(self._beside, Displaced) else self.now
+
     def _begin(self, move: Move | None) -> None:
-        now = self.now
+        now = self.own
         assert now is not None
         self._settling = 0
         if move is None or isinstance(move, GentleStop | RunScript):

@@ -35,7 +35,7 @@ class ToolTrajectory:
     Args:
         q: joint angles at the begin of the path (n,) [rad].
         path: of the tool centre point.
-        tool: its kinematics.
+        tool: its kinematics; a tool that is changed on the way counts from the next motion on.
         what: the kind of move.
         limits: the joints' speed, acceleration and position (±), each (n,).
         strength: what the joints can give; None: any torque.
@@ -56,7 +56,7 @@ class ToolTrajectory:
         limits: tuple[Array, Array, Array],
         strength: Strength | None = None,
     ) -> None:
-        self._tool, self._what, self._limits, self._strength = tool, what, limits, strength
+        self._tool, self._what, self._limits, self._strength = tool.kept(), what, limits, strength
         self._most = Limits(1.0, 1.0, 1.0)
         self._path, self._law = path, TimingLaw(0.0, self._most)
         self._joints, self._place, self.goal = Followed.at(q.copy()), REST, q.copy()

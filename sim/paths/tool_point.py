@@ -35,26 +35,34 @@ class Followed(NamedTuple):
 class ToolPoint:
     """Kinematics of the tool centre point.
 
+    Attributes:
+        tcp: tool centre point in F (3,) [m].
+
     Args:
         dynamics: the rigid model.
         tcp: tool centre point in F (3,) [m]; another tool changes it in place.
     """
 
     def __init__(self, dynamics: Dynamics, tcp: Array) -> None:
+        self._dynamics = dynamics
         self._models = (dynamics.recursion.record, tool_record(dynamics.model.nv))
         own = self._models[1][0]
-        self._tcp, self._used = tcp, own["tcp"]
+        self.tcp, self._used = tcp, own["tcp"]
         self._p, self._R, self._jacobian = own["p"], own["R"], own["jacobian"]
+
+    def kept(self) -> "ToolPoint":
+        """Kinematics of the tool as it is now, whatever takes its place."""
+        return ToolPoint(self._dynamics, self.tcp.copy())
 
     def pose(self, q: Array) -> tuple[Array, Array]:
         """Tool centre point (3,) [m] and orientation of the flange (3, 3) at q (n,), in B."""
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         look(self._models, q)
         return self._p.copy(), self._R.copy()
 
     def twist(self, q: Array, qd: Array) -> tuple[Array, Array]:
         """Speed of the tool centre point (3,) and about it (3,) at q with joint speeds qd (n,), in B [m/s, rad/s]."""
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         look(self._models, q)
         twist = self._jacobian @ qd
         return twist[:3], twist[3:]
@@ -62,19 +70,19 @@ class ToolPoint:
     def speeds(self, q: Array, v: Array, w: Array) -> Array:
         """Joint speeds (n,) at q for a speed of the tool centre point (3,) and about it (3,), in B."""
         qd = np.empty_like(q)
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         _speeds(self._models, q, (v, w), qd)
         return qd
 
     def torque(self, q: Array, force: Array) -> Array:
         """Of the joints (n,) at q for a force on the outside at the tool centre point (3,) in B [N]."""
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         look(self._models, q)
         return self._jacobian[:3].T @ force
 
     def singular(self, q: Array) -> bool:
         """Whether the tool cannot go everywhere from q: the smallest singular value of its Jacobian is below `SINGULAR`."""
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         return bool(_singular(self._models, q))
 
     def follow(self, piece: Record, s: float, before: Followed, step: float = 0.0) -> Followed:
@@ -87,7 +95,7 @@ class ToolPoint:
             step: [m].
         """
         found = np.empty((3, before.q.size))
-        self._used[:] = self._tcp
+        self._used[:] = self.tcp
         off, singular = follow(self._models, (piece, s), (step, before.q, before.rate, before.bend), found)
         return Followed(found[0], found[1], found[2], off < FOUND, singular)
 

@@ -63,6 +63,8 @@ TOOLING = frozenset(
         Kind.WIZARD_REFUSED,
         Kind.SENSOR_ZEROED,
         Kind.ZERO_REFUSED,
+        Kind.READING_ZEROED,
+        Kind.READING_ZEROED_PULLED,
         Kind.ZERO_DUE,
     }
 )

@@ -59,8 +59,8 @@ class Parts:
             static=False,
         )
         self.tooling = SimpleNamespace(fitting="fitting", wizard=SimpleNamespace(progress="progress"))
-        self.taring = SimpleNamespace(zero=(0.1,) * 6, due=False)
-        self.scripting = SimpleNamespace(guided=None, force="force", done=7)
+        self.taring = SimpleNamespace(zero=(0.1,) * 6, reading_zero=(0.3,) * 6, due=False)
+        self.scripting = SimpleNamespace(guided=None, force="force", offset="offset", done=7)
         self.publisher = Publisher(
             cast("Robot", self.robot),
             cast("Tooling", self.tooling),
@@ -91,9 +91,10 @@ class Parts:
             "workspace": ("workspace", self.settings.walls), "speed_limits": SPEEDS,
             "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
-            "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "slack": "slack", "doubtful": "doubtful",
+            "wizard": "progress", "zero": (0.1,) * 6, "reading_zero": (0.3,) * 6, "zero_due": False,
+            "slack": "slack", "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,
-            "force": "force", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
+            "force": "force", "offset": "offset", "script_done": 7, "signs": 0, "pull": "pull", "taken": "taken",
         } | changes  # fmt: skip
 
 
@@ -167,7 +168,7 @@ LASTING = {
     "state": ProgramState.RUNNING,
     "index": 3, "tool_on": False, "outputs": frozenset(), "static": True, "fitting": "other",
     "wizard": SimpleNamespace(progress="other"),
-    "zero": (0.2,) * 6, "due": True, "pull": "other",
+    "zero": (0.2,) * 6, "reading_zero": (0.4,) * 6, "due": True, "pull": "other",
 }  # fmt: skip
 
 

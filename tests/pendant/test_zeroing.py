@@ -370,3 +370,67 @@ def test_the_zero_is_the_same_object_until_it_changes() -> None:
         if robot.supervisor.zero is not seen[-1]:
             seen.append(robot.supervisor.zero)
     assert len(seen) == 2
+
+
+READING = command(Command.ZERO_READING)
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_the_reading_is_zeroed_at_once_in_every_state_and_free_drive_does_not_go_by_it(name: str) -> None:
+    robot = MODES[name][0]()
+    before = robot.decision.zero
+    robot.events.clear()
+    robot.run(1, READING)
+    assert Kind.READING_ZEROED in robot.kinds()
+    assert robot.decision.reading_zero == pytest.approx(OFFSET)
+    assert robot.decision.zero is before
+
+
+def test_while_a_hand_pulls_the_reading_is_zeroed_and_the_hand_is_told() -> None:
+    robot = Robot()
+    robot.offset[1] += 20.0
+    robot.run(2 * WINDOW).events.clear()
+    robot.run(1, READING)
+    (told,) = [event for event in robot.events if event.kind is Kind.READING_ZEROED_PULLED]
+    assert told.values["reason"] == "20.0 N more than on the untouched arm"
+    assert robot.decision.reading_zero[1] == pytest.approx(OFFSET[1] + 20.0)
+
+
+def test_a_reading_that_no_bias_explains_is_zeroed_and_told() -> None:
+    """It was there from the first tick on, so that nothing is known of an arm without it."""
+    robot = Robot()
+    robot.supervisor, robot.tick = Supervisor(Settings(), 6), 0
+    robot.offset = np.array((0.0, 0.0, -90.0, 0.0, 0.0, 0.0))
+    robot.run(READY).events.clear()
+    robot.run(1, READING)
+    (told,) = [event for event in robot.events if event.kind is Kind.READING_ZEROED_PULLED]
+    assert str(told.values["reason"]).startswith("90.0 N is more than its zero can be off")
+
+
+def test_without_a_valid_sensor_the_reading_is_not_zeroed() -> None:
+    robot = Robot()
+    robot.valid = False
+    robot.run(2).events.clear()
+    robot.run(1, READING)
+    assert Kind.ZERO_REFUSED in robot.kinds()
+    assert robot.decision.reading_zero == (0.0,) * 6
+
+
+def test_what_is_read_stays_when_the_sensor_is_zeroed_afterwards() -> None:
+    robot = Robot().run(1, READING)
+    robot.offset[0] += 0.5
+
+    def read() -> np.ndarray:
+        return robot.value().F_user - np.array(robot.decision.reading_zero)
+
+    robot.run(READY)
+    before = read()
+    robot.events.clear()
+    robot.run(1, ZERO).run(1)
+    assert Kind.SENSOR_ZEROED in robot.kinds()
+    assert read() == pytest.approx(before)
+
+
+def test_a_zeroed_sensor_alone_changes_no_reading_zero() -> None:
+    robot = Robot().run(1, ZERO)
+    assert robot.decision.reading_zero == (0.0,) * 6

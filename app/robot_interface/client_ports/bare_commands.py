@@ -30,8 +30,9 @@ class TextCommands:
     Args:
         commands: what the lines do.
         ask: hands a wish to the robot.
-        complain: tells the client what cannot be done: line, column, text.
-        scripts: runs programs.
+        complain: tells the client what cannot be done.
+        note: notes what cannot be done where the client has been told already.
+        scripts: runs programs; tells all clients why one cannot be begun.
         hosts: that the client's programs may connect to: where it is.
     """
 
@@ -39,12 +40,14 @@ class TextCommands:
         self,
         commands: DashboardCommands,
         ask: Callable[[Ask], object],
-        complain: Callable[[int, int, str], None],
+        complain: Callable[[str], None],
+        note: Callable[[str], None],
         *,
         scripts: ScriptRunner,
         hosts: frozenset[str],
     ) -> None:
-        self._commands, self._ask, self._scripts, self._hosts, self._complain = commands, ask, scripts, hosts, complain
+        self._commands, self._ask, self._scripts, self._hosts = commands, ask, scripts, hosts
+        self._complain, self._note = complain, note
         self._text = ProgramText()
         self._heard = 0
         self._waiting: asyncio.Task[None] | None = None
@@ -84,7 +87,7 @@ class TextCommands:
     async def _do(self, text: str, remote: bool) -> None:
         line = text.strip()
         if not remote:
-            self._complain(1, 1, "the robot is in local control")
+            self._complain("the robot is in local control")
             return
         if line in LINES:
             for command in LINES[line]:
@@ -95,4 +98,4 @@ class TextCommands:
         try:
             await asyncio.to_thread(self._scripts.offer, text, self._hosts)
         except ScriptTrouble as trouble:
-            self._complain(trouble.place.line, trouble.place.column, trouble.text)
+            self._note(trouble.text)

@@ -8,6 +8,7 @@ from app.robot_interface.client_ports.primary_messages import (
     exception_message,
     key_message,
     popup_message,
+    question_message,
     safety_message,
     text_of,
     version_message,
@@ -20,6 +21,7 @@ from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import Farewell
+from app.urscript.language.trouble import NOWHERE, Spot
 from app.urscript.running.script_runner import ScriptRunner
 from app.urscript.running.told import Telling, Told
 from pendant.event_table import TABLE, render
@@ -36,6 +38,9 @@ KEYS = {
     Kind.PROGRAM_STOPPED: "PROGRAM_XXX_STOPPED",
     Kind.PROGRAM_FAILED: "PROGRAM_XXX_STOPPED",
 }
+
+SECONDARY_EXCEPTION = "SECONDARY_PROGRAM_EXCEPTION_XXX"
+"""What ends a secondary program, which the one beside goes on after."""
 
 LEVELS = {Severity.NOTICE: 1, Severity.WARNING: 2, Severity.STOP: 3}
 
@@ -60,14 +65,16 @@ class StreamSession:
         outbox.patient = writable  # a client may only send programs, and ur-rtde does
         self._peers, self._peer, self._writable, self._scripts = robot.peers, peer, writable, robot.scripts
         hosts = frozenset({peer.address.rpartition(":")[0]})
-        self._text = TextCommands(robot.commands, self.cabinet.ask, self._complain, scripts=robot.scripts, hosts=hosts)
+        self._text = TextCommands(
+            robot.commands, self.cabinet.ask, self._complain, self._note, scripts=robot.scripts, hosts=hosts
+        )
         self.cabinet.listen(self)
         self._scripts.listen(self.script)
 
     async def hear(self, data: bytes) -> None:
         """Do what the text says; on the read-only port nothing."""
         if not self._writable:
-            self._complain(1, 1, "C210: this port is read-only")
+            self._complain("C210: this port is read-only")
         elif not await self._text.hear(data, lambda: self.cabinet.state.remote):
             raise Farewell(f"a line of more than {LONGEST} bytes")
 
@@ -89,12 +96,15 @@ class StreamSession:
     def script(self, told: Told) -> None:
         """A script tells something."""
 
-    def complain(self, line: int, column: int, text: str) -> None:
-        """Tell the client what cannot be done."""
+    def complain(self, place: Spot, text: str, words: str = "") -> None:
+        """Tell the client what cannot be done; `words`: as a robot says it, "" for the text."""
 
-    def _complain(self, line: int, column: int, text: str) -> None:
+    def _complain(self, text: str) -> None:
+        self._note(text)
+        self.complain(NOWHERE, text)
+
+    def _note(self, text: str) -> None:
         self._peers.note(self._peer.interface, self._peer.number, f"text refused: {text}")
-        self.complain(line, column, text)
 
 
 class PrimarySession(StreamSession):
@@ -139,12 +149,17 @@ class PrimarySession(StreamSession):
             self.outbox.send(text_of(clock, told.text))
         elif told.kind is Telling.POPUP:
             self.outbox.send(popup_message(clock, told.title, told.text, told.level))
+        elif told.kind is Telling.QUESTION:
+            self.outbox.send(question_message(clock, told.text, told.level))
+        elif told.kind is Telling.ASIDE:
+            self.outbox.send(key_message(clock, SECONDARY_EXCEPTION, told.words or told.text))
+            self.outbox.send(text_of(clock, f"{told.name}, line {told.place.line}: {told.text}"))
         else:
-            self.complain(told.place.line, told.place.column, told.text)
+            self.complain(told.place, told.text, told.words)
 
-    def complain(self, line: int, column: int, text: str) -> None:
+    def complain(self, place: Spot, text: str, words: str = "") -> None:
         """A runtime exception, and the text of it."""
-        self.outbox.send(exception_message(self.cabinet.clock, line, column, text))
+        self.outbox.send(exception_message(self.cabinet.clock, place.line, place.column, words or text))
         self.outbox.send(text_of(self.cabinet.clock, text))
 
     def repeat(self) -> None:

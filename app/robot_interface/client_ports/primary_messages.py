@@ -2,6 +2,7 @@
 
 import struct
 from enum import IntEnum
+from unicodedata import normalize
 
 from app.robot_interface.controller.robot_words import VERSION, SafetyMode
 
@@ -20,6 +21,7 @@ class MessageType(IntEnum):
     SAFETY_MODE = 5
     ERROR = 6
     KEY = 7
+    REQUEST_VALUE = 9
     RUNTIME_EXCEPTION = 10
 
 
@@ -68,5 +70,24 @@ def popup_message(clock: float, title: str, text: str, level: str) -> bytes:
     return _message(clock, MessageType.POPUP, head + bytes([len(name)]) + name + _ascii(text))
 
 
+REQUESTED = ("boolean", "integer", "float", "string")
+"""Types of a value that is asked for, by their numbers."""
+
+
+def question_message(clock: float, text: str, kind: str) -> bytes:
+    """A program waits for a value from people; `kind` is one of `REQUESTED`."""
+    return _message(clock, MessageType.REQUEST_VALUE, struct.pack(">II", 0, REQUESTED.index(kind)) + _ascii(text))
+
+
+PLAIN = str.maketrans(
+    {
+        **{"·": "", "±": "+-", "°": " deg", "²": "^2", "³": "^3", "µ": "u", "×": "x", "ß": "ss"},
+        **{"\u2026": "...", "\u2192": "->", "\u2264": "<=", "\u2265": ">=", "\u2013": "-", "\u2014": "-"},
+        **{"\u2018": "'", "\u2019": "'", "\u201c": '"', "\u201d": '"'},
+    }
+)
+"""How signs that are not in ASCII are told: a controller's messages have no others."""
+
+
 def _ascii(text: str) -> bytes:
-    return text.encode("ascii", "replace")
+    return normalize("NFKD", text.translate(PLAIN)).encode("ascii", "ignore")

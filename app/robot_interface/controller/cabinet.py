@@ -19,7 +19,7 @@ from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
 from pendant.events.event_row import Effect
 from pendant.inputs import Command, Inputs
-from pendant.program.steps import Program
+from pendant.program.steps import Program, is_script
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.arm.scenario import Load
@@ -238,7 +238,9 @@ class Cabinet:
             if event.kind is Kind.RESET and remote:  # a reset leads to TEACH; it takes nobody's control
                 self._settled, state.remote = False, True
             elif event.kind is Kind.PROGRAM_LOADED:
-                state.program = str(event.values["name"])
+                program = self._simulation().supervisor.program
+                if program is not None and not is_script(program):  # what a client sends as a script is never loaded
+                    state.loaded = program
             elif TABLE[event.kind].effect is Effect.NO_ENTRY:
                 state.refusal = " ".join(render(event)[:2])
             elif event.kind is Kind.ENTERED:

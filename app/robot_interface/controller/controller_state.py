@@ -1,6 +1,8 @@
 """What the controller tells of itself in words and numbers of the UR e-Series, derived from the pendant's decision."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from app.robot_interface.controller.robot_words import (
     SAFETY_BITS,
@@ -14,7 +16,7 @@ from app.robot_interface.controller.robot_words import (
 from pendant.decision import Decision
 from pendant.events.event import Kind
 from pendant.motion.script_requests import DirectTorque
-from pendant.program.steps import ApplyForce, ProgramState
+from pendant.program.steps import ApplyForce, Program, ProgramState
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
 
 UNLOCK_AFTER = 5.0
@@ -39,6 +41,55 @@ SWITCHING_OFF = frozenset({Kind.POWERED_OFF, Kind.EMERGENCY_STOP})
 """After these the drives are off, and are switched on again by a client."""
 
 
+@dataclass(slots=True, eq=False)
+class Question:
+    """What a program asks people for."""
+
+    kind: str  # "boolean", "integer", "float" or "string"
+    text: str
+    answer: bool | int | float | str | None = None
+
+    def take(self, text: str) -> None:
+        """Answer it. Raises ValueError: this is no value of the kind that is asked for."""
+        read, expected = ANSWERS[self.kind]
+        try:
+            self.answer = read(text)
+        except (ValueError, KeyError):
+            raise ValueError(f"expected {expected}") from None
+
+
+def _whole(text: str) -> int:
+    value = int(text)
+    if not -(1 << 31) <= value < 1 << 31:
+        raise ValueError
+    return value
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def _short(text: str) -> str:
+    if len(text) > LONGEST_ANSWER:
+        raise ValueError
+    return text
+
+
+LONGEST_ANSWER = 1023
+"""Characters of a text, as of a string in a program."""
+
+ANSWERS: dict[str, tuple[Callable[[str], bool | int | float | str], str]] = {
+    "boolean": (lambda text: {"true": True, "false": False}[text.lower()], "true or false"),
+    "integer": (_whole, "a whole number of 32 bits"),
+    "float": (_finite, "a finite number"),
+    "string": (_short, f"a text of {LONGEST_ANSWER} characters at most"),
+}
+"""How an answer to a question of each kind is read, and what is expected."""
+
+
 @dataclass(slots=True)
 class ControllerState:
     """The controller in one tick."""
@@ -48,7 +99,7 @@ class ControllerState:
     phase: Phase = Phase.OFF
     law: Law = Law.HOLD
     program_state: ProgramState = ProgramState.NONE
-    program: str = ""  # name of the loaded one, without .urp
+    loaded: Program | None = None  # that `play` starts
     forcing: bool = False  # a step pushes with a force
     torques: bool = False  # a script commands the joints' torques
     stopped_at: int = 0  # tick in which the protective stop began
@@ -56,6 +107,8 @@ class ControllerState:
     idle: bool = False  # drives on, brakes still closed, or will be once the drives were off
     remote: bool = True  # in remote control
     popup: str = ""  # that is shown
+    question: Question | None = None  # that waits for an answer
+    conveyors: list[float] = field(default_factory=lambda: [0.0, 0.0])  # that the laboratory turns: ticks of encoders [1/s]
     operational: OperationalMode = OperationalMode.NONE
     failure: str = ""  # why nothing is simulated
     switched_off: bool = False  # it stands because its drives were switched off, or are after an emergency stop
@@ -78,6 +131,11 @@ class ControllerState:
             self.remote = False
         elif decision.mode is Mode.REMOTE:
             self.remote = True
+
+    @property
+    def program(self) -> str:
+        """Name of the loaded program, without .urp; "" for none."""
+        return "" if self.loaded is None else self.loaded.name
 
     @property
     def stopped(self) -> bool:

@@ -7,8 +7,11 @@ from numpy.typing import NDArray
 
 from app.robot_interface.controller.field_record import FieldRecord
 from pendant.decision import Decision
+from pendant.limits.parameters import ZEROS
+from pendant.motion.script_requests import DirectTorque
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
+from pendant.tick.pose import Wrench
 from pendant.tooling.tool_in_use import Fitting
 from sim.arm.chain import load_body, tool_body
 from sim.arm.frames import rotation_from_rpy, rotation_vector
@@ -28,6 +31,8 @@ class MeasuredFields:
         self._fitting: Fitting | None = None
         self._simulation: Simulation | None = None
         self._torque = np.ones(6)  # of the motors per current, at the output [N·m/A]
+        self._rotor = np.zeros(6)  # inertia at the output [kg·m²]
+        self._most_current = np.ones(6)  # of the motors [A]
         self._R_FT, self._tcp = np.eye(3), np.zeros(3)
 
     def fill(self, simulation: Simulation, decision: Decision) -> None:
@@ -35,6 +40,7 @@ class MeasuredFields:
         if simulation is not self._simulation:
             self._simulation, motors = simulation, simulation.arm.motors
             self._torque = np.array(motors.gear) * np.array(motors.torque_constant)
+            self._rotor, self._most_current = np.array(motors.rotor_inertia), np.array(motors.current)
             self._record.put("target_gravity", simulation.estimate.g_B)
         if decision.fitting is not None and decision.fitting is not self._fitting:
             self._fit(decision.fitting)
@@ -42,9 +48,9 @@ class MeasuredFields:
         self._fill_joints(simulation, estimate, decision)
         R_BT = estimate.R_BF @ self._R_FT
         self._fill_tool(estimate, R_BT)
-        force = estimate.F_user[:3]
+        force, torque = reading(estimate, decision.reading_zero)
         arm = estimate.tcp[:3] - estimate.p_BF
-        put("actual_TCP_force", np.concatenate((force, estimate.F_user[3:] - _cross(arm, force))))
+        put("actual_TCP_force", np.concatenate((force, torque - _cross(arm, force))))
         put("tcp_force_scalar", math.sqrt(float(force @ force)))
         put("ft_raw_wrench", -estimate.w_sensor)
         put("wrench_calc_from_currents", np.concatenate((estimate.F_joints, (0.0, 0.0, 0.0))))
@@ -58,12 +64,11 @@ class MeasuredFields:
             target = (reference.q, reference.qd, reference.qdd)
         for name, values in zip(("target_q", "target_qd", "target_qdd"), target, strict=True):
             put(name, values)
-        put("target_current", simulation.current)
-        put("target_moment", simulation.current * self._torque)
+        self._fill_wanted_torque(simulation, decision, target)
         put("actual_q", estimate.q)
         put("actual_qd", estimate.qd)
         put("actual_qdd", estimate.qdd)
-        put("actual_current", estimate.tau_m / self._torque)
+        put("actual_current", estimate.current * self._most_current)
         put("actual_current_as_torque", estimate.tau_m)
         put("actual_moment", estimate.tau_J)
         put("joint_temperatures", simulation.plant.temperature)
@@ -71,6 +76,25 @@ class MeasuredFields:
         arm = R @ self._tcp
         put("target_TCP_pose", np.concatenate((p + arm, rotation_vector(R @ self._R_FT))))
         put("target_TCP_speed", np.concatenate((v + _cross(w, arm), w)))
+
+    def _fill_wanted_torque(self, simulation: Simulation, decision: Decision, target: tuple[Array, Array, Array]) -> None:
+        """What the motion that is wanted needs by the model: no friction, and nothing that the loop adds.
+
+            tau = M(q) qdd + h(q, qd),    i = (tau + J qdd) / (gear k)
+
+        An arm at rest with a vertical first axis has no torque there, as on a UR, whatever its friction holds.
+        """
+        q, qd, qdd = target
+        if decision.law is Law.OFF:
+            torque, rotor = np.zeros(6), np.zeros(6)
+        elif isinstance(decision.move, DirectTorque) or decision.law is Law.FREE:
+            torque, rotor = simulation.dynamics.gravity(q).copy(), np.zeros(6)
+            if isinstance(decision.move, DirectTorque):
+                torque += decision.move.torque
+        else:
+            torque, rotor = simulation.dynamics.inverse(q, qd, qdd), self._rotor * qdd
+        self._record.put("target_moment", torque)
+        self._record.put("target_current", (torque + rotor) / self._torque)
 
     def _fill_tool(self, estimate: Estimate, R_BT: Array) -> None:
         put = self._record.put
@@ -92,6 +116,14 @@ class MeasuredFields:
         put("payload", body.mass)
         put("payload_cog", body.com)
         put("payload_inertia", (xx, yy, zz, xy, xz, yz))
+
+
+def reading(estimate: Estimate, zero: Wrench) -> tuple[Array, Array]:
+    """F_user at the flange as it is told, force and torque, axes of B [N, N·m]: without what counts as none, axes of F."""
+    if zero is ZEROS:
+        return estimate.F_user[:3], estimate.F_user[3:]
+    gone = np.array(zero)
+    return estimate.F_user[:3] - estimate.R_BF @ gone[:3], estimate.F_user[3:] - estimate.R_BF @ gone[3:]
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from app.robot_interface.controller.controller_state import ControllerState
 from app.robot_interface.controller.field_record import FieldRecord
+from app.robot_interface.controller.rtde_fields import FIRST_BIT
 from pendant.contact.contact_change import Change
 from pendant.decision import Decision
 from pendant.tick.modes import TICK, Mode, Phase
@@ -18,6 +19,10 @@ PHASE = "output_int_register_24"
 
 TOOL_OUTPUT = 1 << 16
 """The tool's first digital output, which a program switches (CD-15)."""
+
+
+WORD_BITS = 32
+"""Boolean registers in a word."""
 
 
 class StatusFields:
@@ -97,3 +102,30 @@ def set_analog_output(record: FieldRecord, number: int, share: float, *, volts: 
     share = min(max(share, 0.0), 1.0)
     record.put("analog_io_types", kinds | bit if volts else kinds & ~bit)
     record.put(f"standard_analog_output{number}", 10.0 * share if volts else 0.004 + 0.016 * share)
+
+
+def in_volts(record: FieldRecord, output: int) -> bool:
+    """Whether an analog output is in volts; else in amperes."""
+    return bool(int(record.field("analog_io_types").item()) >> output + 2 & 1)
+
+
+def read_bit(record: FieldRecord, way: str, address: int) -> bool:
+    """A boolean register of "input" or "output"."""
+    if address >= FIRST_BIT:
+        return bool(record.get(f"{way}_bit_register_{address}"))
+    return bool(int(record.field(_word(way, address)).item()) >> address % WORD_BITS & 1)
+
+
+def write_bit(record: FieldRecord, address: int, value: bool) -> None:
+    """Set a boolean register of the outputs."""
+    if address >= FIRST_BIT:
+        record.put(f"output_bit_register_{address}", value)
+        return
+    bit = 1 << address % WORD_BITS
+    word = _word("output", address)
+    before = int(record.field(word).item())
+    record.put(word, before | bit if value else before & ~bit)
+
+
+def _word(way: str, address: int) -> str:
+    return f"{way}_bit_registers0_to_31" if address < WORD_BITS else f"{way}_bit_registers32_to_63"

@@ -78,6 +78,7 @@ class DashboardCommands:
             "load": self._load,
             "set operational mode": self._set_operational,
             "popup": self._popup,
+            "answer": self._answer,
             "addtolog": lambda text: "Added log message",
             "generate flight report": lambda text: "Error: this robot writes no flight reports; record it instead",
             "generate support file": lambda text: "Error: this robot writes no support files; record it instead",
@@ -148,7 +149,11 @@ class DashboardCommands:
         if self._scripted is not None:
             self._scripted.resume()
             return "Starting program"
-        return _when(Ask((command,), standing=True), kind, "Starting program", "Failed to execute: play")
+        if state.loaded is None and not paused:
+            return "Failed to execute: play"
+        program = state.loaded if self._cabinet.simulation.supervisor.program is not state.loaded and not paused else None
+        ask = Ask((command,), program=program, standing=True)
+        return _when(ask, kind, "Starting program", "Failed to execute: play")
 
     def _stop(self) -> Answer:
         if self._cabinet.state.runtime is RuntimeState.STOPPED:
@@ -199,6 +204,17 @@ class DashboardCommands:
     def _close_popup(self) -> str:
         self._cabinet.state.popup = ""
         return "closing popup"
+
+    def _answer(self, text: str) -> str:
+        """Ours: the value that a program asks people for."""
+        question = self._cabinet.state.question
+        if question is None:
+            return "Failed to execute: answer; no program asks"
+        try:
+            question.take(text)
+        except ValueError as error:
+            return f"Failed to execute: answer; {error}"
+        return "Answered"
 
     def _set_operational(self, name: str) -> str:
         if name.upper() not in ("MANUAL", "AUTOMATIC"):

@@ -39,6 +39,13 @@ class Switched(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=
     on: bool
 
 
+class ConveyorSpeed(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A conveyor turns an encoder of the robot from now on."""
+
+    encoder: Annotated[int, Meta(ge=0, le=1)] = 0
+    ticks_per_second: Annotated[float, Meta(ge=-1e6, le=1e6)]
+
+
 class Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The remote controller asks for free-drive for so long; 0 ends it. To go on, ask again before that."""
 

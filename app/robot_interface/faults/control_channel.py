@@ -17,7 +17,7 @@ from app.files.checked import convert
 from app.log.live import LiveRecording
 from app.robot_interface.controller.cabinet import Ask, Cabinet
 from app.robot_interface.controller.rtde_fields import OUTPUTS
-from app.robot_interface.faults.channel_requests import Asked, CableFault, ClockPace, Switched, Timed
+from app.robot_interface.faults.channel_requests import Asked, CableFault, ClockPace, ConveyorSpeed, Switched, Timed
 from app.robot_interface.faults.served_loop import ServedLoop
 from app.robot_interface.transport.peers import Peers
 from app.robot_interface.transport.tcp_port import TcpPort
@@ -78,6 +78,7 @@ class ControlChannel:
             "remote": self._remote,
             "free-drive": self._free_drive,
             "recording": self._record,
+            "conveyor": self._turn,
         }
         routes = [Route(f"/{name}", self._guarded(handler), methods=["GET"]) for name, handler in get.items()]
         routes += [Route(f"/{name}", self._guarded(handler), methods=["POST"]) for name, handler in post.items()]
@@ -123,6 +124,7 @@ class ControlChannel:
             "remote": state.remote,
             "program": state.program,
             "popup": state.popup,
+            "question": "" if state.question is None else state.question.text,
             "refusal": state.refusal,
             "failure": self._loop.failure,
             "recording": None if self._recording.path is None else str(self._recording.path),
@@ -184,6 +186,11 @@ class ControlChannel:
                     port.delay = wanted.delay
                 if wanted.cut is not None:
                     port.cut(wanted.cut)
+        return {}
+
+    async def _turn(self, request: Request) -> object:
+        wanted = await _body(request, ConveyorSpeed)
+        self._cabinet.state.conveyors[wanted.encoder] = wanted.ticks_per_second
         return {}
 
     async def _pace(self, request: Request) -> object:

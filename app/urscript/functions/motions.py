@@ -1,11 +1,10 @@
 """Functions that move the arm (URScript manual, module motion)."""
 
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-from app.urscript.functions.pose_algebra import quaternion
-from app.urscript.functions.robot_side import ArmSide, RobotSide
+from app.urscript.calculation.pose_algebra import quaternion, transformed
 from app.urscript.functions.sensing_values import Kinematics
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.signature import (
@@ -19,9 +18,11 @@ from app.urscript.machine.signature import (
     numbers,
     optional,
     pose,
+    text,
     within,
 )
-from app.urscript.machine.values import PoseValue, Value, kind
+from app.urscript.machine.values import PoseValue, StructValue, Value, kind
+from app.urscript.robot.robot_side import ArmSide, RobotSide
 from pendant.motion.script_requests import (
     DirectTorque,
     GentleStop,
@@ -131,12 +132,13 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
         Taken("r", ZERO_UP, 0.0),
     )
     q, x = Taken("q", target), Taken("pose", target)
-    yield builtin("movej", movej, q, a(1.4), v(1.05), t, r, takes_time=True)
-    yield builtin("movel", movel, x, a(1.2), v(0.25), t, r, takes_time=True)
-    yield builtin("movep", movep, x, a(1.2), v(0.25), r, takes_time=True)
+    yield builtin("movej", movej, q, a(1.4), v(1.05), t, r, physical=True)
+    yield builtin("movel", movel, x, a(1.2), v(0.25), t, r, physical=True)
+    yield builtin("movep", movep, x, a(1.2), v(0.25), r, physical=True)
     mode = Taken("mode", within(integer, 0, 1), 0)
-    yield builtin("movec", movec, Taken("pose_via", target), Taken("pose_to", target), a(1.2), v(0.25), r, mode, takes_time=True)
+    yield builtin("movec", movec, Taken("pose_via", target), Taken("pose_to", target), a(1.2), v(0.25), r, mode, physical=True)
     share = within(number, 1e-3, 1.0)
+    goal = Taken("goal", lambda value: target(_goal(robot, value)))
     top = robot.simulation.arm.limits
 
     def optimovej(q_: Value, a_: float, v_: float, r_: float) -> Doing:
@@ -145,15 +147,24 @@ def of_moves(robot: RobotSide) -> Iterator[Builtin]:
     def optimovel(x_: Value, a_: float, v_: float, r_: float) -> Doing:
         return movel(x_, a_ * 2.5, v_ * 1.0, 0.0, r_)
 
-    yield builtin("optimovej", optimovej, q, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
-    yield builtin("optimovel", optimovel, x, Taken("a", share, 0.3), Taken("v", share, 0.3), r, takes_time=True)
-    stops: tuple[tuple[str, Literal["joints", "tool"]], ...] = (("stopj", "joints"), ("stopl", "tool"))
-    for name, of in stops:
-        yield builtin(name, _stopping(until_done, of), Taken("a", POSITIVE), Taken("aRot", any_value, None), takes_time=True)
+    yield builtin("optimovej", optimovej, goal, Taken("a", share, 0.3), Taken("v", share, 0.3), r, physical=True)
+    yield builtin("optimovel", optimovel, goal, Taken("a", share, 0.3), Taken("v", share, 0.3), r, physical=True)
+
+    def stop_tool(a_: float, _: Value) -> Doing:
+        return until_done(GentleStop(of="tool", deceleration=a_))
+
+    yield builtin("stopj", lambda a_: until_done(GentleStop(deceleration=a_)), Taken("a", POSITIVE), physical=True)
+    yield builtin("stopl", stop_tool, Taken("a", POSITIVE), Taken("aRot", any_value, None), physical=True)
 
 
-def _stopping(until_done: Callable[[ScriptedMove], Doing], of: Literal["joints", "tool"]) -> Callable[..., Doing]:
-    return lambda a, turning: until_done(GentleStop(of=of, deceleration=a))
+def _goal(robot: RobotSide, value: Value) -> Value:
+    """Of an optimove: a frame of the world model, or a pose in one, as a pose in the base."""
+    world = robot.memory.world
+    if type(value) is str:
+        return world.at(value)
+    if type(value) is StructValue and {"pose", "frame"} <= value.members.keys():
+        return transformed(world.at(text(value.members["frame"])), pose(value.members["pose"]))
+    return value
 
 
 def for_ticks(arm: ArmSide, move: ScriptedMove, count: int) -> Doing:
@@ -209,15 +220,15 @@ def of_streams(robot: RobotSide) -> Iterator[Builtin]:
         Taken("t", ZERO_UP, 0.002),
         Taken("lookahead_time", within(number, 0.03, 0.2), 0.1),
         Taken("gain", within(number, 100.0, 2000.0), 300.0),
-        takes_time=True,
+        physical=True,
     )
     a, t = Taken("a", ZERO_UP), Taken("t", ZERO_UP, 0.0)  # without acceleration a speed stays: clients' splines do so
     blend = Taken("r", ZERO_UP, 0.0)
     yield builtin(
-        "servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, takes_time=True
+        "servoc", servoc, Taken("pose", target), Taken("a", POSITIVE, 1.2), Taken("v", POSITIVE, 0.25), blend, physical=True
     )
-    yield builtin("speedj", speedj, Taken("qd", numbers(6)), a, t, takes_time=True)
-    yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), takes_time=True)
+    yield builtin("speedj", speedj, Taken("qd", numbers(6)), a, t, physical=True)
+    yield builtin("speedl", speedl, Taken("xd", numbers(6)), a, t, Taken("aRot", any_value, None), physical=True)
 
 
 def of_torques(robot: RobotSide) -> Iterator[Builtin]:
@@ -248,5 +259,5 @@ def of_torques(robot: RobotSide) -> Iterator[Builtin]:
         Taken("viscous_scale", optional(lambda value: value if type(value) is bool else numbers(6)(value)), None),
         Taken("coulomb_scale", optional(numbers(6)), None),
         Taken("friction_comp", optional(boolean), None),
-        takes_time=True,
+        physical=True,
     )

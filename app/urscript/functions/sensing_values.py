@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.urscript.functions.pose_algebra import quaternion
-from app.urscript.functions.robot_side import RobotSide
+from app.urscript.calculation.pose_algebra import quaternion, rotation
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.operators import effort
 from app.urscript.machine.signature import (
     Builtin,
     Taken,
     any_value,
+    boolean,
     builtin,
     integer,
     number,
@@ -25,6 +25,8 @@ from app.urscript.machine.signature import (
     within,
 )
 from app.urscript.machine.values import PoseValue, Value
+from app.urscript.robot.robot_side import RobotSide
+from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, ScriptedLine, ScriptedProcess
 from sim.arm.frames import matrix_from_quaternion, rotation_vector
 from sim.rigid_body.dynamics import Dynamics
 
@@ -35,6 +37,9 @@ SEARCH = 300
 
 OF_MODEL = 100
 """What a look at the arm's model counts as, likewise."""
+
+OF_ARRAY = 12
+"""What a look at one of its arrays counts as, likewise."""
 
 STEADY = 0.01
 """Joint speed below which the arm counts as steady [rad/s]."""
@@ -140,14 +145,13 @@ def of_measurement(robot: RobotSide) -> Iterator[Builtin]:
         "get_actual_tcp_pose": "actual_TCP_pose",
         "get_target_tcp_pose": "target_TCP_pose",
         "get_tcp_offset": "tcp_offset",
-        "get_target_waypoint": "target_TCP_pose",
     }.items():
-        yield builtin(name, field(source, posed=True))
+        yield builtin(name, field(source, posed=True), cost=OF_ARRAY)
     yield builtin("force", field("tcp_force_scalar"))
     joint = Taken("j", within(integer, 0, 5))
     yield builtin("get_joint_temp", lambda j: read("joint_temperatures")[j], joint)  # pyright: ignore[reportIndexIssue]
     yield builtin("get_controller_temp", lambda: 30.0)
-    yield builtin("is_steady", lambda: bool(np.abs(robot.simulation.estimate.qd).max() < STEADY))
+    yield builtin("is_steady", lambda: bool(np.abs(robot.simulation.estimate.qd).max() < STEADY), cost=OF_ARRAY)
     yield builtin("get_gravity", lambda: tuple((-robot.simulation.estimate.g_B).tolist()))
     yield builtin("powerdown", lambda: robot.command("power_off"))
 
@@ -180,6 +184,14 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         x, near, _, _, point = given
         return arm.inverse(x, _tuple(robot.record.get("target_q")) if near is None else near, point)
 
+    def waypoint() -> PoseValue:
+        move = robot.arm.aim()
+        if isinstance(move, ScriptedJoints):
+            return arm.forward(move.q, None)
+        if isinstance(move, ScriptedLine | ScriptedArc | ScriptedProcess):
+            return PoseValue((*move.position, *rotation(move.quaternion)))
+        return PoseValue(vector(_tuple(robot.record.get("target_TCP_pose"))))
+
     def inverse(*given: Value) -> Value:
         q = found(*given)
         if q is None:
@@ -187,16 +199,16 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         return q
 
     given = (
-        Taken("x", pose),
         Taken("qnear", optional(numbers(6)), None),
         Taken("maxPositionError", number, 1e-10),
         Taken("maxOrientationError", number, 1e-10),
         tcp,
     )
+    yield builtin("get_target_waypoint", waypoint, cost=OF_MODEL)
     yield builtin("get_forward_kin", forward, joints, tcp, cost=OF_MODEL)
     yield builtin("get_actual_tool_flange_pose", flange, cost=OF_MODEL)
-    yield builtin("get_inverse_kin", inverse, *given)
-    yield builtin("get_inverse_kin_has_solution", lambda *all_: found(*all_) is not None, *given)
+    yield builtin("get_inverse_kin", inverse, Taken("x", pose), *given)
+    yield builtin("get_inverse_kin_has_solution", lambda *all_: found(*all_) is not None, Taken("pose", pose), *given)
     yield builtin("is_within_safety_limits", lambda x: _within(robot, arm, x), Taken("pose", any_value), cost=OF_MODEL)
 
     def q_now(q: Value) -> Array:
@@ -212,10 +224,10 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
         moved[:3] += np.cross(J[3:].T, lever).T
         return matrix(moved)
 
-    def mass(q: Value, _rotors: bool) -> Value:
+    def mass(q: Value, rotors: bool) -> Value:
         found = np.array(robot.simulation.dynamics.mass(q_now(q)))
         found = np.triu(found) + np.triu(found, 1).T
-        return matrix(found)
+        return matrix(found + np.diag(robot.simulation.arm.motors.rotor_inertia) if rotors else found)
 
     def coriolis(q: Value, qd: Value) -> Value:
         angles = q_now(q)
@@ -234,7 +246,7 @@ def of_kinematics(robot: RobotSide) -> Iterator[Builtin]:
     speeds = Taken("qd", optional(numbers(6)), None)
     yield builtin("get_jacobian", jacobian, joints, tcp, cost=OF_MODEL)
     yield builtin("get_jacobian_time_derivative", jacobian_rate, joints, speeds, tcp, cost=OF_MODEL)
-    yield builtin("get_mass_matrix", mass, joints, Taken("include_rotors_inertia", any_value, False), cost=OF_MODEL)
+    yield builtin("get_mass_matrix", mass, joints, Taken("include_rotors_inertia", boolean, False), cost=OF_MODEL)
     yield builtin("get_coriolis_and_centrifugal_torques", coriolis, joints, speeds, cost=OF_MODEL)
 
 

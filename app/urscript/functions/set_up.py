@@ -1,11 +1,11 @@
 """Functions that set the robot up, and how it gives way: payload, tool, sensor, stops, guiding, force (URScript manual)."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Literal
 
-from app.urscript.functions.motions import ZERO_UP, placed
-from app.urscript.functions.pose_algebra import quaternion
-from app.urscript.functions.robot_side import RobotSide
+from app.urscript.calculation.pose_algebra import quaternion
+from app.urscript.functions.motions import ZERO_UP, Doing, placed
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.signature import (
     Builtin,
@@ -21,8 +21,12 @@ from app.urscript.machine.signature import (
     within,
 )
 from app.urscript.machine.values import PoseValue, Value
+from app.urscript.robot.robot_side import RobotSide
 from pendant.motion.script_requests import ForceMode, Guided
 from pendant.tick.pose import rotation
+
+OF_WISH = 30
+"""What a wish to be guided by hand counts as, beyond a short function's steps of the evaluator."""
 
 
 def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
@@ -31,17 +35,27 @@ def of_set_up(robot: RobotSide) -> Iterator[Builtin]:
     mass = Taken("m", within(number, 0.0, 100.0))
     now = Taken("transition_time", ZERO_UP, 0.0)
 
-    def payload(m: float, c: Value = None, inertia: Value = None, transition: float = 0.0) -> None:
+    def payload(m: float, c: Value = None, inertia: Value = None, transition: float = 0.0) -> Doing:
         centre = tuple(robot.record.get("payload_cog")) if c is None else c  # pyright: ignore[reportArgumentType]
-        robot.command("payload", mass=m, cog=centre, inertia=inertia, transition=transition)
+        return robot.equip("payload", mass=m, cog=centre, inertia=inertia, transition=transition)
 
-    yield builtin("set_payload", payload, mass, Taken("cog", _centre, None))
-    yield builtin("set_payload_mass", payload, mass)
-    yield builtin("set_payload_cog", lambda c: payload(float(robot.record.get("payload")), c), cog)  # pyright: ignore[reportArgumentType]
-    yield builtin("set_target_payload", payload, mass, cog, Taken("inertia", numbers(6), (0.0,) * 6), now)
+    def zeroed(m: float, c: Value = None) -> Doing:
+        """A robot zeroes what it tells of forces as well (URScript manual, set_payload)."""
+        yield from payload(m, c)
+        with suppress(Misuse):  # a sensor that tells nothing is no reason not to know the payload
+            yield from robot.arm.zero_reading()
+
+    def centre(c: Value) -> Doing:
+        return payload(float(robot.record.get("payload")), c)  # pyright: ignore[reportArgumentType]
+
+    yield builtin("set_payload", zeroed, mass, Taken("cog", _centre, None), takes_time=True)
+    yield builtin("set_payload_mass", zeroed, mass, takes_time=True)
+    yield builtin("set_payload_cog", centre, cog, takes_time=True)
+    inertia = Taken("inertia", numbers(6), (0.0,) * 6)
+    yield builtin("set_target_payload", payload, mass, cog, inertia, now, takes_time=True)
     name = Taken("tcp_name", any_value, "")
-    yield builtin("set_tcp", lambda x, n: robot.command("tcp", pose=x), Taken("pose", pose), name)
-    yield builtin("zero_ftsensor", robot.arm.zero)
+    yield builtin("set_tcp", lambda x, n: robot.equip("tcp", pose=x), Taken("pose", pose), name, takes_time=True)
+    yield builtin("zero_ftsensor", robot.arm.zero, takes_time=True)
     yield builtin("protective_stop", lambda: robot.command("protective_stop"))
     yield builtin("set_gravity", lambda d: robot.command("gravity", gravity=d), Taken("d", numbers(3)))
     action = Taken("action", any_value, "pause")
@@ -79,8 +93,9 @@ def of_free_drive(robot: RobotSide) -> Iterator[Builtin]:
         robot.arm.ask(Guided(axes=chosen, R_BU=rotation(quaternion(tuple(pose_[3:])))))  # pyright: ignore[reportIndexIssue]
 
     axes = Taken("freeAxes", items, (1, 1, 1, 1, 1, 1))
-    yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"))
-    yield builtin("teach_mode", lambda: _guided(robot))
+    yield builtin("freedrive_mode", free, axes, Taken("feature", any_value, "base"), cost=OF_WISH)
+    for name in ("teach_mode", "freedrive_mode_no_incorrect_payload_check"):  # the payload is checked all the same
+        yield builtin(name, lambda: _guided(robot))
     yield builtin("end_freedrive_mode", robot.arm.leave)
     yield builtin("end_teach_mode", robot.arm.leave)
     yield builtin("get_freedrive_status", robot.arm.free_drive_status)
@@ -93,6 +108,9 @@ def _guided(robot: RobotSide) -> None:
 def _centre(value: Value) -> Value:
     return None if value is None else numbers(3)(value)
 
+
+USUAL_DAMPING = 0.025
+"""That a force mode has where a program sets none: a UR's own (ROS driver, SetForceMode)."""
 
 TURNS: tuple[Literal["to_origin", "not", "with_motion"], ...] = ("to_origin", "not", "with_motion")
 """What the frame of force_mode does, by its type 1 to 3."""
@@ -141,5 +159,7 @@ def of_force(robot: RobotSide) -> Iterator[Builtin]:
     )
     yield builtin("end_force_mode", lambda: robot.arm.push(None))
     yield builtin("force_mode_set_damping", damp, Taken("damping", within(number, 0.0, 1.0)))
+    yield builtin("force_mode_get_damping", lambda: USUAL_DAMPING if damping[0] is None else damping[0])
+    yield builtin("force_mode_get_gain_scaling", lambda: gain[0])
     yield builtin("force_mode_set_gain_scaling", scale, Taken("scaling", within(number, 0.0, 2.0)))
     yield builtin("tool_contact", lambda d: robot.arm.steps_back(d), Taken("direction", numbers(6), (0.0,) * 6))

@@ -1,19 +1,22 @@
 """Functions of registers, inputs and outputs (URScript manual, module interfaces)."""
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 from app.robot_interface.controller.field_record import FieldRecord
-from app.robot_interface.controller.status_fields import set_outputs
-from app.urscript.functions.robot_side import RobotSide
+from app.robot_interface.controller.rtde_fields import BITS
+from app.robot_interface.controller.status_fields import in_volts, read_bit, set_analog_output, set_outputs, write_bit
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.signature import Builtin, Taken, boolean, builtin, integer, number, within
 from app.urscript.machine.values import Value
+from app.urscript.robot.robot_side import RobotSide
 
 REGISTERS = 48
-WORDS = 32
-FLAGS = 32
 
-PLACE = Taken("address", integer)
+TOOL_AFTER, TOOL_FIRST = 8, 16
+"""Digital signals of the tool: behind so many in the older functions, from this bit on in the record."""
+
+PLACE, BIT = Taken("address", integer), Taken("address", within(integer, 0, BITS - 1))
 
 
 def of_registers(record: FieldRecord) -> Iterator[Builtin]:
@@ -23,10 +26,10 @@ def of_registers(record: FieldRecord) -> Iterator[Builtin]:
         real = [record.field(f"{way}_double_register_{k}") for k in range(REGISTERS)]
         yield builtin(f"read_{way}_integer_register", _reader([each.item for each in whole]), PLACE)
         yield builtin(f"read_{way}_float_register", _reader([each.item for each in real]), PLACE)
-        yield builtin(f"read_{way}_boolean_register", _bit_reader(record, way), PLACE)
+        yield builtin(f"read_{way}_boolean_register", partial(read_bit, record, way), BIT)
     yield builtin("write_output_integer_register", _writer(record, "int"), PLACE, Taken("value", integer))
     yield builtin("write_output_float_register", _writer(record, "double"), PLACE, Taken("value", number))
-    yield builtin("write_output_boolean_register", _bit_writer(record), PLACE, Taken("value", boolean))
+    yield builtin("write_output_boolean_register", partial(write_bit, record), BIT, Taken("value", boolean))
 
 
 def _reader(items: list[Callable[[], Value]]) -> Callable[[int], Value]:
@@ -51,62 +54,29 @@ def _writer(record: FieldRecord, kind: str) -> Callable[[int, float], None]:
     return write
 
 
-def _word(way: str, address: int) -> str:
-    if not 0 <= address < 128:
-        raise Misuse(f"address {address} is out of range, allowed: 0 to 127")
-    return f"{way}_bit_registers0_to_31" if address < WORDS else f"{way}_bit_registers32_to_63"
-
-
-def _bit_reader(record: FieldRecord, way: str) -> Callable[[int], bool]:
-    def read(address: int) -> bool:
-        word = _word(way, address)
-        if address >= 2 * WORDS:
-            return bool(record.get(f"{way}_bit_register_{address}"))
-        return bool(int(record.field(word).item()) >> address % WORDS & 1)
-
-    return read
-
-
-def _bit_writer(record: FieldRecord) -> Callable[[int, bool], None]:
-    def write(address: int, value: bool) -> None:
-        word = _word("output", address)
-        if address >= 2 * WORDS:
-            record.put(f"output_bit_register_{address}", value)
-            return
-        bit = 1 << address % WORDS
-        before = int(record.field(word).item())
-        record.put(word, before | bit if value else before & ~bit)
-
-    return write
-
-
 def of_inputs_and_outputs(robot: RobotSide) -> Iterator[Builtin]:
     """Digital and analog inputs and outputs, flags."""
     record = robot.record
-    flags = [False] * FLAGS
+    flags = robot.memory.flags
     rows = {"standard": (0, 8), "configurable": (8, 8), "tool": (16, 2)}
     for name, (first, count) in rows.items():
         n = Taken("n", within(integer, 0, count - 1))
         yield builtin(f"get_{name}_digital_in", _digital(record, "input", first), n)
         yield builtin(f"get_{name}_digital_out", _digital(record, "output", first), n)
         yield builtin(f"set_{name}_digital_out", _switch(record, first), n, Taken("b", boolean))
-    n = Taken("n", within(integer, 0, 17))
+    n = Taken("n", _of_older_controllers)
     yield builtin("get_digital_in", _digital(record, "input", 0), n)
     yield builtin("get_digital_out", _digital(record, "output", 0), n)
     yield builtin("set_digital_out", _switch(record, 0), n, Taken("b", boolean))
     n, f = Taken("n", within(integer, 0, 1)), Taken("f", within(number, 0.0, 1.0))
-    for name in ("get_standard_analog_in", "get_analog_in"):
-        yield builtin(name, lambda k: record.get(f"standard_analog_input{k}"), n)
+    yield builtin("get_standard_analog_in", lambda k: record.get(f"standard_analog_input{k}"), n)
+    every = Taken("n", within(integer, 0, 3))
+    yield builtin("get_analog_in", lambda k: record.get(f"{'standard' if k < 2 else 'tool'}_analog_input{k % 2}"), every)
     yield builtin("get_tool_analog_in", lambda k: record.get(f"tool_analog_input{k}"), n)
     for name in ("get_standard_analog_out", "get_analog_out"):
         yield builtin(name, lambda k: record.get(f"standard_analog_output{k}"), n)
     for name in ("set_standard_analog_out", "set_analog_out"):
-        yield builtin(name, lambda k, value: record.put(f"standard_analog_output{k}", value), n, f)
-    domain = Taken("domain", within(integer, 0, 1))
-    for name in ("set_standard_analog_input_domain", "set_tool_analog_input_domain", "set_analog_outputdomain"):
-        yield builtin(name, _nothing, Taken("port", within(integer, 0, 3)), domain)
-    for name in ("set_standard_analog_input_range", "set_analog_inputrange"):
-        yield builtin(name, _nothing, Taken("port", within(integer, 0, 3)), Taken("range", within(integer, 0, 4)))
+        yield builtin(name, lambda k, value: set_analog_output(record, k, value, volts=in_volts(record, k)), n, f)
 
     def voltage(value: float) -> None:
         if value not in (0.0, 12.0, 24.0):
@@ -115,15 +85,17 @@ def of_inputs_and_outputs(robot: RobotSide) -> Iterator[Builtin]:
 
     yield builtin("set_tool_voltage", voltage, Taken("voltage", number))
     yield builtin("get_tool_current", lambda: record.get("tool_output_current"))
-    flag = Taken("n", within(integer, 0, FLAGS - 1))
+    flag = Taken("n", within(integer, 0, len(flags) - 1))
     yield builtin("get_flag", lambda k: flags[k], flag)
     yield builtin("set_flag", lambda k, b: flags.__setitem__(k, b), flag, Taken("b", boolean))
     for name in ("get_euromap_input", "get_euromap_output"):
         yield builtin(name, lambda k: False, Taken("port_number", within(integer, 0, 31)))
 
 
-def _nothing(*_: Value) -> None:
-    """What is set is the same for every simulated signal."""
+def _of_older_controllers(value: Value) -> int:
+    """A number of a digital signal as controllers before the e-Series count them: 8 and 9 are those of the tool."""
+    number_ = within(integer, 0, 9)(value)
+    return number_ if number_ < TOOL_AFTER else TOOL_FIRST + number_ - TOOL_AFTER
 
 
 def _digital(record: FieldRecord, way: str, first: int) -> Callable[[int], bool]:

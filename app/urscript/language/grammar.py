@@ -13,7 +13,7 @@ GRAMMAR = r"""
 start: _block
 _block: _NL* _statement*
 _statement: _simple _NL* | _compound _NL*
-_simple: assign | call_statement | jump | return_ | hold | pass_
+_simple: assign | call_statement | jump | return_ | hold
 _compound: function | if_ | while_ | critical
 
 body: _NL* _statement*
@@ -30,7 +30,6 @@ assign: [SCOPE] postfix "=" expression
       | SCOPE postfix -> declare
 call_statement: postfix
 jump: JUMP
-pass_: PASS
 return_: RETURN [expression]
 hold: HOLD expression
 
@@ -43,6 +42,7 @@ hold: HOLD expression
 ?product: sign | product FACTOR sign -> binary
 ?sign: postfix | SIGN sign -> unary
 ?postfix: atom | postfix "[" _expressions "]" -> subscript | postfix "." (NAME | KIND) -> select
+        | postfix "." NAME "(" [arguments] ")" -> remote
 ?atom: NUMBER -> number
      | STRING -> string
      | WORD -> word
@@ -63,15 +63,14 @@ IF.3: /if\b/
 ELIF.3: /elif\b/
 ELSE.3: /else\b/
 WHILE.3: /while\b/
-CRITICAL.3: /critical\b/
+CRITICAL.3: /critical\b(?=\s*:)/
 END.3: /end\b/
 SCOPE.3: /(local|global)\b/
 JUMP.3: /(break|continue|halt|enter_critical|exit_critical)\b/
-PASS.3: /pass\b/
 RETURN.3: /return\b/
 HOLD.3: /(join|kill)\b/
 RUN.3: /run\b/
-NOT.3: /not\b/
+NOT.3: /not\b|!(?!=)/
 AND.3: /and\b/
 OR.3: /or\b/
 XOR.3: /xor\b/

@@ -10,6 +10,24 @@ LONGEST = 1 << 20
 """Of a program [bytes]."""
 
 
+FUNCTION = re.compile(r"\s*(?:(?:#|\$)[^\n]*\n\s*)*(?:def|sec)\b")
+"""How a text begins that the network would cut at each `end`."""
+
+
+def programs_of(text: str) -> list[str]:
+    """The programs of a text as the network cuts it, where it begins with a function; else the text is one program.
+
+    Lines that stand alone behind a function, a call of it say, are programs of their own.
+    """
+    if FUNCTION.match(text) is None:
+        return [text]
+    cut = ProgramText()
+    found = cut.hear(text.encode() + b"\n")
+    if found is None:
+        return [text]
+    return [*found, cut.all()] if cut.unfinished else found
+
+
 class ProgramText:
     """What one client has sent so far."""
 

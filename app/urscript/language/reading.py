@@ -56,7 +56,7 @@ class _Build(Transformer[Token, Any]):
         return tree.Binary(_at(items[1]), str(items[1]), items[0], items[2])
 
     def unary(self, items: list[Any]) -> tree.Node:
-        operator, operand = str(items[0]), items[1]
+        operator, operand = str(items[0]).replace("!", "not"), items[1]
         if operator == "-" and isinstance(operand, tree.Literal) and type(operand.value) in (int, float):
             return tree.Literal(_at(items[0]), -operand.value)  # pyright: ignore[reportOptionalOperand, reportOperatorIssue]
         return tree.Unary(_at(items[0]), operator, operand)
@@ -109,16 +109,22 @@ class _Build(Transformer[Token, Any]):
         _variable(target)
         return tree.Assign(target.place, target, tree.Literal(target.place, None), str(scope))
 
-    def call_statement(self, items: list[Any]) -> tree.Evaluate:
+    def remote(self, items: list[Any]) -> tree.RemoteCall:
+        given = items[2] or []
+        if any(isinstance(each, tuple) for each in given):
+            raise ScriptTrouble(_at(items[1]), f"{items[1]}(): a remote function has no arguments by name")
+        return tree.RemoteCall(_at(items[1]), items[0], str(items[1]), given)
+
+    def call_statement(self, items: list[Any]) -> tree.Node:
         value = items[0]
-        if not isinstance(value, tree.Call | tree.Run):
+        if isinstance(value, tree.Name) and value.name == "pass":  # a name, too: programs call variables so
+            return tree.Jump(value.place, "pass")
+        if not isinstance(value, tree.Call | tree.Run | tree.RemoteCall):
             raise ScriptTrouble(value.place, "a value alone is no statement")
         return tree.Evaluate(value.place, value)
 
     def jump(self, items: list[Token]) -> tree.Jump:
         return tree.Jump(_at(items[0]), str(items[0]))
-
-    pass_ = jump
 
     def return_(self, items: list[Any]) -> tree.Return:
         return tree.Return(_at(items[0]), items[1])
@@ -188,6 +194,13 @@ def read_script(text: str) -> list[tree.Node]:
     if len(text) > LONGEST:
         raise ScriptTrouble(NOWHERE, f"the script has {len(text)} characters, allowed: {LONGEST}")
     _shallow(text)
+    lines = text.split("\n")
+
+    def wrong(place: Spot, sentence: str) -> ScriptTrouble:
+        """An error of syntax; a robot's words are those that clients of its primary interface show."""
+        line = lines[place.line - 1].rstrip("\r") if place.line <= len(lines) else ""
+        return ScriptTrouble(place, f"syntax error{sentence}", f"syntax_error_on_line:{place.line}:{line}:")
+
     parser = _parser()
     try:
         body: list[tree.Node] = parser.parse(text)  # pyright: ignore[reportAssignmentType]: the transformer's, not Lark's tree
@@ -196,16 +209,16 @@ def read_script(text: str) -> list[tree.Node]:
             raise error.orig_exc from None
         raise
     except UnexpectedCharacters as error:
-        raise ScriptTrouble(Spot(error.line, error.column), f"syntax error: unexpected character {error.char!r}") from None
+        raise wrong(Spot(error.line, error.column), f": unexpected character {error.char!r}") from None
     except UnexpectedToken as error:
         token = error.token
         if token.type == "$END":
-            lines = text.rstrip().splitlines() or [""]
-            raise ScriptTrouble(Spot(len(lines), len(lines[-1]) + 1), "syntax error: the text ends too early") from None
+            last = text.rstrip().split("\n")
+            raise wrong(Spot(len(last), len(last[-1]) + 1), ": the text ends too early") from None
         shown = "the end of the line" if token.type == "_NL" else f"'{str(token)[:30]}'"
-        raise ScriptTrouble(_at(token), f"syntax error: unexpected {shown}{expected(set(error.expected))}") from None
+        raise wrong(_at(token), f": unexpected {shown}{expected(set(error.expected))}") from None
     except UnexpectedInput as error:
-        raise ScriptTrouble(Spot(error.line, error.column), "syntax error") from None
+        raise wrong(Spot(error.line, error.column), "") from None
     for depth, level in enumerate(tree.levels(body)):
         if depth == DEEPEST_TREE:
             raise ScriptTrouble(level[0].place, f"blocks and operators within one another, more than {DEEPEST_TREE}")
@@ -215,7 +228,7 @@ def read_script(text: str) -> list[tree.Node]:
 def _shallow(text: str) -> None:
     """Raise ScriptTrouble where brackets are nested too deeply, or a line is too long."""
     depth, deepest = 0, DEEPEST
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(text.split("\n"), 1):
         if len(line) > 1 << 15:
             raise ScriptTrouble(Spot(number, 1), f"the line has {len(line)} characters, allowed: {1 << 15}")
         code = line.split("#", 1)[0]

@@ -82,6 +82,15 @@ class Call(Node):
 
 
 @dataclass(slots=True)
+class RemoteCall(Node):
+    """Of a function of the server behind a handle: `handle.function(arguments)`."""
+
+    of: Node
+    name: str
+    arguments: list[Node]
+
+
+@dataclass(slots=True)
 class Run(Node):
     """Starts a thread; its number is the value."""
 

@@ -19,11 +19,17 @@ class ScriptTrouble(Exception):
     Args:
         place: in its text.
         text: one sentence, without the place.
+        words: how a robot says it, where clients compare its words; "" for the sentence.
     """
 
-    def __init__(self, place: Spot, text: str) -> None:
+    def __init__(self, place: Spot, text: str, words: str = "") -> None:
         super().__init__(f"line {place.line}, column {place.column}: {text}")
-        self.place, self.text = place, text
+        self.place, self.text, self.words = place, text, words
+
+
+def not_found(place: Spot, name: str, text: str) -> ScriptTrouble:
+    """A name that is not known, in the words of a robot (UR client library, test_primary_client.cpp)."""
+    return ScriptTrouble(place, text, f"compile_error_name_not_found:{name}:")
 
 
 class Misuse(ValueError):

@@ -60,6 +60,9 @@ def children(node: tree.Node) -> Iterator[tree.Node]:
     elif isinstance(node, tree.Call):
         yield from node.arguments
         yield from (value for _, value in node.named)
+    elif isinstance(node, tree.RemoteCall):
+        yield node.of
+        yield from node.arguments
     elif isinstance(node, tree.Run):
         yield from children(node.call)
 
@@ -170,6 +173,11 @@ def calls(node: tree.Node) -> Iterator[tree.Call]:
         left += children(each)
 
 
+def calls_out(node: tree.Node) -> bool:
+    """A function of a server is called in an expression."""
+    return isinstance(node, tree.RemoteCall) or any(calls_out(each) for each in children(node))
+
+
 def _who_takes_time(main: Routine, routines: dict[str, Routine], builtins: dict[str, Builtin]) -> None:
     """Find the functions that run within a statement: short, without loops, and calling only such."""
     state: dict[str, bool | None] = {}
@@ -188,7 +196,7 @@ def _runs_within(
     cost, plain = 2, routine.kind == "def"
     for each in statements(routine.body):
         cost += 1 + sum(size(expression) for expression in expressions(each))
-        plain = plain and not isinstance(each, tree.While | tree.OnThread)
+        plain = plain and not isinstance(each, tree.While | tree.OnThread) and not any(map(calls_out, expressions(each)))
         for call in (call for expression in expressions(each) for call in calls(expression)):
             called = routines.get(call.name)
             if called is not None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from app.urscript.language import tree
 from app.urscript.language.calling import Given, bound
-from app.urscript.language.trouble import ScriptTrouble
+from app.urscript.language.trouble import ScriptTrouble, not_found
 from app.urscript.machine import expressions as make
 from app.urscript.machine.analysis import MAIN, Routine, ScriptOutline, children, size
 from app.urscript.machine.expressions import Frame, Read
@@ -42,12 +42,12 @@ class Compiler:
         """The value of an expression; steps for what has to be done first are added to the present function."""
         if self._steps_in(node) or size(node) > HEAVY:
             self._beforehand(node)
-        return self._plain(node)
+        return self.plain(node)
 
     def _steps_in(self, node: tree.Node) -> bool:
         found = self._stepped.get(id(node))
         if found is None:
-            own = isinstance(node, tree.Call) and self._by_steps(node)
+            own = isinstance(node, tree.RemoteCall) or (isinstance(node, tree.Call) and self._by_steps(node))
             found = self._stepped[id(node)] = own or any(self._steps_in(each) for each in children(node))
         return found
 
@@ -69,8 +69,8 @@ class Compiler:
             if self._steps_in(part) or size(part) > HEAVY // 4:
                 self._beforehand(part)
             if (k < last or size(part) > HEAVY // 8) and not isinstance(part, tree.Literal):
-                self._keep(part, self._plain(part))
-        if isinstance(node, tree.Call) and self._by_steps(node):
+                self._keep(part, self.plain(part))
+        if isinstance(node, tree.RemoteCall) or (isinstance(node, tree.Call) and self._by_steps(node)):
             slot = self.slot()
             self._statements.call(node, slot)
             self._temporary[id(node)] = kept(slot)
@@ -106,7 +106,8 @@ class Compiler:
         self._temporary.clear()
         self._stepped.clear()
 
-    def _plain(self, node: tree.Node) -> Read:
+    def plain(self, node: tree.Node) -> Read:
+        """The value of an expression in which nothing has to be done first."""
         done = self._temporary.get(id(node))
         if done is not None:
             return done
@@ -117,16 +118,16 @@ class Compiler:
         if isinstance(node, tree.Binary):
             return self._binary(node)
         if isinstance(node, tree.Unary):
-            x = self._plain(node.operand)
+            x = self.plain(node.operand)
             if node.operator == "not":
                 return make.opposite(make.condition(x, node.operand))
             return make.signed(x, node.place) if node.operator == "-" else x
         if isinstance(node, tree.Items):
-            return make.listed([self._plain(each) for each in node.items], node.place, node.pose)
+            return make.listed([self.plain(each) for each in node.items], node.place, node.pose)
         if isinstance(node, tree.Index):
-            return make.indexed(self._plain(node.of), [self._plain(each) for each in node.numbers], node.place)
+            return make.indexed(self.plain(node.of), [self.plain(each) for each in node.numbers], node.place)
         if isinstance(node, tree.Member):
-            return make.selected(self._plain(node.of), node.name, node.place)
+            return make.selected(self.plain(node.of), node.name, node.place)
         if isinstance(node, tree.Run):
             return self._run(node)
         assert isinstance(node, tree.Call)
@@ -139,7 +140,7 @@ class Compiler:
             return make.local(slot, node.name, node.place)
         number = self.script.globals.get(node.name)
         if number is None:
-            raise ScriptTrouble(node.place, f"{node.name} is not defined")
+            raise not_found(node.place, node.name, f"{node.name} is not defined")
         return make.shared(self.held.globals, number, node.name, node.place)
 
     def _binary(self, node: tree.Binary) -> Read:
@@ -148,8 +149,8 @@ class Compiler:
             choice = self._choice(node)
             if choice is not None:
                 return choice
-            return make.either([make.condition(self._plain(part), part) for part in self._chain(node)])
-        x, y = self._plain(node.left), self._plain(node.right)
+            return make.either([make.condition(self.plain(part), part) for part in self._chain(node)])
+        x, y = self.plain(node.left), self.plain(node.right)
         if operator == "and":
             return make.both(make.condition(x, node.left), make.condition(y, node.right))
         if operator == "xor":
@@ -183,7 +184,7 @@ class Compiler:
             return None
         part = self._chain(node)[0]
         assert isinstance(part, tree.Binary)
-        return make.one_of(self._plain(part.left), values)
+        return make.one_of(self.plain(part.left), values)
 
     def _chain(self, node: tree.Node) -> list[tree.Node]:
         """The parts of a or b or c."""
@@ -198,14 +199,14 @@ class Compiler:
         defaults = {each.name: each.default for each in routine.parameters if each.default is not None}
         names = [each.name for each in routine.parameters]
         found = bound(node, names, {name: Given(None, default) for name, default in defaults.items()})
-        return [self._plain(each.node) if each.node is not None else self._default(each.default) for each in found]
+        return [self.plain(each.node) if each.node is not None else self._default(each.default) for each in found]
 
     def _default(self, node: Any) -> Read:
         routine, self.routine = self.routine, Routine(MAIN, [], [])
         try:
             if self._steps_in(node):
                 raise ScriptTrouble(node.place, "a default cannot take time")
-            return self._plain(node)
+            return self.plain(node)
         finally:
             self.routine = routine
 
@@ -246,7 +247,9 @@ class Compiler:
         """The function of the language of this name."""
         found = self.builtins.get(node.name)
         if found is None:
-            raise ScriptTrouble(node.place, f"there is no function {node.name}()")
+            raise not_found(node.place, node.name, f"there is no function {node.name}()")
+        if found.barred:
+            raise ScriptTrouble(node.place, f"{node.name}(): {found.barred}")
         return found
 
     def checked(self, node: tree.Call, found: Builtin) -> list[tuple[Read, Callable[[Value], Value]]]:
@@ -260,17 +263,17 @@ class Compiler:
                 reads.append((make.constant(each.default), as_it_is))
             else:
                 check, name = taken.check, taken.name
-                reads.append((self._plain(each.node), named_check(check, name)))
+                reads.append((self.plain(each.node), named_check(check, name)))
         return reads
 
     def _struct(self, node: tree.Call) -> Read:
         if node.arguments or not node.named:
             raise ScriptTrouble(node.place, "struct() has members by name")
-        return structured([(name, self._plain(value)) for name, value in node.named], node.place)
+        return structured([(name, self.plain(value)) for name, value in node.named], node.place)
 
     def _run(self, node: tree.Run) -> Read:
         routine = self.script.routines.get(node.call.name)
         if routine is None:
-            raise ScriptTrouble(node.call.place, f"there is no thread {node.call.name}()")
+            raise not_found(node.call.place, node.call.name, f"there is no thread {node.call.name}()")
         made, held, place = self.frame(node.call, routine), self.held, node.place
         return lambda f: held.start(routine, made(f), place)

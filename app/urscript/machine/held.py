@@ -1,6 +1,6 @@
 """A thread of a script, and what its steps leave for the machine that runs them, and ask of it."""
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -8,6 +8,11 @@ from app.urscript.language.trouble import NOWHERE, Spot
 from app.urscript.machine.analysis import Routine
 from app.urscript.machine.expressions import Frame
 from app.urscript.machine.values import Value
+
+RETURN, CALL, WAIT, SYNC, JOIN, HALT = -1, -2, -3, -4, -5, -6
+"""What a step gives in place of the number of the next one."""
+
+Step = Callable[[Frame], int]
 
 
 class Halted(Exception):

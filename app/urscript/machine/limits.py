@@ -5,7 +5,7 @@ NODES_A_TICK = 3000
 is made up for in the ticks after it."""
 
 NODES_WITHOUT_TIME = 500 * NODES_A_TICK
-"""Steps of one thread in a row in which no time passes for the robot: a second of its clock when it runs alone."""
+"""Steps of one thread in a row in which no time passes for the robot, before people are told: a second when it runs alone."""
 
 NODES_OF_START = 60
 """Steps that the start of a thread counts, as long as it takes the evaluator."""

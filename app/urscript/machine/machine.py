@@ -7,7 +7,7 @@ from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
 from app.urscript.machine.analysis import Routine, ScriptOutline, outline
 from app.urscript.machine.compiler import Compiler
 from app.urscript.machine.expressions import Frame
-from app.urscript.machine.held import Halted, Strand
+from app.urscript.machine.held import CALL, JOIN, RETURN, SYNC, WAIT, Halted, Strand
 from app.urscript.machine.limits import (
     DEEPEST_CALLS,
     MEMORY_LOOK,
@@ -20,11 +20,7 @@ from app.urscript.machine.limits import (
 )
 from app.urscript.machine.operators import effort
 from app.urscript.machine.signature import Builtin
-from app.urscript.machine.statements import CALL, JOIN, RETURN, SYNC, WAIT
 from app.urscript.machine.values import UNSET, Value, safely_shown, weight
-
-TOO_LONG = "the program used too much time without instructing the robot what to do; use sleep() or sync() in long loops"
-"""As a UR says it (ros-industrial/universal_robot#330)."""
 
 
 class Machine:
@@ -64,12 +60,18 @@ class Machine:
         self._owed = 0  # steps that were done beyond the budgets of the ticks so far
         self.ended = False
         self.trouble: ScriptTrouble | None = None  # why it cannot go on
+        self.breathless: Spot | None = None  # where a thread first computed for a second without letting time pass
 
     @property
     def line(self) -> int:
         """Of the program, where it is; 0 once it has ended."""
         strand = self._main
         return 0 if self.ended else strand.routine.places[min(strand.pc, len(strand.routine.places) - 1)].line
+
+    @property
+    def waits(self) -> bool:
+        """Every thread waits for something outside of the script, or for another thread."""
+        return all(strand.wait is not None or strand.joins for strand in self._strands)
 
     def variables(self) -> dict[str, str]:
         """All variables that every function sees, as text."""
@@ -271,5 +273,5 @@ class Machine:
             strand.routine, strand.pc, strand.frame = routine, pc, frame
             strand.spent += begun - budget
             self._owed += max(-budget, 0)
-            if strand.spent > NODES_WITHOUT_TIME and budget <= 0:
-                raise ScriptTrouble(routine.places[pc], TOO_LONG)
+            if strand.spent > NODES_WITHOUT_TIME and budget <= 0 and self.breathless is None:
+                self.breathless = routine.places[pc]

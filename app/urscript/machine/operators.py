@@ -4,9 +4,10 @@ import math
 from collections.abc import Callable
 
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.values import PoseValue, StructValue, Value, kind, number_made
+from app.urscript.machine.values import PoseValue, StructValue, Value, joined_text, kind, number_made
 
 NUMBERS = frozenset({int, float})
+LISTS = frozenset({tuple, PoseValue})
 
 effort = [0]
 """Elements that operators have gone through since the machine looked: steps that no count of nodes knows."""
@@ -39,7 +40,10 @@ SINGLE: dict[str, Work] = {
 
 
 def compute(operator: str, a: Value, b: Value) -> Value:
-    """`a operator b`: of numbers, of lists and poses element by element, of a list and a number, of matrices.
+    """`a operator b`: of numbers; of lists, poses and numbers element by element; of matrices; + joins strings.
+
+    Source: URScript manual, "Matrix and array expressions". Lists of one length take all five operators, and so do a list or a
+    matrix and a number, in either order. A matrix times a matrix or a list is the product of linear algebra.
 
     Raises:
         Misuse: it cannot be done with these.
@@ -51,23 +55,33 @@ def compute(operator: str, a: Value, b: Value) -> Value:
         except OverflowError:
             raise Misuse(f"{operator}: the result is too great") from None
         return number_made(found) if type(found) is int else found
-    lists = (tuple, PoseValue)
-    if left in lists or right in lists:
-        effort[0] += (len(a) if left in lists else 0) + (len(b) if right in lists else 0)
-    if left in lists and right in lists and operator in "+-":
+    if left is str and right is str and operator == "+":
+        return joined_text(a, b)
+    if left in LISTS or right in LISTS:
+        return _by_elements(operator, a, b)
+    hint = "; str_cat() joins strings" if str in (left, right) and operator == "+" else ""
+    raise Misuse(f"{operator} of {kind(a)} and {kind(b)}{hint}")
+
+
+def _by_elements(operator: str, a: Value, b: Value) -> Value:
+    """`a operator b` where one of them is a list or a pose, or both are."""
+    left, right = type(a), type(b)
+    effort[0] += (len(a) if left in LISTS else 0) + (len(b) if right in LISTS else 0)
+    if left in LISTS and right in LISTS:
+        if operator == "*" and left is tuple and right is tuple and _matrix(a):
+            return _product(a, b)
+        if _matrix(a) is not _matrix(b):
+            raise Misuse(f"{operator} of {_described(a)} and {_described(b)}: only a matrix times a list is known")
         if len(a) != len(b):
             raise Misuse(f"{operator} of lists of {len(a)} and {len(b)} elements")
-        if set(map(type, a)) | set(map(type, b)) == {float}:
-            return _like(a if left is PoseValue else b, list(map(work, a, b)))
-        return _like(a if left is PoseValue else b, [compute(operator, x, y) for x, y in zip(a, b, strict=True)])
-    if left in lists and right in NUMBERS and operator in "*/":
+        pose = a if left is PoseValue else b
+        if operator in "+-*" and set(map(type, a)) | set(map(type, b)) == {float}:
+            return _like(pose, list(map(SINGLE[operator], a, b)))
+        return _like(pose, [compute(operator, x, y) for x, y in zip(a, b, strict=True)])
+    if right in NUMBERS:
         return _like(a, [compute(operator, x, b) for x in a])
-    if left in NUMBERS and right in lists and operator == "*":
+    if left in NUMBERS:
         return _like(b, [compute(operator, a, x) for x in b])
-    if left is tuple and right is tuple and operator == "*" and _matrix(a):
-        return _product(a, b)
-    if str in (left, right) and operator == "+":
-        raise Misuse(f"+ of {kind(a)} and {kind(b)}; str_cat() joins strings")
     raise Misuse(f"{operator} of {kind(a)} and {kind(b)}")
 
 
@@ -149,6 +163,10 @@ def _like(of: Value, items: list[Value]) -> Value:
 
 def _matrix(a: Value) -> bool:
     return bool(a) and type(a[0]) is tuple
+
+
+def _described(a: Value) -> str:
+    return "a matrix" if _matrix(a) else kind(a)
 
 
 def _product(a: Value, b: Value) -> Value:

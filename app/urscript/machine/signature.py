@@ -37,11 +37,29 @@ class Builtin(NamedTuple):
     parameters: tuple[Taken, ...]
     work: Callable[..., Value]
     takes_time: bool = False
+    physical: bool = False  # the time that it takes is the arm's: it moves, or waits on purpose
+    barred: str = ""  # why it cannot be called at all
 
 
-def builtin(name: str, work: Callable[..., Value], *parameters: Taken, takes_time: bool = False, cost: int = 0) -> Builtin:
+def builtin(
+    name: str,
+    work: Callable[..., Value],
+    *parameters: Taken,
+    takes_time: bool = False,
+    physical: bool = False,
+    cost: int = 0,
+) -> Builtin:
     """A function of the language; `cost`: what a call takes beyond that of a short function, in steps of the evaluator."""
-    return Builtin(name, parameters, _counted(work, cost) if cost else work, takes_time)
+    return Builtin(name, parameters, _counted(work, cost) if cost else work, takes_time or physical, physical)
+
+
+def barred(name: str, why: str) -> Builtin:
+    """A function that the language has, and this robot or this kind of program has not."""
+    return Builtin(name, (), _never, barred=why)
+
+
+def _never(*_: Value) -> Value:
+    raise AssertionError("the compiler refuses it")
 
 
 def _counted(work: Callable[..., Value], cost: int) -> Callable[..., Value]:

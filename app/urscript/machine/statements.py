@@ -6,18 +6,19 @@ from typing import TYPE_CHECKING, Any
 from weakref import proxy
 
 from app.urscript.language import tree
-from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
+from app.urscript.language.trouble import ScriptTrouble, Spot
 from app.urscript.machine import expressions as make
 from app.urscript.machine.analysis import Routine, base, expressions, size
 from app.urscript.machine.expressions import Frame, Read
+from app.urscript.machine.held import HALT, JOIN, RETURN, SYNC
 from app.urscript.machine.stores import changed, cost_within, put_own, put_shared
 from app.urscript.machine.values import StructValue
+from app.urscript.machine.worked import called, remote_waited, waited
 
 if TYPE_CHECKING:
     from app.urscript.machine.compiler import Compiler
 
 BULKY = frozenset({tuple, str, StructValue})
-RETURN, CALL, WAIT, SYNC, JOIN, HALT = -1, -2, -3, -4, -5, -6
 
 
 class Statements:
@@ -179,32 +180,20 @@ class Statements:
 
         self._add(step, node.place, self._cost(node))
 
-    def call(self, node: tree.Call, slot: int) -> None:
+    def call(self, node: tree.Call | tree.RemoteCall, slot: int) -> None:
         """A call that takes steps or time; its result is put into the frame at `slot`."""
-        compiler, held, place = self._compiler, self._compiler.held, node.place
-        routine = compiler.script.routines.get(node.name)
-        if routine is not None:
+        compiler, held = self._compiler, self._compiler.held
+        if isinstance(node, tree.RemoteCall):
+            reads = [compiler.plain(each) for each in node.arguments]
+            step = remote_waited(held, node, slot, compiler.plain(node.of), arguments=reads)
+        elif (routine := compiler.script.routines.get(node.name)) is not None:
             if routine.kind == "thread":
-                raise ScriptTrouble(place, f"{node.name} is a thread: start it with run")
-            made = compiler.frame(node, routine)
-
-            def step(f: Frame) -> int:
-                held.called = (routine, made(f), slot)
-                return CALL
-
-            self._add(step, place, size(node))
-            return
-        found = compiler.builtin(node)
-        arguments, work, name = compiler.checked(node, found), found.work, node.name
-
-        def wait(f: Frame) -> int:
-            try:
-                held.waiting = (work(*[check(read(f)) for read, check in arguments]), slot, place, name)
-            except Misuse as misuse:
-                raise ScriptTrouble(place, f"{name}(): {misuse}") from None
-            return WAIT
-
-        self._add(wait, place, size(node))
+                raise ScriptTrouble(node.place, f"{node.name} is a thread: start it with run")
+            step = called(held, routine, compiler.frame(node, routine), slot)
+        else:
+            found = compiler.builtin(node)
+            step = waited(held, node, slot, found.work, arguments=compiler.checked(node, found))
+        self._add(step, node.place, size(node))
 
     # assignments
 

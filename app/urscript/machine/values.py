@@ -21,6 +21,10 @@ class PoseValue(tuple[float, ...]):
     __slots__ = ()
 
 
+POSE_MEMBERS = ("x", "y", "z", "rx", "ry", "rz")
+"""What other machines call the numbers of a pose."""
+
+
 class StructValue:
     """A struct: members by name."""
 
@@ -33,6 +37,20 @@ class StructValue:
         return isinstance(other, StructValue) and self.members == other.members
 
     __hash__ = None  # pyright: ignore[reportAssignmentType]: like a dict
+
+
+class RemoteHandle:
+    """A server whose functions can be called."""
+
+    __slots__ = ()
+
+    def call(self, name: str, arguments: list[Value]) -> Iterator[None]:
+        """Call one of its functions: a generator that is asked once a tick until it returns what the function gave.
+
+        Raises:
+            Misuse: it cannot be called so; or, while it is waited for, it did not answer as it should.
+        """
+        raise NotImplementedError
 
 
 class Unset:
@@ -50,6 +68,8 @@ def kind(value: Value) -> str:
     """What errors call a value."""
     if value is None:
         return "None"
+    if isinstance(value, RemoteHandle):
+        return "a handle"
     return KINDS.get(type(value), "a struct")
 
 
@@ -59,6 +79,18 @@ def shown(value: Value) -> str:
     if len(text) > LONGEST_TEXT:
         raise Misuse(f"a text of {len(text)} characters, allowed: {LONGEST_TEXT}")
     return text
+
+
+def joined_text(a: Value, b: Value) -> str:
+    """Both as text, one after the other.
+
+    Raises:
+        Misuse: it is too long.
+    """
+    joined = shown(a) + shown(b)
+    if len(joined) > LONGEST_TEXT:
+        raise Misuse(f"a text of {len(joined)} characters, allowed: {LONGEST_TEXT}")
+    return joined
 
 
 def safely_shown(value: Value) -> str:
@@ -90,7 +122,7 @@ def _parts(value: Value) -> Iterator[str]:
             yield from _parts(each)
         yield ")"
     else:
-        yield str(value)
+        yield "(a handle)" if isinstance(value, RemoteHandle) else str(value)
 
 
 SIMPLE = frozenset({float, int, bool})

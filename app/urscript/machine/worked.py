@@ -1,11 +1,15 @@
-"""Calls of the language's own functions, and structs, within an expression."""
+"""Calls: of the language's own functions and structs within an expression, and steps of those that take time."""
 
 from collections.abc import Callable
+from typing import Any
 
+from app.urscript.language import tree
 from app.urscript.language.trouble import Misuse, ScriptTrouble, Spot
+from app.urscript.machine.analysis import Routine
 from app.urscript.machine.expressions import Frame, Read
+from app.urscript.machine.held import CALL, WAIT, Held, Step
 from app.urscript.machine.limits import LONGEST_LIST
-from app.urscript.machine.values import StructValue, Value, weight
+from app.urscript.machine.values import RemoteHandle, StructValue, Value, kind, weight
 
 
 def worked(name: str, work: Callable[..., Value], arguments: list[tuple[Read, Callable[[Value], Value]]], place: Spot) -> Read:
@@ -89,3 +93,46 @@ def named_check(check: Callable[[Value], Value], name: str) -> Callable[[Value],
             raise Misuse(f"{name}: {misuse}") from None
 
     return checked
+
+
+def called(held: Held, routine: Routine, made: Callable[[Frame], Frame], slot: int) -> Step:
+    """A function of the script is run; its result is put into the frame at `slot`."""
+
+    def step(f: Frame) -> int:
+        held.called = (routine, made(f), slot)
+        return CALL
+
+    return step
+
+
+def waited(
+    held: Held, node: tree.Call, slot: int, work: Callable[..., Any], *, arguments: list[tuple[Read, Callable[[Value], Value]]]
+) -> Step:
+    """A function of the language takes time; each argument is checked."""
+    name, place = node.name, node.place
+
+    def step(f: Frame) -> int:
+        try:
+            held.waiting = (work(*[check(read(f)) for read, check in arguments]), slot, place, name)
+        except Misuse as misuse:
+            raise ScriptTrouble(place, f"{name}(): {misuse}") from None
+        return WAIT
+
+    return step
+
+
+def remote_waited(held: Held, node: tree.RemoteCall, slot: int, of: Read, *, arguments: list[Read]) -> Step:
+    """A function of a server is called."""
+    name, place = node.name, node.place
+
+    def step(f: Frame) -> int:
+        handle = of(f)
+        if not isinstance(handle, RemoteHandle):
+            raise ScriptTrouble(place, f".{name}() of {kind(handle)}: expected a handle, as rpc_factory() gives it")
+        try:
+            held.waiting = (handle.call(name, [read(f) for read in arguments]), slot, place, name)
+        except Misuse as misuse:
+            raise ScriptTrouble(place, f"{name}(): {misuse}") from None
+        return WAIT
+
+    return step

@@ -1,16 +1,19 @@
 """The arm of a script: what it wants is said to the pendant in every tick, and read back from what that decides."""
 
+from collections.abc import Generator
+
 from msgspec.structs import replace
 
-from app.urscript.functions.robot_side import Axes
 from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language.trouble import Misuse
+from app.urscript.robot.path_offsets import PathOffsets
+from app.urscript.robot.robot_side import Axes
 from pendant.contact.contact_change import Change, Contact
 from pendant.decision import Decision
 from pendant.events.event import Kind, Values
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.limits.nearness import Nearness
-from pendant.motion.script_requests import ForceMode, GentleStop, Guided, Scripted, ScriptedMove
+from pendant.motion.script_requests import ForceMode, GentleStop, Guided, PathOffset, Scripted, ScriptedMove
 from pendant.program.steps import ProgramState, script_program
 from pendant.settings.schema import ticks
 from pendant.tick.modes import Mode, Phase
@@ -28,9 +31,7 @@ STOOD = ticks(1.2)
 """The arm has to stand so long before its sensor can be zeroed."""
 
 ZEROING = ticks(5.0)
-"""A script's wish to zero the sensor is kept so long; every REPEATED the pendant is asked again."""
-
-REPEATED = ticks(0.5)
+"""A script that zeroes its forces has the sensor zeroed too, for free-drive, if the arm stands within this time."""
 
 STATUS = {Nearness.OK: 0, Nearness.NEAR: 1, Nearness.TOO_NEAR: 2}
 
@@ -41,7 +42,7 @@ REFUSED = frozenset({Kind.PROGRAM_REFUSED, Kind.PROGRAM_FAILED})
 
 
 class ScriptArm:
-    """See `app.urscript.functions.robot_side.ArmSide`.
+    """See `app.urscript.robot.robot_side.ArmSide`.
 
     Attributes:
         refusal: why the arm cannot do what was asked for, until somebody takes it; "".
@@ -66,8 +67,10 @@ class ScriptArm:
         self._contact: tuple[int, Contact] | None = None  # that lasts, and the tick in which it began
         self._tick = self._stood = 0  # ticks, and those in which the arm has stood
         self._zero = 0  # ticks for which the wish to zero the sensor is kept
+        self._unread = ""  # why the forces were not zeroed in the tick done last
         self.refusal = ""
         self.gone = self.at_work = False
+        self.offsets = PathOffsets(self._go_beside, lambda: self._wish.force is not None)
 
     # of the script
 
@@ -108,9 +111,23 @@ class ScriptArm:
     def push(self, force: ForceMode | None) -> None:
         """Push while the motion goes on; None: no more."""
         if force is not None:
+            if self.offsets.used:
+                raise Misuse("the tool goes beside its path: path_offset_disable() or stop_conveyor_tracking() first")
             self._want(replace(self._wish, force=force))
         elif self._wish.force is not None:
             self._wish = replace(self._wish, force=None)
+
+    def _go_beside(self, offset: PathOffset | None) -> None:
+        """Go at an offset from its motions; None: no more."""
+        wish = replace(self._wish, offset=offset)
+        if offset is None:
+            self._wish = wish
+        else:
+            self._want(wish)
+
+    def aim(self) -> ScriptedMove | None:
+        """The motion that the arm does."""
+        return self._wish.move if self._done < self._count else None
 
     def leave(self) -> None:
         """Be guided by hand no more."""
@@ -120,9 +137,19 @@ class ScriptArm:
             self._count += 1
             self._wish = replace(self._wish, move=GentleStop(id=self._count))
 
-    def zero(self) -> None:
-        """Zero the flange's sensor as soon as the arm has stood for a while."""
+    def zero(self) -> Generator[None, None, None]:
+        """Zero what is told of forces at once, and the flange's sensor if the arm stands for a while soon."""
         self._zero = ZEROING
+        return self.zero_reading()
+
+    def zero_reading(self) -> Generator[None, None, None]:
+        """Zero what is told of forces: the first tick decides; with the second, forces are told against it."""
+        self._commands += (Command.ZERO_READING,)
+        yield
+        if self._unread:
+            reason, self._unread = self._unread, ""
+            raise Misuse(reason)
+        yield
 
     def steps_back(self, direction: Axes) -> int:
         """Ticks since the tool has been in contact against this direction."""
@@ -148,9 +175,12 @@ class ScriptArm:
     def end(self, *, whole: bool) -> None:
         """The script is over; `whole`: it has come to its own end. The arm comes to rest."""
         self._taken = False
+        self.offsets.reset()
         if self._state in ACTIVE:
             self._over = True
-            self._ending = None if whole and self._state is ProgramState.RUNNING else Command.STOP_PROGRAM
+            guided = self._mode is Mode.FREE_DRIVE  # no command ends what a hand leads; its end does
+            own = guided or (whole and self._state is ProgramState.RUNNING)
+            self._ending = None if own else Command.STOP_PROGRAM
         self._wish, self._wanted, self._resuming, self.refusal, self.gone, self._contact = (
             Scripted(),
             False,
@@ -178,10 +208,12 @@ class ScriptArm:
     def inputs(self, equips: bool) -> Inputs:
         """What the pendant gets for the tick that begins; `equips`: with tool or payload of the script."""
         commands, self._commands = self._commands, ()
+        if self.offsets.used:
+            self.offsets.step()
         if self._zero:
             self._zero -= 1
-            if self._zero == 0 or (self._stood >= STOOD and (self._stood - STOOD) % REPEATED == 0):
-                commands += (Command.ZERO_SENSOR,)
+            if self._stood >= STOOD and self._wish.force is None:
+                self._zero, commands = 0, (*commands, Command.ZERO_SENSOR)
         if self._over:
             if self._ending is not None:
                 commands += (self._ending,)
@@ -192,7 +224,7 @@ class ScriptArm:
             if self._resuming and self._again():
                 commands += (Command.RESUME_PROGRAM,)
             return Inputs(script=wish, commands=commands)
-        if self._wanted and not self.refusal and self._again():
+        if self._wanted and not self.refusal and not equips and self._again():  # a running program would keep its tool
             start = Command.START_REMOTELY if self._mode is Mode.REMOTE else Command.START_PROGRAM
             return Inputs(script=self._wish, program=script_program(NAME), commands=(*commands, start))
         return Inputs(commands=commands) if commands else NOTHING
@@ -217,6 +249,7 @@ class ScriptArm:
         if self._contact is not None and self._tick - self._contact[0] > HISTORY:
             self._contact = None
         before = self._state
+        self._unread = ""
         for event in decision.events:
             self._take(event.kind, event.values)
         if self._state in ACTIVE:
@@ -233,6 +266,8 @@ class ScriptArm:
             self._state, self._waited = ProgramState.RUNNING, 0
         elif kind is Kind.SENSOR_ZEROED:
             self._zero = 0
+        elif kind is Kind.ZERO_REFUSED:
+            self._unread = str(values["reason"])
         elif kind is Kind.PROGRAM_RESUMED:
             self._resuming = False
         elif (kind in REFUSED and self._wanted) or (kind is Kind.COMMAND_REFUSED and waiting and self._waited >= PATIENCE):

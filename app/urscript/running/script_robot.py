@@ -1,19 +1,25 @@
 """The robot, as the functions of one script see it."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from app.robot_interface.controller.cabinet import Ask, Cabinet
-from app.urscript.functions.pose_algebra import to_rpy
-from app.urscript.functions.robot_side import ArmSide
-from app.urscript.functions.script_sockets import ScriptSockets
+from app.robot_interface.controller.controller_state import Question
+from app.urscript.calculation.pose_algebra import to_rpy
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.limits import MOST_MESSAGES
 from app.urscript.machine.machine import Machine
+from app.urscript.outside.hosts import AllowedHosts
+from app.urscript.outside.script_sockets import ScriptSockets
+from app.urscript.robot.robot_memory import RobotMemory
+from app.urscript.robot.robot_side import ArmSide
 from app.urscript.running.told import Telling, Told, printable
+from pendant.decision import Decision
 from pendant.equipment.load import Load
 from pendant.equipment.tools import Tool, tool_problem
+from pendant.events.event import Kind
 from pendant.inputs import NOTHING, Command, Inputs
 from pendant.tick.modes import TICK_RATE
 from sim.exchange.desk import Wishes
@@ -24,24 +30,34 @@ TOOL_NAME = "script"
 
 
 class ScriptRobot:
-    """See `app.urscript.functions.robot_side.RobotSide`.
+    """See `app.urscript.robot.robot_side.RobotSide`.
 
     Args:
         cabinet: the robot.
         arm: moves it.
-        sockets: of this script.
+        hosts: that this script may call.
         tell: takes what the script tells.
-        seed: of random().
+        memory: what the robot keeps from one program to the next.
     """
 
     def __init__(
-        self, cabinet: Cabinet, arm: ArmSide, sockets: ScriptSockets, tell: Callable[[Told], None], *, seed: int
+        self,
+        cabinet: Cabinet,
+        arm: ArmSide,
+        hosts: AllowedHosts,
+        tell: Callable[[Told], None],
+        *,
+        memory: RobotMemory,
     ) -> None:
-        self._cabinet, self._tell = cabinet, tell
-        self.arm, self.sockets, self.record, self.seed = arm, sockets, cabinet.record, seed
+        self._cabinet, self._tell, self.memory = cabinet, tell, memory
+        self.arm, self.hosts, self.record, self.seed = arm, hosts, cabinet.record, cabinet.simulation.scenario.seed
+        self.sockets = ScriptSockets(hosts)
         self.watchdog: tuple[str, int, str] | None = None  # variable, ticks that it may be silent, action
         self.asks: list[Ask] = []  # for the tick that begins
         self.tool: Tool | None = None  # to be used from now on
+        self._equips = False  # tool or payload are to change in the tick that runs
+        self._transition = 0.0  # in which they do [s]
+        self.refused = ""  # why they were not
         self._said, self._second = 0, -1
 
     @property
@@ -70,6 +86,19 @@ class ScriptRobot:
         self._cabinet.state.popup = printable(text)
         self._tell(Told(Telling.POPUP, printable(text), title=printable(title), level=level))
 
+    def question(self, kind: str, text: str) -> Generator[None, None, Any]:
+        """Ask people for a value, and wait for it."""
+        state = self._cabinet.state
+        asked = state.question = Question(kind, printable(text))
+        self._tell(Told(Telling.QUESTION, asked.text, level=kind))
+        try:
+            while asked.answer is None:
+                yield
+            return asked.answer
+        finally:
+            if state.question is asked:
+                state.question = None
+
     @property
     def popup_shown(self) -> bool:
         """A popup is there that nobody has closed."""
@@ -77,11 +106,7 @@ class ScriptRobot:
 
     def command(self, word: str, **values: Any) -> None:
         """Something of the robot other than its motion."""
-        if word == "payload":
-            self._payload(**values)
-        elif word == "tcp":
-            self._tcp(values["pose"])
-        elif word == "protective_stop":
+        if word == "protective_stop":
             self.asks.append(Ask((Command.PROTECTIVE_STOP,)))
         elif word == "power_off":
             self.asks.append(Ask((Command.POWER_OFF,)))
@@ -91,6 +116,27 @@ class ScriptRobot:
             self._watch(**values)
         elif word == "external_sensor" and values["enable"]:
             raise Misuse("an external force sensor is not simulated; the robot's own is used")
+
+    def equip(self, word: str, **values: Any) -> Generator[None, None, None]:
+        """Change the payload or the tool centre point; both are in effect after two ticks, where the robot takes them.
+
+        The first tick decides; with the second, estimates and the kinematics of the script count with what was decided.
+        """
+        if word == "payload":
+            self._payload(**values)
+        else:
+            self._tcp(values["pose"])
+        yield
+        if self.refused:
+            reason, self.refused = self.refused, ""
+            raise Misuse(reason)
+        yield
+
+    def see(self, decision: Decision) -> None:
+        """Take in a tick in which tool or payload were to change."""
+        if self._equips:
+            reasons = [str(event.values["reason"]) for event in decision.events if event.kind is Kind.TOOL_REFUSED]
+            self.refused, self._equips = "; ".join(dict.fromkeys(reasons)), False
 
     def taken(self) -> Inputs:
         """What the script asked of the robot other than motion, for the tick that begins."""
@@ -103,7 +149,11 @@ class ScriptRobot:
         if self.tool is not None:
             made, self.tool = self.tool, None
             table = tuple(each for each in self.simulation.tools if each.name != made.name)
-            inputs = joined(inputs, Inputs(tools=(*table, made), tool=made.name))
+            kept = inputs.load or self.simulation.supervisor.fitting.load  # else the payload would go with the last tool
+            inputs = joined(inputs, Inputs(tools=(*table, made), tool=made.name, load=kept))
+        self._equips = inputs.load is not None
+        if self._equips:
+            inputs, self._transition = replace(inputs, load_time=self._transition), 0.0
         return inputs
 
     def _payload(self, mass: float, cog: Any, inertia: Any, transition: float) -> None:
@@ -115,10 +165,12 @@ class ScriptRobot:
             raise Misuse(f"m: the tool {tool.name} alone has {tool.mass:g} kg")
         if load < 1e-6:
             self.asks.append(Ask(load=Load(mass=0.0, com=[0.0, 0.0, 0.0])))
+            self._transition = transition
             return
         com = [(mass * c - tool.mass * t) / load for c, t in zip(cog, tool.com, strict=True)]
         moments = list(inertia) if inertia is not None and any(inertia) else None
         self.asks.append(Ask(load=Load(mass=load, com=com, inertia=moments)))
+        self._transition = transition
 
     def _tcp(self, pose: Any) -> None:
         """A tool like the one in use, with another tool centre point."""

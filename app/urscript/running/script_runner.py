@@ -7,29 +7,31 @@ from collections.abc import Callable
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.robot_words import RobotMode, RuntimeState
 from app.urscript.functions.library_of_functions import builtins_of
-from app.urscript.functions.script_sockets import ScriptSockets
 from app.urscript.functions.sensing_values import HISTORY
 from app.urscript.language import tree
 from app.urscript.language.reading import read_script
 from app.urscript.language.trouble import NOWHERE, ScriptTrouble, Spot
 from app.urscript.machine.machine import Machine
+from app.urscript.outside.hosts import AllowedHosts
+from app.urscript.robot.robot_memory import RobotMemory
 from app.urscript.running.garbage import uncollected
+from app.urscript.running.input_watchdog import InputWatchdog
 from app.urscript.running.script_arm import ScriptArm
 from app.urscript.running.script_robot import OfferedScript, ScriptRobot, joined
+from app.urscript.running.secondary_programs import MOST_SECONDARIES, SecondaryPrograms
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
 from pendant.inputs import NOTHING
 from pendant.tick.modes import Mode
 from sim.exchange.desk import Wishes
 
-MOST_WAITING = 8
-"""Secondary programs that wait or run."""
-
 KEPT = 200
 """Messages that are remembered."""
 
-SECONDARY_TICKS = 5
-"""A secondary program that runs longer takes time, which it must not."""
+BREATHLESS = (
+    "warning: line {}: the program computes without end; a sync() or sleep() in such a loop lets the robot do other things"
+)
+"""A robot goes on, too (URScript manual, "Thread scheduling"); controllers of the CB series end the program."""
 
 
 class ScriptRunner:
@@ -46,17 +48,19 @@ class ScriptRunner:
         self._stop = False
         self._waiting: list[OfferedScript] = []  # secondary programs
         self._over: deque[OfferedScript] = deque()  # scripts that are used no more
-        self._beside: list[tuple[OfferedScript, int]] = []  # and how many ticks each has run
+        self._beside = SecondaryPrograms(self._close)
         self._running: OfferedScript | None = None
         self._listeners: tuple[Callable[[Told], None], ...] = ()
         self._history: deque[tuple[float, ...]] = deque(maxlen=HISTORY + 1)
-        self._seen: dict[str, tuple[object, int]] = {}  # of the watched input: its count of writes, and when it changed
+        self._watchdog = InputWatchdog(cabinet)
+        self._warned = False  # that the script that runs computes without end
         self.told: deque[Told] = deque(maxlen=KEPT)
         self.count = 0  # of messages so far
         self.paused = False
         self.text = ""  # of the script that ran last
         self.trouble: ScriptTrouble | None = None  # of the one that ran last
         self.arm = ScriptArm()
+        self.memory = RobotMemory(cabinet)
         cabinet.script = self
 
     # from any thread
@@ -86,19 +90,21 @@ class ScriptRunner:
         """
         try:
             script = self._made(text, hosts)
+            self._take(script)
         except ScriptTrouble as trouble:
-            self.tell(Told(Telling.TROUBLE, trouble.text, place=trouble.place))
+            self.tell(Told(Telling.TROUBLE, trouble.text, place=trouble.place, words=trouble.words))
             raise
-        outline = script.machine.script
+        return script.machine.script.name
+
+    def _take(self, script: OfferedScript) -> None:
         with self._lock:
-            if not outline.secondary:
+            if not script.machine.script.secondary:
                 self._drop_next()
                 self._next = script
-            elif len(self._waiting) + len(self._beside) < MOST_WAITING:
+            elif len(self._waiting) + len(self._beside) < MOST_SECONDARIES:
                 self._waiting.append(script)
             else:
-                raise ScriptTrouble(NOWHERE, f"more than {MOST_WAITING} secondary programs at once")
-        return outline.name
+                raise ScriptTrouble(NOWHERE, f"more than {MOST_SECONDARIES} secondary programs at once")
 
     def stop(self) -> None:
         """End the script that runs, and the one that waits."""
@@ -154,7 +160,7 @@ class ScriptRunner:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
-        robot = ScriptRobot(self.cabinet, self.arm, ScriptSockets(hosts), self.tell, seed=self.cabinet.simulation.scenario.seed)
+        robot = ScriptRobot(self.cabinet, self.arm, AllowedHosts(hosts), self.tell, memory=self.memory)
         while self._over:
             self._over.popleft().machine.let_go()
         with uncollected(len(text)):
@@ -185,17 +191,14 @@ class ScriptRunner:
                 self._end(running.machine.trouble, whole=running.machine.trouble is None)
             elif running.robot.watchdog is not None:
                 self._watch(running.robot)
-        for k, (script, age) in enumerate(self._beside):
-            over = script.machine.tick()
-            inputs = joined(inputs, script.robot.taken())
-            if not over and age >= SECONDARY_TICKS:
-                script.machine.trouble = ScriptTrouble(NOWHERE, "a secondary program must not take time")
-                over = True
-            if over:
-                self._close(script, script.machine.trouble)
-            self._beside[k] = (script, -1 if over else age + 1)
+            if running.machine.breathless is not None and not self._warned:
+                self._warned = True
+                self.tell(Told(Telling.TEXT, BREATHLESS.format(running.machine.breathless.line), running.machine.script.name))
+        problem = self.memory.step()
+        if problem:
+            self._end(self._unable(problem))
         if self._beside:
-            self._beside = [each for each in self._beside if each[1] >= 0]
+            inputs = self._beside.step(inputs)
         equips = inputs is not NOTHING and bool(inputs.load or inputs.tool or inputs.tools)
         inputs = joined(inputs, self.arm.inputs(equips))
         return None if inputs is NOTHING else Wishes(inputs, (), ())
@@ -204,8 +207,10 @@ class ScriptRunner:
         """Take in what the robot decided."""
         refusal = self.arm.refusal
         self.arm.see(decision)
+        self._beside.see(decision)
         if self._running is None:
             return
+        self._running.robot.see(decision)
         self._history.appendleft(tuple(self.cabinet.simulation.estimate.q.tolist()))
         if decision.mode is Mode.STOP or self.arm.gone:
             self._end(self._unable(refusal or self.arm.refusal))
@@ -219,7 +224,8 @@ class ScriptRunner:
     def begin(self) -> None:
         """The simulation starts over: no script runs."""
         self._end(None)
-        self.arm = ScriptArm()
+        self.memory.end()
+        self.arm, self.memory = ScriptArm(), RobotMemory(self.cabinet)
 
     def _change(self) -> None:
         """Do what others asked for since the last tick."""
@@ -236,22 +242,18 @@ class ScriptRunner:
         if next_ is not None:
             self._running, self.text, self.trouble, self.paused = next_, next_.text, None, False
             self._history.clear()
-            self._seen.clear()
+            self._watchdog, self._warned = InputWatchdog(self.cabinet), False
+            self.memory.begin_program()
             self.tell(Told(Telling.STARTED, "", next_.machine.script.name))
-        self._beside += [(script, 0) for script in waiting]
+        self._beside.add(waiting)
 
     def _watch(self, robot: ScriptRobot) -> None:
         """End or pause a script whose client is silent for longer than it said."""
         assert robot.watchdog is not None
-        name, silent, action = robot.watchdog
-        count = self.cabinet.writes.get(name, 0)
-        seen = self._seen.get(name)
-        now = self.cabinet.ticks
-        if seen is None or seen[0] != count:
-            self._seen[name] = (count, now)
-        elif now - seen[1] > silent:
-            self.tell(Told(Telling.TEXT, f"RTDE watchdog: {name} was not written in time; {action}"))
-            if action == "stop":
+        late = self._watchdog.late(*robot.watchdog)
+        if late:
+            self.tell(Told(Telling.TEXT, late))
+            if robot.watchdog[2] == "stop":
                 self._end(None)
             else:
                 self.pause()
@@ -263,6 +265,7 @@ class ScriptRunner:
         self._running, self.trouble = None, trouble
         running.machine.stop()
         self.arm.end(whole=whole)
+        self.memory.end_program()
         self._close(running, trouble)
         self.tell(Told(Telling.ENDED, "", running.machine.script.name))
 
@@ -271,4 +274,6 @@ class ScriptRunner:
         script.robot.sockets.end()
         self._over.append(script)
         if trouble is not None:
-            self.tell(Told(Telling.TROUBLE, printable(trouble.text), script.machine.script.name, trouble.place))
+            outline = script.machine.script
+            kind = Telling.ASIDE if outline.secondary else Telling.TROUBLE
+            self.tell(Told(kind, printable(trouble.text), outline.name, trouble.place, words=trouble.words))

@@ -13,7 +13,9 @@ class Telling(StrEnum):
     ENDED = "ended"
     TEXT = "text"
     POPUP = "popup"
+    QUESTION = "question"  # a program waits for a value; `level` is its kind
     TROUBLE = "trouble"  # it cannot be read, or cannot go on
+    ASIDE = "trouble beside"  # a secondary program cannot go on
 
 
 class Told(NamedTuple):
@@ -25,6 +27,7 @@ class Told(NamedTuple):
     place: Spot = NOWHERE  # in its text
     title: str = ""  # of a popup
     level: str = ""  # of a popup: "", "warning", "error"
+    words: str = ""  # of trouble: how a robot says it, where clients compare that; "" for `text`
 
 
 def printable(text: str) -> str:

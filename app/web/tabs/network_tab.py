@@ -42,6 +42,8 @@ class NetworkTab:
             ("Program", f"{state.runtime.name} {state.program}".strip()),
             ("Address", f"{interfaces.host}, RTDE {interfaces.ports['RTDE']}"),
         ]
+        if state.question is not None:
+            facts.append(("Question", state.question.text))
         if state.popup:
             facts.append(("Popup", state.popup))
         there = [(peer.interface, f"{peer.address} {peer.about}".strip()) for peer in interfaces.peers.all()]

@@ -5,6 +5,7 @@ import viser
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
 from app.urscript.running.told import Telling
+from app.urscript.running.whole_text import run_text
 from app.web.access.takes import MAX_LINES
 from app.web.widgets import svg
 from app.web.widgets.html import Html
@@ -91,7 +92,7 @@ class ScriptTab:
         if self._scripts.cabinet.state.remote:
             return "The robot is in remote control: its clients send programs."
         try:
-            self._scripts.offer(text)
+            run_text(self._scripts, text)
         except ScriptTrouble as trouble:
             return str(trouble)
         return ""

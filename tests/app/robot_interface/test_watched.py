@@ -214,6 +214,22 @@ def test_odd_packets_from_the_network_stop_nothing(fresh: ServedRobot) -> None:
     assert fresh.state()["failure"] == ""
 
 
+def test_a_conveyor_of_the_laboratory_is_followed(fresh: ServedRobot) -> None:
+    text = b"encoder_enable_pulse_decode(1, 1, 0, 1)\n  track_conveyor_linear(p[0,1,0,0,0,0], 10000, 1)\n  sleep(60)"
+    with socket.create_connection((fresh.host, fresh.ports["primary"]), timeout=5.0) as client:
+        client.sendall(b"def p():\n  " + text + b"\nend\n")
+        fresh.wait_until(runtime_state="PLAYING")
+        fresh.conveyor(500.0, encoder=1)
+        until(lambda: fresh.field("encoder1_raw") > 100)
+        fresh.conveyor(0.0, encoder=1)
+        time.sleep(0.5)
+        before = fresh.field("actual_TCP_pose")[1]
+        fresh.conveyor(500.0, encoder=1)
+        count = fresh.field("encoder1_raw")
+        until(lambda: fresh.field("encoder1_raw") > count + 500)
+        assert fresh.field("actual_TCP_pose")[1] - before > 0.03
+
+
 @pytest.mark.parametrize(
     ("path", "body", "said"),
     [
@@ -228,6 +244,7 @@ def test_odd_packets_from_the_network_stop_nothing(fresh: ServedRobot) -> None:
         ("begin", {"payload_true": {"mass": 1e9}}, "mass"),
         ("free-drive", {"seconds": "long"}, "seconds"),
         ("remote", {}, "on"),
+        ("conveyor", {"encoder": 2, "ticks_per_second": 5.0}, "encoder"),
     ],
 )
 def test_what_cannot_be_asked_is_said_in_one_line(fresh: ServedRobot, path: str, body: dict[str, object], said: str) -> None:

@@ -15,7 +15,7 @@ from pendant.events.event import Event, Kind
 from pendant.inputs import NOTHING as IDLE
 from pendant.inputs import Button, Command, Inputs
 from pendant.limits.validity import WINDOW
-from pendant.program.steps import Program, Wait
+from pendant.program.steps import Program, Wait, script_program
 from pendant.supervisor import Supervisor
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law, Mode, Phase
@@ -143,6 +143,17 @@ def test_without_a_ramp_it_changes_at_once() -> None:
     (event,) = bench.step(load=Load(mass=3.0))
     assert (event.kind, bench.tooling.fitting) == (Kind.PAYLOAD_CHANGED, Fitting(1, BARE, Load(mass=3.0), 1.0, 3.0))
     assert bench.tooling.changing
+
+
+@pytest.mark.parametrize(("time", "share"), [(0.0, 1.0), (0.1, 0.2), (None, 1.0)])
+def test_whoever_says_how_long_a_change_takes_is_obeyed(time: float | None, share: float) -> None:
+    """The settings' ramp has 10 ticks."""
+    bench = Bench()
+    bench.tooling.step(
+        bench.value, Inputs(load=Load(mass=3.0), load_time=time), bench.use, mode=Mode.TEACH, phase=Phase.OFF, still=True
+    )
+    bench.run(10)
+    assert bench.tooling.fitting.share == pytest.approx(share)
 
 
 def test_a_change_in_the_middle_of_another_goes_on_from_there() -> None:
@@ -446,6 +457,14 @@ def test_a_program_waits_for_the_payload() -> None:
     assert robot.last.mode is Mode.RUN
     robot.step(Inputs(tool="gripper"))
     assert robot.events[-1].kind is Kind.TOOL_REFUSED
+
+
+def test_a_script_does_not_wait_for_the_payload() -> None:
+    """It changes it while it moves, as well."""
+    robot = Robot()
+    robot.step(Inputs(load=Load(mass=2.0)))
+    robot.step(Inputs(program=script_program("script"), commands=(Command.START_PROGRAM,)))
+    assert robot.last.mode is Mode.RUN
 
 
 def test_a_change_of_the_payload_is_nobodys_push() -> None:

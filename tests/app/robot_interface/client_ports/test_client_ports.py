@@ -276,7 +276,7 @@ def test_an_error_is_told_with_line_and_column(cell: Cell) -> None:
     say(session, "def f():\n  sync()\n  x = [1][2]\nend\n")
     cell.robot.step(5)
     told = kinds(theirs)[messages.MessageType.RUNTIME_EXCEPTION]
-    assert next(each[:8] for each in told if b"syntax error" in each) == struct.pack(">ii", 2, 7)
+    assert told[0] == struct.pack(">ii", 2, 7) + b"syntax_error_on_line:2:  x = = 1:"
     assert told[-1] == struct.pack(">ii", 3, 7) + b"index 2 out of range: there are 1 elements, counted from 0"
 
 
@@ -295,6 +295,64 @@ def test_a_program_replaces_the_one_that_runs_and_a_secondary_one_runs_beside(ce
     say(session, "stop program\n")
     cell.robot.step(2)
     assert cell.scripts.state is None
+
+
+def test_errors_are_in_the_words_that_clients_compare_and_in_ascii(cell: Cell) -> None:
+    """robot_program_runner of UR's ROS driver and its client library look for these."""
+    session, theirs = cell.open("primary")
+    packages(theirs)
+    say(session, "def f():\n  nonsense(1)\nend\n")
+    say(session, "x = not_there\n")
+    say(session, "sec beside():\n  x = [1][4]\nend\n")
+    say(session, 'textmsg("° ± ü …")\n')
+    cell.robot.step(5)
+    told = kinds(theirs)
+    assert [each[8:] for each in told[messages.MessageType.RUNTIME_EXCEPTION]] == [
+        b"compile_error_name_not_found:nonsense:",
+        b"compile_error_name_not_found:not_there:",
+    ]
+    keys = [each[8:] for each in told[messages.MessageType.KEY]]
+    assert [each for each in keys if b"SECONDARY" in each] == [
+        b"\x1fSECONDARY_PROGRAM_EXCEPTION_XXXindex 4 out of range: there are 1 elements, counted from 0"
+    ]
+    assert told[messages.MessageType.TEXT][-1] == b" deg +- u ..."
+    assert b"beside, line 2: index 4 out of range: there are 1 elements, counted from 0" in told[messages.MessageType.TEXT]
+
+
+@pytest.mark.parametrize(
+    ("kind", "said", "value"),
+    [("boolean", "TRUE", "True"), ("integer", "-7", "-7"), ("float", "2.5", "2.5"), ("string", "two words", "two words")],
+)
+def test_a_program_asks_people_and_the_dashboard_answers(cell: Cell, kind: str, said: str, value: str) -> None:
+    session, theirs = cell.open("primary")
+    packages(theirs)
+    assert cell.commands.answer("answer 5", True) == "Failed to execute: answer; no program asks"
+    say(session, f'def p():\n  textmsg("got ", request_{kind}_from_primary_client("How many?"))\nend\n')
+    cell.robot.step(5)
+    (asked,) = kinds(theirs)[messages.MessageType.REQUEST_VALUE]
+    number = ("boolean", "integer", "float", "string").index(kind)
+    assert asked == struct.pack(">II", 0, number) + b"How many?"
+    if kind != "string":
+        for wrong in ("nan", "maybe", "1e400"):
+            assert str(cell.commands.answer(f"answer {wrong}", True)).startswith("Failed to execute: answer; expected")
+    if kind == "integer":
+        assert "32 bits" in str(cell.commands.answer("answer 2147483648", True))
+    cell.robot.step(5)
+    assert cell.scripts.state is not None
+    assert cell.commands.answer(f"answer {said}", True) == "Answered"
+    cell.robot.step(5)
+    assert kinds(theirs)[messages.MessageType.TEXT] == [f"got {value}".encode()]
+    assert cell.robot.cabinet.state.question is None
+
+
+def test_a_question_is_over_with_its_program(cell: Cell) -> None:
+    session, _ = cell.open("primary")
+    say(session, 'def p():\n  x = request_float_from_primary_client("How far?")\nend\n')
+    cell.robot.step(3)
+    assert cell.robot.cabinet.state.question is not None
+    say(session, "stop program\n")
+    cell.robot.step(3)
+    assert cell.robot.cabinet.state.question is None
 
 
 def test_a_line_alone_is_a_program(cell: Cell) -> None:

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
-from app.urscript.functions.script_sockets import ScriptSocket, ScriptSockets
 from app.urscript.machine.signature import Builtin, Taken, anything, boolean, builtin, integer, number, text, within
 from app.urscript.machine.values import Value, shown
+from app.urscript.outside.script_sockets import ScriptSocket, ScriptSockets
 from pendant.tick.modes import TICK_RATE
 
 NAME = Taken("socket_name", text, "socket_0")

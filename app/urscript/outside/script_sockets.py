@@ -1,12 +1,12 @@
 """Connections that a script opens. Nothing here waits: a script looks every tick whether something has come."""
 
 import contextlib
-import ipaddress
 import re
 import socket
 import struct
 
 from app.urscript.language.trouble import Misuse
+from app.urscript.outside.hosts import AllowedHosts
 
 MOST = 16
 """Connections of a script."""
@@ -127,11 +127,11 @@ class ScriptSockets:
     """All connections of a script.
 
     Args:
-        hosts: addresses other than this machine's that it may connect to: whoever sent the script.
+        hosts: that it may connect to.
     """
 
-    def __init__(self, hosts: frozenset[str] = frozenset()) -> None:
-        self.hosts = hosts
+    def __init__(self, hosts: AllowedHosts) -> None:
+        self._hosts = hosts
         self._sockets: dict[str, ScriptSocket] = {}
 
     def begin(self, host: str, port: int, name: str) -> tuple[ScriptSocket, tuple[str, int]]:
@@ -140,17 +140,11 @@ class ScriptSockets:
         Raises:
             Misuse: there are too many, or the address is not allowed.
         """
-        address = "127.0.0.1" if host == "localhost" else host
-        try:
-            found = ipaddress.ip_address(address)
-        except ValueError:
-            raise Misuse(f"address: {host[:50]!r} is no IP address; names are not looked up") from None
-        if not found.is_loopback and address not in self.hosts:
-            raise Misuse(f"address: {address} is not allowed: only this machine, and whoever sent the script")
+        address = self._hosts.address(host)
         self.close(name)
         if len(self._sockets) >= MOST:
             raise Misuse(f"more than {MOST} sockets")
-        connection = socket.socket(socket.AF_INET if found.version == 4 else socket.AF_INET6, socket.SOCK_STREAM)
+        connection = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._sockets[name] = made = ScriptSocket(connection)

@@ -4,7 +4,7 @@ import math
 import random as chance
 from collections.abc import Iterator
 
-from app.urscript.functions import pose_algebra as algebra
+from app.urscript.calculation import pose_algebra as algebra
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.operators import NUMBERS
 from app.urscript.machine.signature import (
@@ -56,19 +56,23 @@ def of_numbers(seed: int) -> Iterator[Builtin]:
     yield builtin("transpose", _transposed, Taken("m", items))
 
 
+OF_TURN = 30
+"""What a product of two rotations counts as, beyond a short function's steps of the evaluator."""
+
+
 def of_poses() -> Iterator[Builtin]:
     """Functions of poses."""
     first, second = Taken("p_from", pose), Taken("p_to", pose)
-    yield builtin("pose_trans", algebra.transformed, first, Taken("p_from_to", pose))
-    yield builtin("pose_inv", algebra.inverted, first)
-    yield builtin("pose_add", algebra.added, Taken("p_1", pose), Taken("p_2", pose))
-    yield builtin("pose_sub", algebra.subtracted, second, first)
-    yield builtin("pose_dist", algebra.distance, first, second)
+    yield builtin("pose_trans", algebra.transformed, first, Taken("p_from_to", pose), cost=OF_TURN)
+    yield builtin("pose_inv", algebra.inverted, first, cost=OF_TURN)
+    yield builtin("pose_add", algebra.added, Taken("p_1", pose), Taken("p_2", pose), cost=OF_TURN)
+    yield builtin("pose_sub", algebra.subtracted, second, first, cost=OF_TURN)
+    yield builtin("pose_dist", algebra.distance, first, second, cost=OF_TURN)
     yield builtin("point_dist", lambda a, b: math.dist(a[:3], b[:3]), first, second)
-    yield builtin("interpolate_pose", algebra.between, first, second, Taken("alpha", number))
-    yield builtin("rpy2rotvec", algebra.from_rpy, Taken("rpy_vector", numbers(3)))
-    yield builtin("rotvec2rpy", algebra.to_rpy, Taken("rotation_vector", numbers(3)))
-    yield builtin("wrench_trans", _wrench, Taken("T_from_to", pose), Taken("w_from", numbers(6)))
+    yield builtin("interpolate_pose", algebra.between, first, second, Taken("alpha", number), cost=2 * OF_TURN)
+    yield builtin("rpy2rotvec", algebra.from_rpy, Taken("rpy_vector", numbers(3)), cost=2 * OF_TURN)
+    yield builtin("rotvec2rpy", algebra.to_rpy, Taken("rotation_vector", numbers(3)), cost=5 * OF_TURN)
+    yield builtin("wrench_trans", _wrench, Taken("T_from_to", pose), Taken("w_from", numbers(6)), cost=4 * OF_TURN)
 
 
 def _no_number(value: Value) -> Value:

@@ -1,9 +1,13 @@
 """What the functions of the language need of the robot that they run on."""
 
+from collections.abc import Generator
 from typing import Any, Protocol
 
 from app.robot_interface.controller.field_record import FieldRecord
-from app.urscript.functions.script_sockets import ScriptSockets
+from app.urscript.outside.hosts import AllowedHosts
+from app.urscript.outside.script_sockets import ScriptSockets
+from app.urscript.robot.path_offsets import PathOffsets
+from app.urscript.robot.robot_memory import RobotMemory
 from pendant.motion.script_requests import ForceMode, ScriptedMove
 from sim.simulation import Simulation
 
@@ -12,7 +16,13 @@ Axes = tuple[float, ...]
 
 
 class ArmSide(Protocol):
-    """The arm: one motion at a time is done, and who waits for it asks every tick."""
+    """The arm: one motion at a time is done, and who waits for it asks every tick.
+
+    Attributes:
+        offsets: where it goes beside its motions.
+    """
+
+    offsets: PathOffsets
 
     def ask(self, move: ScriptedMove) -> int:
         """Ask for a motion or a stop from the next tick on, in place of what is done; its number."""
@@ -39,15 +49,27 @@ class ArmSide(Protocol):
         ...
 
     def push(self, force: ForceMode | None) -> None:
-        """Push while the motion goes on, until the script ends or says otherwise; None: no more."""
+        """Push while the motion goes on, until the script ends or says otherwise; None: no more.
+
+        Raises:
+            Misuse: it goes beside its motions.
+        """
+        ...
+
+    def aim(self) -> ScriptedMove | None:
+        """The motion that the arm does; None: none."""
         ...
 
     def leave(self) -> None:
         """Be guided by hand no more."""
         ...
 
-    def zero(self) -> None:
-        """Zero the flange's sensor as soon as the arm has stood for a while."""
+    def zero(self) -> Generator[None, None, None]:
+        """As `zero_reading`; the sensor is zeroed too, for free-drive, if the arm stands soon."""
+        ...
+
+    def zero_reading(self) -> Generator[None, None, None]:
+        """Tell forces against what is felt now; it lasts until they are. Raises Misuse: the sensor tells nothing."""
         ...
 
     def steps_back(self, direction: Axes) -> int:
@@ -64,6 +86,8 @@ class RobotSide(Protocol):
 
     arm: ArmSide
     sockets: ScriptSockets
+    hosts: AllowedHosts
+    memory: RobotMemory
     record: FieldRecord
     seed: int
 
@@ -85,11 +109,23 @@ class RobotSide(Protocol):
         """Show a message; `level` is "", "warning" or "error"."""
         ...
 
+    def question(self, kind: str, text: str) -> Generator[None, None, Any]:
+        """Ask people for a value of a kind, "boolean", "integer", "float" or "string"; it lasts until there is an answer."""
+        ...
+
     @property
     def popup_shown(self) -> bool:
         """A popup is there that nobody has closed."""
         ...
 
     def command(self, word: str, **values: Any) -> None:
-        """Something of the robot other than its motion: "payload", "tcp", "protective_stop", "gravity", "watchdog"."""
+        """Something of the robot other than its motion: "protective_stop", "power_off", "gravity", "watchdog"."""
+        ...
+
+    def equip(self, word: str, **values: Any) -> Generator[None, None, None]:
+        """Change the payload ("payload") or the tool centre point ("tcp"); it lasts until the change is in effect.
+
+        Raises:
+            Misuse: the robot does not take it.
+        """
         ...

@@ -4,9 +4,8 @@ import re
 from collections.abc import Iterator
 
 from app.urscript.language.trouble import Misuse
-from app.urscript.machine.limits import LONGEST_TEXT
 from app.urscript.machine.signature import Builtin, Taken, anything, builtin, integer, text
-from app.urscript.machine.values import GREATEST, LEAST, Value, shown
+from app.urscript.machine.values import GREATEST, LEAST, Value, joined_text, shown
 
 NUMBER = re.compile(r"\s*([+-]?)(0[xX][0-9a-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\Z")
 
@@ -15,7 +14,7 @@ def of_texts() -> Iterator[Builtin]:
     """All of them."""
     source, index = Taken("src", text), Taken("index", integer)
     yield builtin("str_at", _at, source, index)
-    yield builtin("str_cat", _joined, Taken("op1", anything), Taken("op2", anything))
+    yield builtin("str_cat", joined_text, Taken("op1", anything), Taken("op2", anything))
     yield builtin("str_empty", lambda s: not s, Taken("str", text))
     yield builtin("str_find", _find, source, Taken("target", text), Taken("start_from", integer, 0))
     yield builtin("str_len", lambda s: len(s.encode()), Taken("str", text))
@@ -31,13 +30,6 @@ def _at(source: str, index: int) -> str:
     if not 0 <= index < len(data):
         raise Misuse(f"index {index} out of range: the string has {len(data)} characters")
     return data[index : index + 1].decode("latin-1")
-
-
-def _joined(a: Value, b: Value) -> str:
-    joined = shown(a) + shown(b)
-    if len(joined) > LONGEST_TEXT:
-        raise Misuse(f"a text of {len(joined)} characters, allowed: {LONGEST_TEXT}")
-    return joined
 
 
 def _find(source: str, target: str, start: int) -> int:

@@ -1,0 +1,105 @@
+"""All Modbus units and signals of one robot, which programs add and delete."""
+
+from collections.abc import Callable, Sequence
+
+from app.urscript.language.trouble import Misuse
+from app.urscript.outside.modbus_client import ModbusSignal, ModbusUnit
+
+MOST_SIGNALS = 200
+MOST_UNITS = 16
+
+
+class ModbusUnits:
+    """All units and signals of one robot. They stay when a program ends, as on a robot.
+
+    Args:
+        clock: tells the robot's [s].
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self._units: dict[tuple[str, int], ModbusUnit] = {}
+        self._signals: dict[str, tuple[ModbusUnit, ModbusSignal]] = {}
+        self._clock = clock
+
+    def add(self, address: str, port: int, signal: ModbusSignal) -> None:
+        """Supervise a signal; one of the same name is replaced. Raises Misuse: there are too many."""
+        self.delete(signal.name)
+        unit = self._units.get((address, port))
+        if len(self._signals) >= MOST_SIGNALS or (unit is None and len(self._units) >= MOST_UNITS):
+            raise Misuse(f"more than {MOST_SIGNALS} signals, or {MOST_UNITS} units")
+        if unit is None:
+            unit = self._units[address, port] = ModbusUnit(address, port)
+            unit.start()
+        signal.seen = self._clock()
+        signal.values = (0,) * signal.count
+        unit.signals = (*unit.signals, signal)
+        self._signals[signal.name] = unit, signal
+        unit.hurry()
+
+    def delete(self, name: str) -> None:
+        """Supervise a signal no more; one that there is not, is none."""
+        found = self._signals.pop(name, None)
+        if found is not None:
+            unit, signal = found
+            unit.signals = tuple(each for each in unit.signals if each is not signal)
+            if not unit.signals:
+                unit.end()
+                del self._units[unit.address, unit.port]
+
+    def signal(self, name: str) -> ModbusSignal:
+        """A signal that the program uses. Raises Misuse: there is none of this name."""
+        if name not in self._signals:
+            raise Misuse(f"signal_name: there is no signal {name[:20]!r}")
+        found = self._signals[name][1]
+        if not found.used:
+            found.used, found.seen = True, self._clock()
+        return found
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._signals
+
+    def invalid_for(self, signal: ModbusSignal) -> float:
+        """For how long a signal has been out of order [s]."""
+        return 0.0 if signal.valid else self._clock() - signal.seen
+
+    def write(self, name: str, values: Sequence[int]) -> None:
+        """Have an output written as soon as its unit is free."""
+        unit, signal = self._signals[name]
+        signal.wanted = tuple(values)
+        unit.hurry()
+
+    def refresh(self, name: str) -> None:
+        """Read a signal as soon as its unit is free."""
+        unit, signal = self._signals[name]
+        signal.due = 0.0
+        unit.hurry()
+
+    def units_at(self, address: str) -> list[ModbusUnit]:
+        """Those at an address, at whatever port."""
+        return [unit for (host, _), unit in self._units.items() if host == address]
+
+    def begin(self) -> None:
+        """A program begins, which has used no signal yet."""
+        for _, signal in self._signals.values():
+            signal.used = False
+
+    def step(self) -> str:
+        """One tick of the robot; what the program uses and is out of order for longer than it may be, in words, or ""."""
+        clock, problem = self._clock(), ""
+        for unit, signal in self._signals.values():
+            if signal.valid:
+                signal.seen = clock
+            elif signal.used and clock - signal.seen > signal.watchdog and not problem:
+                why = f"exception {signal.device_error}" if signal.connected else f"no answer from {unit.address}:{unit.port}"
+                problem = f"Modbus signal {signal.name}: {why} for {signal.watchdog:g} s"
+        return problem
+
+    @property
+    def used(self) -> bool:
+        """There are signals."""
+        return bool(self._signals)
+
+    def end(self) -> None:
+        """Supervise nothing any more."""
+        for name in list(self._signals):
+            self.delete(name)
