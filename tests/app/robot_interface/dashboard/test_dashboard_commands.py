@@ -42,6 +42,7 @@ ALWAYS = {
     "isProgramSaved": "true <unnamed>",
     "close safety popup": "closing safety popup",
     "close popup": "closing popup",
+    "answer 3": "Failed to execute: answer; no program asks",
     "popup hello": "showing popup",
     "is in remote control": "true",
     "PolyscopeVersion": "URSoftware 5.26.0.140462 (Nov 23 2026)",

@@ -6,11 +6,13 @@ from collections.abc import Iterator
 import pytest
 import viser
 
+from app.robot_interface.controller.controller_state import Question
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.transport.outbox import Outbox
 from app.web.tabs.network_tab import LENGTH, NetworkTab
 from pendant.all_settings import Settings
 from pendant.inputs import Command
+from pendant.program.steps import script_program
 from sim.arm.scenario import Scenario
 from sim.run.loop import Loop
 from sim.simulation import Simulation
@@ -57,10 +59,12 @@ def test_it_tells_state_and_popup(server: viser.ViserServer, interfaces: RobotIn
     tab, state = NetworkTab(server.gui, interfaces), interfaces.cabinet.state
     tab.show()
     assert "remote" in tab.status.shown
-    state.remote, state.popup, state.program = False, "hello <b>", "wave"
+    state.remote, state.popup, state.loaded = False, "hello <b>", script_program("wave")
+    state.question = Question("integer", "how many <i>")
     assert tab.show()
     assert "local" in tab.status.shown
     assert "hello &lt;b&gt;" in tab.status.shown
+    assert "how many &lt;i&gt;" in tab.status.shown
     assert "STOPPED wave" in tab.status.shown
 
 
