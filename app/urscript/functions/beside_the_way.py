@@ -15,8 +15,7 @@ from app.urscript.robot.encoders import RANGES, Decoder, Encoder
 from app.urscript.robot.path_offsets import CircularConveyor, LinearConveyor, OffsetFrame
 from app.urscript.robot.robot_side import RobotSide
 from pendant.program.steps import GentleStop
-from sim.arm.frames import cross
-from sim.motion.line import rotation_vector
+from sim.arm.frames import cross, rotation_vector
 
 Doing = Generator[None, None, Value]
 

@@ -20,7 +20,7 @@ from app.urscript.outside.conversations import of_sockets
 from app.urscript.outside.modbus_functions import of_modbus
 from app.urscript.outside.remote_calls import of_remote_calls
 from app.urscript.robot.robot_side import RobotSide
-from sim.motion.line import rotation_vector
+from sim.arm.frames import rotation_vector
 
 SECONDARY = "it takes time, which a secondary program must not"
 

@@ -8,7 +8,7 @@ from app.urscript.machine.values import PoseValue
 from app.urscript.outside.modbus_units import ModbusUnits
 from app.urscript.robot.encoders import ConveyorEncoders
 from app.urscript.robot.run_states import InstalledSignals
-from sim.motion.line import rotation_vector
+from sim.arm.frames import rotation_vector
 
 FLAGS = 32
 
