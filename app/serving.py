@@ -2,9 +2,9 @@
 
 import signal
 import threading
-import time
 import webbrowser
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -36,9 +36,7 @@ from app.web.server import Served
 from app.web.server import serve as serve_web
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
-
-LOOK = 0.01
-"""Time between two looks at whether the next arm runs [s]."""
+from sim.run.troubles import reason_of
 
 
 class Serving(NamedTuple):
@@ -180,11 +178,11 @@ class ServedArms:
         told: list[str] = []
         self.close()
         loop.companion = None
-        loop.begin(lambda: simulate(prepared))
-        while not loop.failure and loop.latest().scenario is not prepared.scenario:
-            time.sleep(LOOK)
-        if loop.failure:
-            raise BadInput("the page", "arm", prepared.arm.name, f"an arm that can be simulated: {loop.failure}")
+        try:
+            loop.begin(lambda: simulate(prepared)).result()
+        except (Exception, CancelledError) as error:
+            allowed = f"an arm that can be simulated: {reason_of(error)}"
+            raise BadInput("the page", "arm", prepared.arm.name, allowed) from error
         if self._recording.on:
             told.append("The recording goes on in a file of its own.")
         if self._network is not None:
@@ -201,8 +199,14 @@ def scripts_beside(loop: Loop, arm: Arm) -> ScriptRunner | None:
     """Runs programs in URScript beside the page, without a network; None for an arm that the language does not know."""
     if arm.n != JOINTS:
         return None
-    cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(), lambda: loop.desk.high)
-    cabinet.state.remote = False
+    cabinet = Cabinet(
+        lambda: loop.simulation,
+        arm.chain.joints,
+        ProgramFolder(),
+        lambda: loop.desk.high,
+        between=loop.between_ticks,
+        remote=False,
+    )
     loop.companion = cabinet
     return ScriptRunner(cabinet)
 

@@ -4,6 +4,7 @@ import errno
 import math
 import queue
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 
@@ -22,6 +23,7 @@ from pendant.tick.modes import Mode, Phase, Safety
 from sim.exchange.recorded_rows import fill_rows
 from sim.exchange.told_force import told_force
 from sim.run.loop import SNAPSHOT_TICKS
+from sim.run.troubles import reason_of
 from sim.simulation import Simulation
 
 BLOCK = 125
@@ -49,17 +51,28 @@ class Recorder:
         title: of the session.
         waits: for a disk that is too slow; otherwise that ends the recording.
         planned: how long the run is to last [s]; None: nobody knows.
+        failed: called once, on any thread, when the recording ends before its time.
+
+    Attributes:
+        failure: what ended the recording before its time.
 
     Raises:
         BadInput: the file cannot be written.
     """
 
     def __init__(
-        self, path: Path, simulation: Simulation, title: str, *, waits: bool = True, planned: float | None = None
+        self,
+        path: Path,
+        simulation: Simulation,
+        title: str,
+        *,
+        waits: bool = True,
+        planned: float | None = None,
+        failed: Callable[[], object] = lambda: None,
     ) -> None:
         self.path = path
-        self.failure: OSError | None = None  # what ended the recording before its time
-        self._waits = waits
+        self.failure: Exception | None = None
+        self._waits, self._failed = waits, failed
         self._n = n = simulation.arm.n
         self._writer = Writer(path, simulation, title, planned)
         self._vectors = layout.width(STATE, n) - 2 * len(AT)  # numbers before those of monitored parameters
@@ -75,6 +88,11 @@ class Recorder:
     def ticks(self) -> int:
         """Ticks seen."""
         return self._last
+
+    def problem(self, error: Exception) -> BadInput:
+        """What is said of a failure."""
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else reason_of(error)
+        return BadInput(str(self.path), "", ABSENT, f"could not be written to its end ({reason})")
 
     def __enter__(self) -> "Recorder":
         return self
@@ -120,7 +138,7 @@ class Recorder:
         self._queue.put(None)
         self._thread.join()
         if self.failure is not None:
-            raise BadInput(str(self.path), "", ABSENT, f"could not be written to its end ({self.failure.strerror})")
+            raise self.problem(self.failure)
 
     def _begin(self) -> None:
         n = self._n
@@ -145,7 +163,7 @@ class Recorder:
             self._settings,
         )
         if self.failure is None and not self._waits and self._queue.full():
-            self.failure = SLOW
+            self._fail(SLOW)
         if self.failure is None:
             self._queue.put(block)
         self._begin()
@@ -173,6 +191,10 @@ class Recorder:
         states = (MODES[decision.mode], SAFETIES[decision.safety], PHASES[decision.phase], PROGRAMS[decision.program])
         self._codes.append((*states, min(decision.step, 255), valid))
 
+    def _fail(self, error: Exception) -> None:
+        self.failure = error
+        self._failed()
+
     def _write(self) -> None:
         """The recorder's own thread."""
         while (block := self._queue.get()) is not None:
@@ -180,10 +202,10 @@ class Recorder:
                 continue
             try:
                 self._writer.pack(block)
-            except OSError as error:
-                self.failure = error
+            except Exception as error:  # noqa: BLE001 - whatever it is, nothing of it may go without a word
+                self._fail(error)
         if self.failure is None:
             try:
                 self._writer.close()
-            except OSError as error:
-                self.failure = error
+            except Exception as error:  # noqa: BLE001
+                self._fail(error)

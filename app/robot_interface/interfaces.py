@@ -1,6 +1,7 @@
 """All network interfaces of one robot, on a thread of their own."""
 
 import asyncio
+import functools
 import ipaddress
 import secrets
 import socket
@@ -69,8 +70,15 @@ class RobotInterfaces:
         self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}
         self.token = token or secrets.token_urlsafe(16)
         self.peers = Peers()
-        self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs), lambda: loop.desk.high)
+        self.cabinet = Cabinet(
+            lambda: loop.simulation,
+            arm.chain.joints,
+            ProgramFolder(programs),
+            lambda: loop.desk.high,
+            between=loop.between_ticks,
+        )
         self.scripts = ScriptRunner(self.cabinet)
+        self._loop = loop
         self._sockets = {name: _listening(host, number) for name, number in self.ports.items()}
         self._tcp = self._conversations(arm)
         hosts = frozenset(f"{name}:{self.ports[CONTROL]}" for name in (host.lower(), "localhost", "127.0.0.1"))
@@ -93,7 +101,6 @@ class RobotInterfaces:
             ws="none",
         )
         self._http = uvicorn.Server(config)
-        self._loop = loop
         self._ended = asyncio.Event()
         self._network: asyncio.AbstractEventLoop | None = None
         self._thread = threading.Thread(target=self._run, name="network", daemon=True)
@@ -106,11 +113,13 @@ class RobotInterfaces:
     def start(self) -> None:
         """Begin to answer; the loop's next tick is the first that is told."""
         self._loop.companion = self.cabinet
+        self._loop.log.listen(self.cabinet.note)
         self._thread.start()
 
     def close(self) -> None:
         """End all connections."""
         self._loop.companion = None
+        self._loop.log.forget(self.cabinet.note)
         if self._network is not None:
             self._network.call_soon_threadsafe(self._ended.set)
             self._thread.join()
@@ -142,16 +151,21 @@ class RobotInterfaces:
             opened[PRIMARY + name] = stream(True, writable)
             opened[SECONDARY + name] = stream(False, writable)
             opened[REALTIME + name] = realtime(writable)
-        return {name: TcpPort(name, peers, open_) for name, open_ in opened.items()}
+        return {name: TcpPort(name, peers, open_, self._loop.troubles) for name, open_ in opened.items()}
 
     def _run(self) -> None:
-        asyncio.run(self._serve())
+        try:
+            asyncio.run(self._serve())
+        except Exception as error:  # noqa: BLE001
+            self._loop.troubles.failed("the network", error, for_good=True)
 
     async def _serve(self) -> None:
         self._network = asyncio.get_running_loop()
         tasks = [asyncio.create_task(port.listen(self._sockets[name])) for name, port in self._tcp.items()]
         tasks.append(asyncio.create_task(self._keep_alive()))
         http = asyncio.create_task(self._http.serve(sockets=[self._sockets[CONTROL]]))
+        for task, name in zip((*tasks, http), (*self._tcp, "what keeps clients waiting", CONTROL), strict=True):
+            task.add_done_callback(functools.partial(self._ended_early, name))
         await self._ended.wait()
         self._http.should_exit = True
         for task in tasks:
@@ -160,13 +174,20 @@ class RobotInterfaces:
             with suppress(asyncio.CancelledError):
                 await task
 
+    def _ended_early(self, name: str, task: asyncio.Task[None]) -> None:
+        """A task that serves is over: a robot whose port is dead must not look as if it answered."""
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self._loop.troubles.failed(f"the network interface {name}", error, for_good=True)
+
     async def _keep_alive(self) -> None:
-        last = -1
+        last, asked = -1, None
         while True:
             await asyncio.sleep(HEARTBEAT)
-            self.cabinet.state.failure = self._loop.failure
             if self.cabinet.ticks == last:
-                self.cabinet.repeat()
+                if asked is None or asked.done():
+                    asked = self._loop.between_ticks(self.cabinet.repeat)
+                else:  # it has not come to the last one
+                    self.cabinet.again()
             last = self.cabinet.ticks
 
 

@@ -19,6 +19,7 @@ from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 from pendant.events.event_row import Severity
 from sim.exchange.snapshot import Snapshot
+from sim.run.troubles import Troubles
 
 POINTS = 600
 """Of a plot's line."""
@@ -42,7 +43,7 @@ class Replay(Site):
     """
 
     def __init__(self, player: Player, meshes: Mapping[str, bytes], access: Access, port: int) -> None:
-        super().__init__(access, port)
+        super().__init__(access, port, Troubles(lambda kind, values: None))
         self.player = player
         self._set = -1.0  # where we have put the slider ourselves
         self._before = time.monotonic()

@@ -1,6 +1,6 @@
 """What the controller tells of itself in words and numbers of the UR e-Series, derived from the pendant's decision."""
 
-from dataclasses import dataclass
+import msgspec
 
 from app.robot_interface.controller.robot_words import (
     SAFETY_BITS,
@@ -39,9 +39,8 @@ SWITCHING_OFF = frozenset({Kind.POWERED_OFF, Kind.EMERGENCY_STOP})
 """After these the drives are off, and are switched on again by a client."""
 
 
-@dataclass(slots=True)
-class ControllerState:
-    """The controller in one tick."""
+class ControllerState(msgspec.Struct, frozen=True, gc=False):
+    """The controller in one tick: a value, so that whoever reads it sees one tick, whatever the loop does meanwhile."""
 
     mode: Mode = Mode.TEACH
     safety: Safety = Safety.NORMAL
@@ -62,34 +61,56 @@ class ControllerState:
     script: RuntimeState | None = None  # of a script; None: none runs, and the robot's own programs count
     refusal: str = ""  # why free-drive was refused last; "" once it was entered
 
-    def see(self, tick: int, decision: Decision) -> None:
-        """Take in a tick."""
-        before = self.stopped
-        self.tick, self.mode, self.safety = tick, decision.mode, decision.safety
-        if any(event.kind in SWITCHING_OFF for event in decision.events):
-            self.switched_off, self.idle = True, False
-        self.switched_off = self.switched_off and decision.mode is Mode.STOP
-        if self.stopped and not before:
-            self.stopped_at = tick
-        self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
-        self.forcing, self.torques = isinstance(decision.move, ApplyForce), isinstance(decision.move, DirectTorque)
-        self.idle = self.idle and self.powerless
-        if decision.mode in (Mode.TEACH, Mode.NORMAL):
-            self.remote = False
-        elif decision.mode is Mode.REMOTE:
-            self.remote = True
+    def after(
+        self, tick: int, decision: Decision, script: RuntimeState | None = None, idle: bool | None = None
+    ) -> "ControllerState":
+        """The state after a tick.
+
+        Args:
+            tick: its number.
+            decision: of it.
+            script: state of a script, None where none runs.
+            idle: whether a client has asked for drives that are on with brakes that are closed; None: nobody has asked.
+        """
+        mode, safety, events = decision.mode, decision.safety, decision.events
+        switched_off = self.switched_off
+        idle = self.idle if idle is None else idle
+        if events and any(event.kind in SWITCHING_OFF for event in events):
+            switched_off, idle = True, False
+        switched_off = switched_off and mode is Mode.STOP
+        stopped = _stopped(mode, safety, switched_off)
+        powerless = switched_off or _off(decision.law, safety, stopped)
+        move = decision.move
+        return ControllerState(
+            mode,
+            safety,
+            decision.phase,
+            decision.law,
+            decision.program,
+            self.program,
+            isinstance(move, ApplyForce),
+            isinstance(move, DirectTorque),
+            tick if stopped and not self.stopped else self.stopped_at,
+            tick,
+            idle and powerless,
+            mode is Mode.REMOTE or (self.remote and mode not in (Mode.TEACH, Mode.NORMAL)),
+            self.popup,
+            self.operational,
+            "",
+            switched_off,
+            script,
+            self.refusal,
+        )
 
     @property
     def stopped(self) -> bool:
         """A protective stop in a UR's sense: also the pendant's STOP without one, which a UR does not know."""
-        if self.safety is Safety.PROTECTIVE_STOP:
-            return True
-        return self.mode is Mode.STOP and self.safety <= Safety.REDUCED and not self.switched_off
+        return _stopped(self.mode, self.safety, self.switched_off)
 
     @property
     def off(self) -> bool:
         """The drives have no power, and no stop is there that has to be unlocked first."""
-        return self.law is Law.OFF and self.safety is not Safety.SAFEGUARD_STOP and not self.stopped
+        return _off(self.law, self.safety, self.stopped)
 
     @property
     def powerless(self) -> bool:
@@ -145,3 +166,13 @@ class ControllerState:
     def locked_for(self) -> float:
         """Time until a protective stop can be unlocked [s]."""
         return max(0.0, UNLOCK_AFTER - (self.tick - self.stopped_at) * TICK)
+
+
+def _stopped(mode: Mode, safety: Safety, switched_off: bool) -> bool:
+    if safety is Safety.PROTECTIVE_STOP:
+        return True
+    return mode is Mode.STOP and safety <= Safety.REDUCED and not switched_off
+
+
+def _off(law: Law, safety: Safety, stopped: bool) -> bool:
+    return law is Law.OFF and safety is not Safety.SAFEGUARD_STOP and not stopped

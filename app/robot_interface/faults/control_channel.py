@@ -3,20 +3,21 @@
 import asyncio
 import hmac
 from collections.abc import Awaitable, Callable, Mapping
+from concurrent.futures import Future
 from http import HTTPStatus
 from typing import TypeVar
 
-import msgspec
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
 from app.files.bad_input import ABSENT, BadInput
-from app.files.checked import convert
 from app.log.live import LiveRecording
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.rtde_fields import OUTPUTS
+from app.robot_interface.faults.channel_messages import WHERE, answer, body, refusal, whole
 from app.robot_interface.faults.channel_requests import Asked, CableFault, ClockPace, Switched, Timed
 from app.robot_interface.faults.served_loop import ServedLoop
 from app.robot_interface.transport.peers import Peers
@@ -29,14 +30,10 @@ from pendant.event_table import render
 from pendant.inputs import Command
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
-
-WHERE = "control channel"
-
-MOST_BYTES = 1 << 20
-"""Of a request."""
+from sim.run.troubles import reason_of
 
 PATIENCE = 10.0
-"""Time in which another set-up must have begun [s]."""
+"""Time in which the loop must have done what a request asks of it [s]."""
 
 T = TypeVar("T")
 Handler = Callable[[Request], Awaitable[object]]
@@ -85,16 +82,16 @@ class ControlChannel:
         self.app = Starlette(routes=routes, exception_handlers={404: _nothing, 405: _nothing})
 
     def _guarded(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        async def answer(request: Request) -> Response:
-            refusal = self._why_not(request)
-            if refusal is not None:
-                return _json({"error": refusal[1]}, refusal[0])
+        async def answered(request: Request) -> Response:
+            why_not = self._why_not(request)
+            if why_not is not None:
+                return refusal(*why_not)
             try:
-                return _json(await handler(request))
+                return answer(await handler(request))
             except BadInput as error:
-                return _json({"error": str(error)}, HTTPStatus.BAD_REQUEST)
+                return refusal(HTTPStatus.BAD_REQUEST, str(error))
 
-        return answer
+        return answered
 
     def _why_not(self, request: Request) -> tuple[HTTPStatus, str] | None:
         """Why a request is turned away: what a page of somebody else sends, and what has no token."""
@@ -110,7 +107,7 @@ class ControlChannel:
         return None
 
     async def _state(self, _: Request) -> object:
-        state = self._cabinet.state
+        state, recording = self._cabinet.state, self._recording
         return {
             "tick": state.tick,
             "time": state.tick * TICK,
@@ -125,11 +122,13 @@ class ControlChannel:
             "popup": state.popup,
             "refusal": state.refusal,
             "failure": self._loop.failure,
-            "recording": None if self._recording.path is None else str(self._recording.path),
+            "broken": self._loop.troubles.now(),
+            "recording": str(recording.path) if recording.on and recording.path is not None else None,
+            "recording_failure": recording.failure,
         }
 
     async def _events(self, request: Request) -> object:
-        after = _whole(request, "after")
+        after = whole(request, "after")
         return [
             {
                 "number": number,
@@ -156,26 +155,27 @@ class ControlChannel:
     async def _messages(self, request: Request) -> object:
         return [
             {"number": said.number, "interface": said.interface, "peer": said.peer, "text": said.text}
-            for said in self._peers.said(_whole(request, "after"))
+            for said in self._peers.said(whole(request, "after"))
         ]
 
     async def _field(self, request: Request) -> object:
         name = request.path_params["name"]
         if name not in OUTPUTS:
             raise BadInput(WHERE, "field", name, "an output field of RTDE, such as actual_q")
-        return self._cabinet.record.get(name)
+        (value,) = await self._in_time(self._cabinet.look(name))
+        return value
 
     async def _act(self, request: Request) -> object:
-        wanted = await _body(request, Timed)
+        wanted = await body(request, Timed)
         loop = self._loop
         check_actions(wanted.actions, Prepared(loop.simulation.arm, loop.scenario, loop.settings, None, WHERE))
         begun = self._cabinet.act(wanted.actions)
         if loop.paused or loop.failure:  # no tick comes before somebody asks for one
             return {"after": self._cabinet.state.tick}
-        return {"after": await asyncio.wrap_future(begun)}
+        return {"after": await self._in_time(begun)}
 
     async def _network(self, request: Request) -> object:
-        wanted = await _body(request, CableFault)
+        wanted = await body(request, CableFault)
         if wanted.interface != "all" and wanted.interface not in self._ports:
             raise BadInput(WHERE, "interface", wanted.interface, f"one of all, {', '.join(self._ports)}")
         for name, port in self._ports.items():
@@ -187,7 +187,7 @@ class ControlChannel:
         return {}
 
     async def _pace(self, request: Request) -> object:
-        wanted, loop = await _body(request, ClockPace), self._loop
+        wanted, loop = await body(request, ClockPace), self._loop
         if wanted.speed is not None:
             loop.speed = wanted.speed
         if wanted.paused is not None:
@@ -197,7 +197,7 @@ class ControlChannel:
         return {"speed": loop.speed, "paused": loop.paused}
 
     async def _begin(self, request: Request) -> object:
-        setup = await _body(request, Setup)
+        setup = await body(request, Setup)
         prepared = await asyncio.to_thread(prepare, setup, WHERE)
         if prepared.arm.name != self._loop.simulation.arm.name:
             raise BadInput(
@@ -205,65 +205,46 @@ class ControlChannel:
             )
         simulation = await asyncio.to_thread(simulate, prepared)
         made = [simulation]
-        self._loop.begin(lambda: made.pop() if made else simulate(prepared))
-        return await self._begun(lambda: self._loop.scenario is prepared.scenario)
+        await self._in_time(self._loop.begin(lambda: made.pop() if made else simulate(prepared)))
+        return {"tick": self._cabinet.state.tick}
 
     async def _restart(self, _: Request) -> object:
-        before = self._loop.simulation
-        self._loop.reset()
-        return await self._begun(lambda: self._loop.simulation is not before)
+        await self._in_time(self._loop.reset())
+        return {"tick": self._cabinet.state.tick}
 
-    async def _begun(self, done: Callable[[], bool]) -> object:
-        for _ in range(ticks(PATIENCE) // 5):
-            if done() and self._cabinet.state.tick:
-                return {"tick": self._cabinet.state.tick}
-            await asyncio.sleep(5 * TICK)
-        raise BadInput(WHERE, "", ABSENT, "the simulation did not begin in time")
+    async def _in_time(self, asked: "Future[T]") -> T:
+        """What the loop gives. Raises BadInput: it fails, is given up, or does not come in time, and is withdrawn then."""
+        waiting = asyncio.wrap_future(asked)
+        done, _ = await asyncio.wait((waiting,), timeout=PATIENCE)
+        if not done or waiting.cancelled():
+            waiting.cancel()
+            why = "another start, or the end, came between" if done else f"the robot did not come to it in {PATIENCE:g} s"
+            raise BadInput(WHERE, "", ABSENT, why)
+        try:
+            return waiting.result()
+        except BadInput:
+            raise
+        except Exception as error:
+            raise BadInput(WHERE, "", ABSENT, f"it failed: {reason_of(error)}") from error
 
     async def _remote(self, request: Request) -> object:
-        wanted = await _body(request, Switched)
+        wanted = await body(request, Switched)
         self._cabinet.ask(Ask((Command.REMOTE if wanted.on else Command.TEACH,)))
         return {}
 
     async def _free_drive(self, request: Request) -> object:
-        wanted = await _body(request, Asked)
+        wanted = await body(request, Asked)
         self._cabinet.free_drive_until = self._cabinet.ticks + ticks(wanted.seconds) if wanted.seconds else 0
         return {}
 
     async def _record(self, request: Request) -> object:
-        wanted, recording = await _body(request, Switched), self._recording
+        wanted, recording = await body(request, Switched), self._recording
         if wanted.on:
-            recording.start()
+            await self._in_time(recording.start())
         else:
             await asyncio.to_thread(recording.close)
         return {"path": None if recording.path is None else str(recording.path), "failure": recording.failure}
 
 
 async def _nothing(_: Request, __: Exception) -> Response:
-    return _json({"error": f"{WHERE}: no such request; docs/reference/control-channel.md lists all"}, HTTPStatus.NOT_FOUND)
-
-
-def _json(value: object, status: HTTPStatus = HTTPStatus.OK) -> Response:
-    headers = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff"}
-    return Response(msgspec.json.encode(value), status, headers, media_type="application/json")
-
-
-def _whole(request: Request, name: str) -> int:
-    text = request.query_params.get(name, "0")
-    if not (text.isascii() and text.isdigit() and len(text) < 10):
-        raise BadInput(WHERE, name, text, "a whole number, 0 or more")
-    return int(text)
-
-
-async def _body(request: Request, kind: type[T]) -> T:
-    """The request's body as `kind`. Raises BadInput: it is too long, no JSON, or does not fit."""
-    data = bytearray()
-    async for part in request.stream():
-        data += part
-        if len(data) > MOST_BYTES:
-            raise BadInput(WHERE, "", ABSENT, f"a request of more than {MOST_BYTES} bytes")
-    try:
-        raw = msgspec.json.decode(bytes(data) or b"{}")
-    except (msgspec.DecodeError, RecursionError, UnicodeDecodeError) as error:
-        raise BadInput(WHERE, "", ABSENT, f"expected JSON ({error})") from None
-    return convert(raw, kind, WHERE)
+    return refusal(HTTPStatus.NOT_FOUND, f"{WHERE}: no such request; docs/reference/control-channel.md lists all")

@@ -4,7 +4,8 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.urscript.functions.pose_algebra import to_rpy
 from app.urscript.functions.robot_side import ArmSide
 from app.urscript.functions.script_sockets import ScriptSockets
@@ -67,7 +68,7 @@ class ScriptRobot:
 
     def popup(self, text: str, title: str, level: str, blocking: bool) -> None:
         """Show a message."""
-        self._cabinet.state.popup = printable(text)
+        self._cabinet.set(popup=printable(text))
         self._tell(Told(Telling.POPUP, printable(text), title=printable(title), level=level))
 
     @property

@@ -3,8 +3,9 @@
 import re
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
@@ -16,12 +17,17 @@ from app.log.reader import read
 from app.log.recorder import SLOW, Recorder
 from pendant.all_settings import Settings
 from pendant.decision import Decision
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import NOTHING
 from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
+from sim.run.between_ticks import BetweenTicks
+from sim.run.event_log import EventLog
+from sim.run.troubles import Troubles
 from sim.simulation import Simulation
 from tests.app.web.raw_client import until
 
+T = TypeVar("T")
 ARM = load_arm("ur5e")
 IDLE = Wishes(NOTHING, (), ())
 
@@ -31,9 +37,19 @@ class SteppedLoop:
 
     def __init__(self) -> None:
         self.watch: Callable[[Simulation, Decision], None] | None = None
+        self.log = EventLog()
+        self._between = BetweenTicks()
+        self.troubles = Troubles(self.tell)
         self.simulation = Simulation(ARM, Scenario(), Settings())
 
+    def between_ticks(self, work: Callable[[], T]) -> "Future[T]":
+        return self._between.ask(work)
+
+    def tell(self, kind: Kind, values: Values) -> None:
+        self._between.ask(lambda: self.log.note(Event(kind, self.simulation.tick_count, values)))
+
     def tick(self, times: int) -> None:
+        self._between.do()
         for _ in range(times):
             decision = self.simulation.tick(IDLE)
             if self.watch is not None:

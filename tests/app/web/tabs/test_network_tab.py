@@ -54,10 +54,10 @@ def test_it_tells_who_is_there_and_what_was_said(server: viser.ViserServer, inte
 
 
 def test_it_tells_state_and_popup(server: viser.ViserServer, interfaces: RobotInterfaces) -> None:
-    tab, state = NetworkTab(server.gui, interfaces), interfaces.cabinet.state
+    tab = NetworkTab(server.gui, interfaces)
     tab.show()
     assert "remote" in tab.status.shown
-    state.remote, state.popup, state.program = False, "hello <b>", "wave"
+    interfaces.cabinet.set(remote=False, popup="hello <b>", program="wave")
     assert tab.show()
     assert "local" in tab.status.shown
     assert "hello &lt;b&gt;" in tab.status.shown
