@@ -1,6 +1,5 @@
 """The command line `pendant`. Exit codes: 0 done, 1 an expectation or a check failed, 2 bad input, said in one line."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.command_exit import run_command_line
 from app.command_options import (
     PORT,
     AnyFile,
@@ -30,6 +30,7 @@ from app.command_options import (
     example,
     setting,
 )
+from app.ending import ending
 from app.export_command import EXAMPLES, export_
 from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
 from app.files.checked import ABSENT, BadInput
@@ -39,9 +40,6 @@ from app.session.session_file import FIRST_START, Session, Setup, find_all, open
 from app.session.timeline_checks import Prepared
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
-
-# Usage errors, whichever click typer was built on: the base of the one that typer exports.
-UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 app = typer.Typer(
     name="pendant",
@@ -127,10 +125,11 @@ def robot_(
     any_file: AnyFile = False,
 ) -> None:
     """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
-    from app.robot_serving import Network, robot_until_interrupted, until_stopped
+    from app.robot_serving import Network, get_ready, robot_until_interrupted
 
     prepared = _set_up(robot, config, any_file, "robot", shipped=Setup())
-    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record, until_stopped()) as interfaces:
+    get_ready()
+    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record) as interfaces:
         announce_robot(prepared.arm, interfaces)
 
 
@@ -170,11 +169,11 @@ def run(
     if len({job.out for job in jobs}) < len(jobs):
         raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
     if len(jobs) == 1:
-        with progress(jobs[0].session) as advance:
+        with ending(interrupts=True), progress(jobs[0].session) as advance:
             outcomes = [work(jobs[0], advance)]
         show(jobs[0].session, outcomes[0], out)
     else:
-        with counting("sessions") as told:
+        with ending(interrupts=True), counting("sessions") as told:
             found = {}
             for place, outcome in run_all(jobs):
                 found[place] = outcome
@@ -219,7 +218,7 @@ def claims(
     from app.runs.coverage import cover, totals, with_trials, write
     from app.runs.progress import counting
 
-    with counting("claims") as told:
+    with ending(interrupts=True), counting("claims") as told:
         rows = cover(out, told)
         if mutants:
             rows = with_trials(rows, run_mutants(declared(), told))
@@ -261,20 +260,5 @@ def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str
 
 
 def main() -> None:
-    """Entry point: bad input is one line on standard error and exit code 2, never a traceback."""
-    try:
-        code = typer.main.get_command(app).main(sys.argv[1:] or ["--help"], prog_name="pendant", standalone_mode=False)
-    except UsageError as error:
-        text = error.format_message() if hasattr(error, "format_message") else str(error)  # type: ignore[attr-defined]
-        sys.exit(_refuse(text))
-    except BadInput as error:
-        sys.exit(_refuse(str(error)))
-    except typer.Abort:
-        sys.exit(1)
-    sys.exit(code or 0)
-
-
-def _refuse(text: str) -> int:
-    """Say one line on standard error; the exit code to end with."""
-    sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
-    return 2
+    """Run the command line."""
+    run_command_line(app)

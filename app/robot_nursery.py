@@ -71,12 +71,9 @@ def _start(order: dict[str, Any]) -> int:
 
 
 def _be_a_robot(order: dict[str, Any]) -> int:
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
     try:
         setup = Setup() if order["setup"] is None else opened(Path(order["setup"]), Setup)
-        with robot_until_interrupted(prepare(setup, "setup.yaml"), Network(order["host"]), None, ended):
+        with robot_until_interrupted(prepare(setup, "setup.yaml"), Network(order["host"]), None):
             pass
     except BadInput as error:
         sys.stderr.write(f"{error}\n")

@@ -1,15 +1,16 @@
 """Serves a robot on the network until the user stops it: for `pendant robot`, and for `pendant serve --interfaces`."""
 
+import logging
 import os
-import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from app.log.live import LiveRecording, must_be_writable
+from app.ending import ending
+from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.runs.runner import simulate
 from app.runs.warm_up import warm_up
@@ -34,18 +35,14 @@ class Network(NamedTuple):
     programs: Path | None = None  # folder of programs that clients can load
 
 
-def until_stopped() -> threading.Event:
-    """Make ready what is compiled. Returns what is set when the user stops the program, politely or by Ctrl-C."""
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
+def get_ready() -> None:
+    """Make ready what is compiled, and say so where that takes a while."""
     notice = threading.Timer(PATIENCE, lambda: sys.stdout.write(f"{COMPILING}\n"))
     notice.start()
     try:
         warm_up()
     finally:
         notice.cancel()
-    return ended
 
 
 def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording) -> RobotInterfaces:
@@ -68,32 +65,43 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
 
 
 @contextmanager
-def robot_until_interrupted(
-    prepared: Prepared, network: Network, record: Path | None, ended: threading.Event
-) -> Iterator[RobotInterfaces]:
-    """Serve a robot without a page; the body runs once it answers; then wait until it is ended.
+def robot_until_interrupted(prepared: Prepared, network: Network, record: Path | None) -> Iterator[RobotInterfaces]:
+    """Serve a robot without a page; the body runs once it answers; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
     Args:
         prepared: what to simulate.
         network: where its interfaces are to be.
         record: record from the start, into this folder.
-        ended: set when it is to end, as `until_stopped` gives it.
 
     Raises:
         BadInput: an address cannot be used, or `record` not be written.
     """
-    if record is not None:
-        must_be_writable(record)
     loop = Loop(lambda: simulate(prepared))
-    recording = LiveRecording(loop, record or Path())
-    interfaces = open_interfaces(loop, prepared, network, recording)
-    try:
-        loop.start()
-        if record is not None:
-            recording.start()
-        yield interfaces
-        ended.wait()
-    finally:
-        interfaces.close()
-        recording.close()
-        loop.stop()
+    with ending() as end:
+        recording = LiveRecording(loop, record or Path())
+        end.see_to(recording.close)
+        interfaces = open_interfaces(loop, prepared, network, recording)
+        try:
+            loop.start()
+            if record is not None:
+                recording.start().result()
+            yield interfaces
+            end.asked.wait()
+        finally:
+            end_in_turn(lambda: recording.close(FINISHED), interfaces.close, lambda: loop.stop(STOOD))
+
+
+FINISHED = 1.5
+"""Time that files have to be finished [s]."""
+
+STOOD = 0.5
+"""Time in which the loop must have ended its tick [s]."""
+
+
+def end_in_turn(*steps: Callable[[], object]) -> None:
+    """End one thing after the other; what fails is logged, and keeps nothing else from its end."""
+    for step in steps:
+        try:
+            step()
+        except Exception:
+            logging.getLogger(__name__).exception("something did not end as it should")

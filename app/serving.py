@@ -1,7 +1,5 @@
 """Serves a prepared simulation until the user stops it."""
 
-import signal
-import threading
 import webbrowser
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
@@ -12,8 +10,9 @@ from typing import NamedTuple
 
 import msgspec
 
+from app.ending import ending
 from app.files.checked import BadInput
-from app.files.library import mesh_path, robots
+from app.files.library import robots
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper, keeper_for
 from app.log.live import LiveRecording
@@ -23,7 +22,7 @@ from app.log.scan import repair
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
-from app.robot_serving import Network, open_interfaces, until_stopped
+from app.robot_serving import FINISHED, STOOD, Network, end_in_turn, get_ready, open_interfaces
 from app.runs.runner import simulate
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import FIRST_START
@@ -59,7 +58,7 @@ def serve_until_interrupted(
     keeper: Keeper | None = None,
     lesson: Lesson | None = None,
 ) -> Iterator[Serving]:
-    """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
+    """Serve; the body runs once the page is up; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
     Args:
         prepared: what to simulate.
@@ -75,25 +74,28 @@ def serve_until_interrupted(
     Raises:
         BadInput: an address cannot be used.
     """
-    ended = until_stopped()
+    get_ready()
     loop = Loop(lambda: simulate(prepared))
-    recording = LiveRecording(loop, record or Path())
-    arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
-    interfaces = arms.open(prepared)
-    try:
-        loop.start()
-        scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
-        robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
-        page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
-        served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
+    with ending() as end:
+        recording = LiveRecording(loop, record or Path())
+        end.see_to(recording.close)
+        arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
+        interfaces = arms.open(prepared)
         try:
-            yield Serving(served, interfaces)
-            ended.wait()
+            loop.start()
+            if record is not None:
+                recording.start().result()
+            scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
+            robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
+            page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
+            served = _serve(partial(page, host=host, open_browser=open_browser), port=port, usual=usual)
+            try:
+                yield Serving(served, interfaces)
+                end.asked.wait()
+            finally:
+                end_in_turn(lambda: recording.close(FINISHED), served.close)
         finally:
-            served.close()
-    finally:
-        arms.close()
-        loop.stop()
+            end_in_turn(lambda: recording.close(FINISHED), arms.close, lambda: loop.stop(STOOD))
 
 
 @contextmanager
@@ -105,20 +107,17 @@ def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: 
     """
     repair(path)
     player = Player(read(path))
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
     access = access_through(host)
-    names = ("foot", *player.log.arm.chain.joints)
-    meshes = {part: mesh_path(player.log.arm.name, part).read_bytes() for part in names}
-    shown = Replay(player, meshes, access, free_port(access.host, port, usual))
-    try:
-        if open_browser:
-            webbrowser.open(shown.link)
-        yield shown
-        ended.wait()
-    finally:
-        shown.close()
+    meshes = meshes_of(player.log.arm)
+    with ending() as end:
+        shown = Replay(player, meshes, access, free_port(access.host, port, usual))
+        try:
+            if open_browser:
+                webbrowser.open(shown.link)
+            yield shown
+            end.asked.wait()
+        finally:
+            shown.close()
 
 
 class ServedArms:

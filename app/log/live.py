@@ -1,6 +1,5 @@
 """Records a running loop, on a switch: a file each time that it is switched on, and for each scenario."""
 
-import tempfile
 import threading
 import time
 from collections.abc import Callable
@@ -217,12 +216,3 @@ class LiveRecording:
                     return path
         except OSError as error:
             raise BadInput(str(self.folder), "", ABSENT, f"cannot be written ({error.strerror})") from None
-
-
-def must_be_writable(folder: Path) -> None:
-    """Make a folder for recordings; BadInput when it cannot be written."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
-    except OSError as error:
-        raise BadInput("serve", "--record", folder, f"a folder that can be written ({error.strerror})") from None

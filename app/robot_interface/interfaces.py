@@ -34,6 +34,9 @@ from sim.run.loop import Loop
 JOINTS = 6
 """Of every arm that these protocols can tell."""
 
+PARTING = 1.0
+"""Time in which all connections must have ended [s]."""
+
 HEARTBEAT = 0.1
 """While nothing is simulated, the last packages are sent again with this period [s]: after 2.5 s of silence clients leave."""
 
@@ -99,6 +102,7 @@ class RobotInterfaces:
             limit_concurrency=32,
             timeout_keep_alive=30,
             ws="none",
+            lifespan="off",
         )
         self._http = uvicorn.Server(config)
         self._ended = asyncio.Event()
@@ -117,12 +121,13 @@ class RobotInterfaces:
         self._thread.start()
 
     def close(self) -> None:
-        """End all connections."""
+        """End all connections; requests that are still done are left to themselves."""
         self._loop.companion = None
         self._loop.log.forget(self.cabinet.note)
         if self._network is not None:
-            self._network.call_soon_threadsafe(self._ended.set)
-            self._thread.join()
+            with suppress(RuntimeError):  # it has ended already
+                self._network.call_soon_threadsafe(self._ended.set)
+            self._thread.join(PARTING)
 
     def _conversations(self, arm: Arm) -> dict[str, TcpPort]:
         """What is said on each port."""
@@ -167,7 +172,7 @@ class RobotInterfaces:
         for task, name in zip((*tasks, http), (*self._tcp, "what keeps clients waiting", CONTROL), strict=True):
             task.add_done_callback(functools.partial(self._ended_early, name))
         await self._ended.wait()
-        self._http.should_exit = True
+        self._http.should_exit = self._http.force_exit = True
         for task in tasks:
             task.cancel()
         for task in (*tasks, http):

@@ -14,7 +14,7 @@ import viser
 from app.files.checked import BadInput
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper
-from app.log.live import LiveRecording, must_be_writable
+from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.control import Control
@@ -262,8 +262,7 @@ def serve(
     meshes = meshes_of(arm)
     recording = recording or LiveRecording(loop, record or Path())
     if record is not None:
-        must_be_writable(record)
-        recording.start()
+        recording.start().result()
     served = Served(
         loop,
         arm,

@@ -107,11 +107,11 @@ class Loop:
         gc.freeze()  # the model and the modules never become garbage: collections stay short
         self._thread.start()
 
-    def stop(self) -> None:
-        """Stop the thread and wait for it; what waits for a tick is given up."""
+    def stop(self, patience: float | None = None) -> None:
+        """Stop the thread and wait for it, for so long at most [s]; what waits for a tick is given up."""
         self._stop.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(patience)
         self._between.close()
         self._beginnings.close()
 
