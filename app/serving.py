@@ -16,9 +16,10 @@ from app.files.library import robots
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper, keeper_for
 from app.log.live import LiveRecording
-from app.log.playback import Player
-from app.log.reader import read
-from app.log.scan import repair
+from app.log.recording_plan import ALL, RecordingPlan
+from app.log_reading.playback import Player
+from app.log_reading.reader import files_of, read
+from app.mcap_file.mending import repair
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
@@ -54,6 +55,7 @@ def serve_until_interrupted(
     usual: int,
     open_browser: bool,
     record: Path | None,
+    plan: RecordingPlan = ALL,
     network: Network | None = None,
     keeper: Keeper | None = None,
     lesson: Lesson | None = None,
@@ -67,6 +69,7 @@ def serve_until_interrupted(
         usual: the port that a user's bookmark knows.
         open_browser: open the page too.
         record: record from the start, into this folder.
+        plan: how often what is recorded, and how long a file of it is.
         network: where the robot's network interfaces are to be; None for the page alone.
         keeper: as `app.web.server.serve`.
         lesson: as `app.web.server.serve`.
@@ -77,7 +80,7 @@ def serve_until_interrupted(
     get_ready()
     loop = Loop(lambda: simulate(prepared))
     with ending() as end:
-        recording = LiveRecording(loop, record or Path())
+        recording = LiveRecording(loop, record or Path(), plan)
         end.see_to(recording.close)
         arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
         interfaces = arms.open(prepared)
@@ -100,12 +103,13 @@ def serve_until_interrupted(
 
 @contextmanager
 def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
-    """Show a recording, as `serve_until_interrupted` serves a simulation; a log without its end is repaired first.
+    """Show a recording, as `serve_until_interrupted` serves a simulation; a file without its end is repaired first.
 
     Raises:
         BadInput: the log cannot be read or repaired, or the address cannot be used.
     """
-    repair(path)
+    for file in files_of(path):
+        repair(file)
     player = Player(read(path))
     access = access_through(host)
     meshes = meshes_of(player.log.arm)

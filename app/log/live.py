@@ -8,14 +8,20 @@ from pathlib import Path
 from typing import Protocol
 
 from app.files.checked import ABSENT, BadInput
+from app.files.disk_room import must_have_room
 from app.log.recorder import Recorder
+from app.log.recording_paths import discard, free_path, part
+from app.log.recording_plan import ALL, RecordingPlan
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind, Values
-from pendant.tick.modes import TICK
+from pendant.tick.modes import TICK, TICK_RATE
 from sim.arm.scenario import Scenario
 from sim.run.event_log import EventLog
 from sim.run.troubles import Troubles, reason_of
 from sim.simulation import Simulation
+
+READY = 5 * TICK_RATE
+"""Ticks before the end of a file in which the next one is opened."""
 
 
 class Watched(Protocol):
@@ -48,19 +54,22 @@ class LiveRecording:
     Args:
         loop: what is recorded.
         folder: for the files; made when missing.
+        plan: how often what is recorded, and how long a file is.
 
     Attributes:
         on: it records, or is about to.
-        path: of the last file.
+        path: of the last recording: a file, or the folder of its parts.
         failure: why the last recording ended by itself, or "".
     """
 
-    def __init__(self, loop: Watched, folder: Path) -> None:
+    def __init__(self, loop: Watched, folder: Path, plan: RecordingPlan = ALL) -> None:
         self._loop = loop
-        self.folder = folder
+        self.folder, self.plan = folder, plan
         self._lock = threading.Lock()  # of all that follows; never held while a file is waited for, but for another scenario's
         self._recorder: Recorder | None = None
         self._scenario: Scenario | None = None  # of the file
+        self._next: Recorder | None = None  # the file that follows, ready
+        self._asked = False  # for it
         self._opening: Future[Path] = Future()  # of the file of the last start
         self._helpers: list[threading.Thread] = []  # that open or end files
         self.on = False
@@ -72,11 +81,11 @@ class LiveRecording:
     def seconds(self) -> float:
         """Recorded so far [s]."""
         recorder = self._recorder
-        return 0.0 if recorder is None else recorder.ticks * TICK
+        return 0.0 if recorder is None else recorder.last * TICK
 
     @property
     def writing(self) -> str:
-        """Name of the file that is not whole yet, or "" where all are."""
+        """Name of the recording that is not whole yet, or "" where all are."""
         with self._lock:
             busy = self.on or any(helper.is_alive() for helper in self._helpers)
             return self.path.name if busy and self.path is not None else ""
@@ -85,7 +94,7 @@ class LiveRecording:
         """Record, as soon as the file is open.
 
         Returns:
-            Its path, when it is; BadInput where it cannot be written.
+            The recording's path, when it is; BadInput where it cannot be written, or the disk has no room.
         """
         with self._lock:
             if not self.on:
@@ -117,6 +126,7 @@ class LiveRecording:
     def _begin(self, opening: "Future[Path]") -> None:
         simulation = self._loop.simulation
         try:
+            must_have_room(self.folder)
             recorder = self._opened(simulation)
         except Exception as error:  # noqa: BLE001 - whoever asked has to know
             with self._lock:
@@ -130,7 +140,7 @@ class LiveRecording:
                 self._loop.watch = self._see
             else:
                 self._help(self._end, recorder)
-        opening.set_result(recorder.path)
+        opening.set_result(recorder.path if self.path is None else self.path)
 
     def _fail(self, error: Exception) -> None:
         """It cannot go on."""
@@ -145,9 +155,11 @@ class LiveRecording:
         self._end_file()
 
     def _end_file(self) -> None:
-        recorder, self._recorder = self._recorder, None
-        if recorder is not None:
-            self._help(self._end, recorder)
+        ended = (self._recorder, self._next)
+        self._recorder = self._next = None
+        for recorder in ended:
+            if recorder is not None:
+                self._help(self._end, recorder)
 
     def _end(self, recorder: Recorder) -> None:
         try:
@@ -175,8 +187,33 @@ class LiveRecording:
                 self._scenario = simulation.scenario
             if recorder.failure is not None:
                 self._fail(recorder.problem(recorder.failure))
+                return
+            recorder.see(simulation, decision)
+            if self.plan.split and recorder.ticks >= self.plan.split - READY:
+                self._follow(recorder)
+
+    def _follow(self, recorder: Recorder) -> None:
+        """Have the next file opened in time, and go over to it when this one is as long as it should be."""
+        if not self._asked:
+            self._asked = True
+            self._help(self._open_next, recorder)
+        if self._next is not None and recorder.ticks >= self.plan.split:
+            self._next.follow(recorder.last)
+            self._recorder, self._next, self._asked = self._next, None, False
+            self._help(self._end, recorder)
+
+    def _open_next(self, before: Recorder) -> None:
+        try:
+            recorder = self._part_of(self._loop.simulation, before.path.parent, int(before.path.stem) + 1)
+        except Exception as error:  # noqa: BLE001
+            with self._lock:
+                self._fail(error)
+            return
+        with self._lock:
+            if self._recorder is before:
+                self._next = recorder
             else:
-                recorder.see(simulation, decision)
+                self._help(self._end, recorder)
 
     def _look(self) -> None:
         """On the loop's thread: a file failed, also while no tick comes that would see it."""
@@ -194,25 +231,27 @@ class LiveRecording:
                 self._stop()
 
     def _opened(self, simulation: Simulation) -> Recorder:
-        """Raises BadInput: it cannot be written."""
-        path = self._free_path()
-        title = f"recorded on the page, {simulation.arm.title}"
-        recorder = Recorder(path, simulation, title, waits=False, failed=lambda: self._loop.between_ticks(self._look))
+        """The file of a new recording. Raises BadInput: it cannot be written."""
+        path = free_path(self.folder, parts=bool(self.plan.split))
+        self._asked = False
+        try:
+            recorder = self._part_of(simulation, path, 1) if self.plan.split else self._file(simulation, path, None)
+        except BadInput:
+            discard(path, parts=bool(self.plan.split))
+            raise
         self.path = path
         return recorder
 
-    def _free_path(self) -> Path:
-        """A name that no other file has, in this process or another one's: the empty file is there from here on."""
-        stem, number = time.strftime("recording-%Y-%m-%d-%H%M%S"), 1
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            while True:
-                path = self.folder / (f"{stem}.mcap" if number == 1 else f"{stem}-{number}.mcap")
-                try:
-                    path.open("xb").close()
-                except FileExistsError:
-                    number += 1
-                else:
-                    return path
-        except OSError as error:
-            raise BadInput(str(self.folder), "", ABSENT, f"cannot be written ({error.strerror})") from None
+    def _part_of(self, simulation: Simulation, folder: Path, number: int) -> Recorder:
+        return self._file(simulation, part(folder, number), (folder.name, number))
+
+    def _file(self, simulation: Simulation, path: Path, of: tuple[str, int] | None) -> Recorder:
+        return Recorder(
+            path,
+            simulation,
+            f"recorded on the page, {simulation.arm.title}",
+            waits=False,
+            failed=lambda: self._loop.between_ticks(self._look),
+            plan=self.plan,
+            part=of,
+        )

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.engine.spreading import spread
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.report.files import write_report
 from app.runs.runner import Progress, RunOutcome, record, run, silent, simulate
 from app.session.expectation_watch import Verdict

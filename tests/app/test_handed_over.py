@@ -13,7 +13,7 @@ import pytest
 from app.files.bad_input import shown
 from app.files.checked import BadInput, convert, load
 from app.files.library import ASSETS, load_arm, load_tool
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.runs.runner import record, simulate, try_out
 from app.session.prepare import prepare
 from app.session.session_file import Session, Setup, opened

@@ -13,8 +13,8 @@ from app.files.checked import BadInput
 from app.files.library import load_arm
 from app.log import live
 from app.log.live import LiveRecording
-from app.log.reader import read
 from app.log.recorder import SLOW, Recorder
+from app.log_reading.reader import read
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.events.event import Event, Kind, Values
@@ -179,7 +179,7 @@ def test_another_scenario_that_cannot_be_written_ends_it(
     recording = LiveRecording(loop, tmp_path)
     start(recording, loop)
     loop.tick(5)
-    monkeypatch.setattr(recording, "_free_path", lambda: tmp_path)
+    monkeypatch.setattr(live, "free_path", lambda folder, *, parts: folder)
     loop.simulation = Simulation(ARM, Scenario(seed=5), Settings())
     loop.tick(2)
     assert not recording.on
