@@ -20,14 +20,19 @@ from app.command_options import (
     Out,
     Port,
     Programs,
+    Record,
+    RecordRates,
+    RecordSplit,
     Robot,
     Seed,
     SessionNames,
     Set,
+    allowed_files,
     announce,
     announce_robot,
     as_kept,
     example,
+    set_up,
     setting,
 )
 from app.ending import ending
@@ -37,7 +42,6 @@ from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
 from app.session.prepare import prepare
 from app.session.session_file import FIRST_START, Session, Setup, find_all, opened
-from app.session.timeline_checks import Prepared
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
 
@@ -57,6 +61,7 @@ app = typer.Typer(
         "pendant serve --config cell.yaml",
         "pendant serve --host 0.0.0.0",
         "pendant serve --record logs",
+        "pendant serve --record logs --record-split 60 --record-rates state=50,truth=10,pictures=10",
         "pendant serve --interfaces",
         "pendant serve --fresh",
     )
@@ -68,10 +73,9 @@ def serve(
     host: Host = "127.0.0.1",
     port: Port = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
-    record: Annotated[
-        Path | None,
-        typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
-    ] = None,
+    record: Record = None,
+    record_rates: RecordRates = None,
+    record_split: RecordSplit = None,
     interfaces: Annotated[
         bool,
         typer.Option(
@@ -88,13 +92,15 @@ def serve(
 
     Set-up, settings and what was taught are kept for the next start with the same arm, unless --config says what to begin with.
     """
+    from app.log.recording_plan import recording_plan
     from app.serving import Network, serve_until_interrupted
 
-    prepared = _set_up(robot, config, any_file, "serve", shipped=FIRST_START)
+    plan = recording_plan(record_rates, record_split)
+    prepared = set_up(robot, config, any_file, "serve", shipped=FIRST_START)
     keeper, lesson = None, None
     if not fresh and (config is None or keep is not None):
         prepared, keeper, lesson = as_kept(prepared, keep)
-    network = Network(host, port_offset, programs) if interfaces else None
+    network = Network(host, port_offset, programs, allowed_files(config, any_file)) if interfaces else None
     with serve_until_interrupted(
         prepared,
         host=host,
@@ -102,6 +108,7 @@ def serve(
         usual=PORT,
         open_browser=open_browser,
         record=record,
+        plan=plan,
         network=network,
         keeper=keeper,
         lesson=lesson,
@@ -121,15 +128,20 @@ def robot_(
     host: Host = "127.0.0.1",
     port_offset: Offset = 0,
     programs: Programs = None,
-    record: Annotated[Path | None, typer.Option(help="Record from the start, into this folder.", show_default=False)] = None,
+    record: Record = None,
+    record_rates: RecordRates = None,
+    record_split: RecordSplit = None,
     any_file: AnyFile = False,
 ) -> None:
     """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
+    from app.log.recording_plan import recording_plan
     from app.robot_serving import Network, get_ready, robot_until_interrupted
 
-    prepared = _set_up(robot, config, any_file, "robot", shipped=Setup())
+    plan = recording_plan(record_rates, record_split)
+    prepared = set_up(robot, config, any_file, "robot", shipped=Setup())
     get_ready()
-    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record) as interfaces:
+    network = Network(host, port_offset, programs, allowed_files(config, any_file))
+    with robot_until_interrupted(prepared, network, record, plan) as interfaces:
         announce_robot(prepared.arm, interfaces)
 
 
@@ -193,7 +205,10 @@ app.command("check", epilog=CHECK_EXAMPLES)(check_)
 
 @app.command(epilog=example("pendant replay out/log.mcap --open"))
 def replay(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="A log.mcap; one without its end is repaired.")],
+    log: Annotated[
+        Path,
+        typer.Argument(metavar="LOG", help="A recording, or the folder of its parts; a file without its end is repaired."),
+    ],
     host: Host = "127.0.0.1",
     port: Port = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
@@ -249,14 +264,6 @@ def robots_() -> None:
 def _source(arm: Arm) -> str:
     """Where the masses come from, without the fine print after the first semicolon; the file says the rest."""
     return " ".join(arm.masses.source.split()).partition(";")[0]
-
-
-def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str, *, shipped: Setup) -> Prepared:
-    """What the options of a command ask for; `shipped` where no file says it."""
-    setup = shipped if config is None else opened(config, Setup, any_file)
-    if robot is not None:
-        setup = msgspec.structs.replace(setup, robot=robot)
-    return prepare(setup, command if config is None else config.name)
 
 
 def main() -> None:

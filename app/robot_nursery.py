@@ -16,7 +16,7 @@ from app.files.bad_input import BadInput
 from app.robot_serving import Network, robot_until_interrupted
 from app.runs.warm_up import warm_up
 from app.session.prepare import prepare
-from app.session.session_file import Setup, opened
+from app.session.session_file import AllowedFiles, Setup, opened
 
 
 def main() -> None:
@@ -72,8 +72,9 @@ def _start(order: dict[str, Any]) -> int:
 
 def _be_a_robot(order: dict[str, Any]) -> int:
     try:
+        network = Network(order["host"], files=AllowedFiles(Path(order["folder"]).resolve()))
         setup = Setup() if order["setup"] is None else opened(Path(order["setup"]), Setup)
-        with robot_until_interrupted(prepare(setup, "setup.yaml"), Network(order["host"]), None):
+        with robot_until_interrupted(prepare(setup, "setup.yaml"), network, None):
             pass
     except BadInput as error:
         sys.stderr.write(f"{error}\n")

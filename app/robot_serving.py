@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 from app.ending import ending
 from app.log.live import LiveRecording
+from app.log.recording_plan import ALL, RecordingPlan
 from app.robot_interface.interfaces import RobotInterfaces
 from app.runs.runner import simulate
 from app.runs.warm_up import warm_up
+from app.session.session_file import SHIPPED_ALONE, AllowedFiles
 from app.session.timeline_checks import Prepared
 from app.web.access.listening import access_through
 from sim.run.loop import Loop
@@ -33,6 +35,7 @@ class Network(NamedTuple):
     host: str = "127.0.0.1"
     offset: int = 0  # added to all ports
     programs: Path | None = None  # folder of programs that clients can load
+    files: AllowedFiles = SHIPPED_ALONE  # that a set-up of the control channel may name
 
 
 def get_ready() -> None:
@@ -59,26 +62,30 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
         programs=network.programs,
         token=os.environ.get(TOKEN),
         recording=recording,
+        files=network.files,
     )
     interfaces.start()
     return interfaces
 
 
 @contextmanager
-def robot_until_interrupted(prepared: Prepared, network: Network, record: Path | None) -> Iterator[RobotInterfaces]:
+def robot_until_interrupted(
+    prepared: Prepared, network: Network, record: Path | None, plan: RecordingPlan = ALL
+) -> Iterator[RobotInterfaces]:
     """Serve a robot without a page; the body runs once it answers; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
     Args:
         prepared: what to simulate.
         network: where its interfaces are to be.
         record: record from the start, into this folder.
+        plan: how often what is recorded, and how long a file of it is.
 
     Raises:
         BadInput: an address cannot be used, or `record` not be written.
     """
     loop = Loop(lambda: simulate(prepared))
     with ending() as end:
-        recording = LiveRecording(loop, record or Path())
+        recording = LiveRecording(loop, record or Path(), plan)
         end.see_to(recording.close)
         interfaces = open_interfaces(loop, prepared, network, recording)
         try:

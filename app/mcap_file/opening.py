@@ -8,16 +8,19 @@ import struct
 from pathlib import Path
 
 from mcap.opcode import Opcode
-from mcap.records import AttachmentIndex, MetadataIndex, Statistics
+from mcap.records import AttachmentIndex, Header, MetadataIndex, Statistics
 
 from app.files.bad_input import ABSENT, BadInput
 from app.files.regular_file import open_regular
-from app.mcap_file.chunk_table import HEAD, UNREADABLE, ChunkTable, bounded, declare, stream, take_chunk, take_note
+from app.mcap_file.chunk_table import HEAD, UNREADABLE, ChunkTable, bounded, damaged, declare, stream, take_chunk, take_note
 from app.mcap_file.file_summary import MAGIC, FileSummary
 from app.mcap_file.walk import Walk
 
 CHUNK_INDEX, ENTRY = struct.Struct("<QQQQI"), struct.Struct("<HQ")
 """Of a chunk: times of its first and last message, place, length, bytes of its entries; of one: channel, place of its index."""
+
+LONGEST_HEADER = 1 << 16
+"""Of the first record [bytes]."""
 
 FOOTER = struct.Struct("<BQQQI")
 """Opcode, length, begin of the summary, of its offsets, check sum."""
@@ -56,7 +59,21 @@ def _opened(path: Path) -> ChunkTable:
     if os.pread(file.fileno(), len(MAGIC), 0) != MAGIC:
         table.close()
         raise BadInput(path.name, "", ABSENT, "is no MCAP file")
+    try:
+        _must_begin(table)
+    except UNREADABLE as error:
+        table.close()
+        raise damaged(path, len(MAGIC), error) from None
     return table
+
+
+def _must_begin(table: ChunkTable) -> None:
+    """Read the first record. Raises one of UNREADABLE: it is no header."""
+    head = table.read(len(MAGIC), HEAD)
+    length = int.from_bytes(head[1:], "little")
+    if head[0] != Opcode.HEADER or length > LONGEST_HEADER:
+        raise ValueError("no header")
+    Header.read(stream(table.read(len(MAGIC) + HEAD, length)))
 
 
 def _by_its_end(table: ChunkTable) -> bool:

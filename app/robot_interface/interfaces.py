@@ -3,6 +3,7 @@
 import asyncio
 import functools
 import ipaddress
+import logging
 import secrets
 import socket
 import threading
@@ -21,12 +22,14 @@ from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.dashboard.dashboard_session import DashboardSession
 from app.robot_interface.faults.control_channel import ControlChannel
+from app.robot_interface.faults.timed_http import TimedHttp
 from app.robot_interface.ports import CONTROL, DASHBOARD, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
 from app.robot_interface.rtde.rtde_inputs import RtdeInputs
 from app.robot_interface.rtde.rtde_session import RtdeSession
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import Conversation, TcpPort
+from app.session.session_file import SHIPPED_ALONE, AllowedFiles
 from app.urscript.running.script_runner import ScriptRunner
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
@@ -52,6 +55,7 @@ class RobotInterfaces:
         programs: folder of programs that clients can load, beside the bundled ones.
         token: of the control channel; None for a new one.
         recording: the switch of recordings; None for one of its own, into the working folder.
+        files: that a set-up of the control channel may name.
 
     Raises:
         BadInput: a port is taken, or the arm has not six joints.
@@ -67,6 +71,7 @@ class RobotInterfaces:
         programs: Path | None = None,
         token: str | None = None,
         recording: LiveRecording | None = None,
+        files: AllowedFiles = SHIPPED_ALONE,
     ) -> None:
         if arm.n != JOINTS:
             raise BadInput("--interfaces", "robot", arm.name, f"an arm of {JOINTS} joints: these protocols know no other")
@@ -93,14 +98,16 @@ class RobotInterfaces:
             recording=recording or LiveRecording(loop, Path()),
             token=self.token,
             hosts=hosts,
+            files=files,
         )
+        logging.getLogger("uvicorn.error").setLevel(logging.ERROR)  # what strangers send is no news
         config = uvicorn.Config(
             channel.app,
+            http=functools.partial(TimedHttp, waiting={}),  # type: ignore[arg-type]
             log_config=None,
             access_log=False,
             server_header=False,
-            limit_concurrency=32,
-            timeout_keep_alive=30,
+            timeout_keep_alive=10,
             ws="none",
             lifespan="off",
         )

@@ -8,7 +8,8 @@ from http import HTTPStatus
 from typing import TypeVar
 
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 from starlette.routing import Route
 
@@ -24,13 +25,16 @@ from app.robot_interface.transport.peers import Peers
 from app.robot_interface.transport.tcp_port import TcpPort
 from app.runs.runner import simulate
 from app.session.prepare import prepare
-from app.session.session_file import Setup
+from app.session.session_file import AllowedFiles, Setup, located
 from app.session.timeline_checks import Prepared, check_actions
 from pendant.event_table import render
 from pendant.inputs import Command
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
 from sim.run.troubles import reason_of
+
+LONGEST = 20.0
+"""Time that a request may take, with all that its client has to say [s]."""
 
 PATIENCE = 10.0
 """Time in which the loop must have done what a request asks of it [s]."""
@@ -50,6 +54,7 @@ class ControlChannel:
         recording: of the loop.
         token: that every request must bring.
         hosts: names and addresses, with port, that a request may call this machine.
+        files: that a set-up may name.
     """
 
     def __init__(
@@ -62,9 +67,10 @@ class ControlChannel:
         recording: LiveRecording,
         token: str,
         hosts: frozenset[str],
+        files: AllowedFiles,
     ) -> None:
         self._loop, self._cabinet, self._peers, self._ports = loop, cabinet, peers, ports
-        self._recording, self._token, self._hosts = recording, token, hosts
+        self._recording, self._token, self._hosts, self._files = recording, token, hosts, files
         get = {"state": self._state, "events": self._events, "connections": self._connections, "messages": self._messages}
         post: dict[str, Handler] = {
             "actions": self._act,
@@ -79,7 +85,7 @@ class ControlChannel:
         routes = [Route(f"/{name}", self._guarded(handler), methods=["GET"]) for name, handler in get.items()]
         routes += [Route(f"/{name}", self._guarded(handler), methods=["POST"]) for name, handler in post.items()]
         routes.append(Route("/field/{name}", self._guarded(self._field), methods=["GET"]))
-        self.app = Starlette(routes=routes, exception_handlers={404: _nothing, 405: _nothing})
+        self.app = Starlette(routes=routes, exception_handlers={HTTPException: _nothing})
 
     def _guarded(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
         async def answered(request: Request) -> Response:
@@ -87,9 +93,16 @@ class ControlChannel:
             if why_not is not None:
                 return refusal(*why_not)
             try:
-                return answer(await handler(request))
+                return answer(await asyncio.wait_for(handler(request), LONGEST))
             except BadInput as error:
                 return refusal(HTTPStatus.BAD_REQUEST, str(error))
+            except ClientDisconnect:
+                return refusal(HTTPStatus.BAD_REQUEST, f"{WHERE}: the client left")
+            except TimeoutError:
+                return refusal(HTTPStatus.REQUEST_TIMEOUT, f"{WHERE}: a request that takes more than {LONGEST:g} s")
+            except Exception as error:  # noqa: BLE001 - of this request alone
+                self._loop.troubles.failed("a request of the control channel", error)
+                return refusal(HTTPStatus.INTERNAL_SERVER_ERROR, f"{WHERE}: {reason_of(error)}")
 
         return answered
 
@@ -197,7 +210,7 @@ class ControlChannel:
         return {"speed": loop.speed, "paused": loop.paused}
 
     async def _begin(self, request: Request) -> object:
-        setup = await body(request, Setup)
+        setup = located(await body(request, Setup), self._files, WHERE)
         prepared = await asyncio.to_thread(prepare, setup, WHERE)
         if prepared.arm.name != self._loop.simulation.arm.name:
             raise BadInput(
@@ -246,5 +259,6 @@ class ControlChannel:
         return {"path": None if recording.path is None else str(recording.path), "failure": recording.failure}
 
 
-async def _nothing(_: Request, __: Exception) -> Response:
-    return refusal(HTTPStatus.NOT_FOUND, f"{WHERE}: no such request; docs/reference/control-channel.md lists all")
+async def _nothing(_: Request, error: Exception) -> Response:
+    status = error.status_code if isinstance(error, HTTPException) else HTTPStatus.NOT_FOUND
+    return refusal(HTTPStatus(status), f"{WHERE}: no such request; docs/reference/control-channel.md lists all")
