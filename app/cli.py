@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Annotated
 
-import msgspec
 import typer
 from rich.console import Console
 from rich.markup import escape
@@ -17,31 +16,25 @@ from app.command_options import (
     Host,
     Keep,
     Offset,
-    Out,
     Port,
     Programs,
     Record,
     RecordRates,
     RecordSplit,
     Robot,
-    Seed,
-    SessionNames,
-    Set,
     allowed_files,
     announce,
     announce_robot,
     as_kept,
     example,
     set_up,
-    setting,
 )
 from app.ending import ending
 from app.export_command import EXAMPLES, export_
 from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
-from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
-from app.session.prepare import prepare
-from app.session.session_file import FIRST_START, Session, Setup, find_all, opened
+from app.run_command import RUN_EXAMPLES, run_
+from app.session.session_file import FIRST_START, Setup
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
 
@@ -145,59 +138,7 @@ def robot_(
         announce_robot(prepared.arm, interfaces)
 
 
-@app.command(
-    epilog=example(
-        "pendant run free-drive",
-        "pendant run my.yaml --out results --seed 7 --set free_drive.period=5",
-        "pendant run sessions/ more.yaml --junit results/junit.xml",
-        "pendant run hold --realtime",
-    )
-)
-def run(
-    sessions: SessionNames,
-    *,
-    out: Out = Path("out"),
-    seed: Seed = None,
-    realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
-    set_: Set = None,
-    junit: Annotated[Path | None, typer.Option(help="Write the expectations as JUnit XML.", show_default=False)] = None,
-    any_file: AnyFile = False,
-) -> None:
-    """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
-    from app.runs.jobs import Job, run_all, work
-    from app.runs.junit import write as write_junit
-    from app.runs.progress import counting, progress, show, show_all
-
-    changes = dict(setting(text) for text in set_ or [])
-    jobs: list[Job] = []
-    paths = [path for name in sessions for path in find_all(name)]
-    for path in paths:
-        content = opened(path, Session, any_file)
-        content = msgspec.structs.replace(
-            content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
-        )
-        prepare(content, path.name)
-        jobs.append(Job(path.name, content, out if len(paths) == 1 else out / path.stem, realtime))
-    if len({job.out for job in jobs}) < len(jobs):
-        raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
-    if len(jobs) == 1:
-        with ending(interrupts=True), progress(jobs[0].session) as advance:
-            outcomes = [work(jobs[0], advance)]
-        show(jobs[0].session, outcomes[0], out)
-    else:
-        with ending(interrupts=True), counting("sessions") as told:
-            found = {}
-            for place, outcome in run_all(jobs):
-                found[place] = outcome
-                told(len(found), len(jobs))
-        outcomes = [found[place] for place in range(len(jobs))]
-        show_all([path.stem for path in paths], outcomes, out)
-    if junit is not None:
-        write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
-    if not all(outcome.passed for outcome in outcomes):
-        raise typer.Exit(1)
-
-
+app.command("run", epilog=RUN_EXAMPLES)(run_)
 app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
 app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
 app.command("check", epilog=CHECK_EXAMPLES)(check_)

@@ -24,7 +24,7 @@ def run_command_line(app: typer.Typer) -> None:
     number = signal_that_came()
     if not number:
         sys.exit(code)
-    end_now(_refuse("stopped", 128 + number) if code == GIVEN_UP else code)  # a thread that hangs would keep the process
+    end_now(refuse("stopped", 128 + number) if code == GIVEN_UP else code)  # a thread that hangs would keep the process
 
 
 def _done(app: typer.Typer) -> int:
@@ -33,9 +33,9 @@ def _done(app: typer.Typer) -> int:
         return int(typer.main.get_command(app).main(sys.argv[1:] or ["--help"], prog_name="pendant", standalone_mode=False) or 0)
     except UsageError as error:
         text = error.format_message() if hasattr(error, "format_message") else str(error)  # type: ignore[attr-defined]
-        return _refuse(text)
+        return refuse(text)
     except BadInput as error:
-        return _refuse(str(error))
+        return refuse(str(error))
     except (typer.Abort, KeyboardInterrupt):
         return GIVEN_UP
     except Exception:
@@ -44,7 +44,7 @@ def _done(app: typer.Typer) -> int:
         raise
 
 
-def _refuse(text: str, code: int = 2) -> int:
+def refuse(text: str, code: int = 2) -> int:
     """Say one line on standard error; the exit code to end with."""
     sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
     return code
