@@ -17,7 +17,7 @@ from pendant.program.steps import JointMove, Program, Wait
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, TICK_RATE
 from sim.arm.scenario import Load, Scenario
-from sim.control.feedback import Feedback
+from sim.control.feedback import Beginning, Feedback
 from sim.exchange.desk import Wishes
 from sim.motion.moves import Reference
 from sim.plant.touch import Push
@@ -101,7 +101,7 @@ class Winding(Feedback):
         excess: Array,
         waits: bool,
         torque: Array,
-        start: Array | None,
+        start: Beginning | None,
         sticking: Array,
         stiffer: Array,
     ) -> None:

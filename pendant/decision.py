@@ -24,6 +24,7 @@ from pendant.tick.pose import Wrench
 from pendant.tooling.payload_wizard import IDLE, Progress
 from pendant.tooling.tool_in_use import Fitting
 from pendant.walls.containment import WallState
+from pendant.walls.workspace import Workspace
 
 
 class Decision(msgspec.Struct, frozen=True, gc=False):
@@ -49,6 +50,7 @@ class Decision(msgspec.Struct, frozen=True, gc=False):
     walls: tuple[WallState, ...] = ()  # that hold
     grip: Grip | None = None  # of the enabling device, None where none is used
     speed_limits: SpeedLimits | None = None  # in REDUCED: what the control law keeps the arm within
+    workspace: Workspace | None = None  # what every motion under Law.FOLLOW is kept in (VW-9)
     damping: Damping | None = None  # where free motion is resisted before a limit on its speed (FD-12b)
     zones: tuple[float, ...] = ()  # torque on each joint before the end of its range [N·m]; empty where none is resisted (FD-4)
     balance: Balance | None = None  # of an arm that is refused free-drive, under Law.FREE (FD-10)

@@ -6,8 +6,9 @@ from pendant.freedrive.entry_rows import ENTRY
 from pendant.freedrive.rows import FREE_DRIVE
 from pendant.program.rows import PROGRAM
 from pendant.robot.rows import SAFETY
+from pendant.safety.rows import PROTECTION
 
-TABLE: dict[Kind, EventRow] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROGRAM}
+TABLE: dict[Kind, EventRow] = {**ENTRY, **FREE_DRIVE, **SAFETY, **PROTECTION, **PROGRAM}
 
 
 def render(event: Event) -> tuple[str, str]:

@@ -17,6 +17,7 @@ from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Phase, way_out
 from pendant.tick.pose import Vector
+from pendant.walls.containment import Containment
 
 STARTS_FROM = {
     Command.START_PROGRAM: frozenset({Mode.NORMAL, Mode.TEACH}),
@@ -32,16 +33,17 @@ PROGRAM_COMMANDS = STARTS_FROM.keys() | {Command.PAUSE_PROGRAM, Command.RESUME_P
 class ProgramRun:
     """Steers the robot's sequencer, and jogs."""
 
-    __slots__ = ("_jogging", "_mean", "_n", "_origin", "_robot", "_sensitivity", "scripting")
+    __slots__ = ("_containment", "_jogging", "_mean", "_n", "_origin", "_robot", "_sensitivity", "scripting")
 
-    def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int) -> None:
+    def __init__(self, robot: Robot, mean: WrenchMean, n_joints: int, containment: Containment) -> None:
         """
         Args:
             robot: that it steers.
             mean: of F_user.
             n_joints: of the arm.
+            containment: knows the walls.
         """
-        self._robot, self._mean, self._n = robot, mean, n_joints
+        self._robot, self._mean, self._n, self._containment = robot, mean, n_joints, containment
         self._jogging = Jogging(robot, n_joints)
         self.scripting = Scripting(robot.sequencer)
         self._sensitivity = OperatingSensitivity()
@@ -86,6 +88,8 @@ class ProgramRun:
         robot = self._robot
         sequencer = robot.sequencer
         sequencer.high = inputs.high
+        if estimate.move_wall and robot.move is not None:
+            events += self._containment.reached(estimate, settings.walls)
         if inputs.program is not None:
             self._load(inputs.program, estimate.tick, events)
         move = sequencer.move

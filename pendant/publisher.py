@@ -14,6 +14,7 @@ from pendant.robot.robot_mode import Robot
 from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase
 from pendant.tooling.tool_in_use import Tooling
+from pendant.walls.containment import Containment
 
 
 class Publisher:
@@ -22,10 +23,11 @@ class Publisher:
     `refresh` comes before the first `step`.
     """
 
-    __slots__ = ("_checksum", "_locks", "_robot", "_scripting", "_settings", "_signs", "_taring", "_tooling")
+    __slots__ = ("_checksum", "_containment", "_locks", "_robot", "_scripting", "_settings", "_signs", "_taring", "_tooling")
 
-    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting) -> None:
+    def __init__(self, robot: Robot, tooling: Tooling, taring: Taring, *, scripting: Scripting, containment: Containment) -> None:
         self._robot, self._tooling, self._taring, self._scripting = robot, tooling, taring, scripting
+        self._containment = containment
         self._signs = 0
 
     def refresh(self, settings: Settings) -> None:
@@ -90,6 +92,7 @@ class Publisher:
             walls=walls,
             grip=robot.grip,
             speed_limits=speeds,
+            workspace=self._containment.workspace(use.walls),
             damping=damping,
             zones=free.zones,
             balance=balance,

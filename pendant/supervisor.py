@@ -101,14 +101,14 @@ class Supervisor:
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
         self._safety = SafetyInputs(self._robot, self._joints)
-        self._run = ProgramRun(self._robot, self._mean, n_joints)
+        self._run = ProgramRun(self._robot, self._mean, n_joints, self.containment)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(
             self._tooling, self._robot, self._mean, self._calls, containment=self.containment, shape=shape
         )
-        run, tooling, readers = self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
-        self._tare = TareRun(sensor, self._robot, run, tooling, haptics=self._haptics, readers=readers)
-        self._publisher = Publisher(self._robot, self._tooling, self._tare.taring, scripting=run.scripting)
+        robot, run, tooling, readers = self._robot, self._run, self._tooling, ForceReaders(self._calls, self._monitor, self._mean)
+        self._tare = TareRun(sensor, robot, run, tooling, haptics=self._haptics, readers=readers)
+        self._publisher = Publisher(robot, tooling, self._tare.taring, scripting=run.scripting, containment=self.containment)
         self._refresh()
 
     @property

@@ -18,6 +18,7 @@ from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
 from sim.control.controller import Controller
+from sim.control.feedback import following_limit
 from sim.estimation.contact_sources import ContactSources
 from sim.estimation.estimator import Estimator
 from sim.exchange.desk import Wishes
@@ -76,7 +77,7 @@ class Simulation:
         self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
-        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
+        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp, following=following_limit(arm))
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
         self.supervisor = Supervisor(
@@ -150,7 +151,7 @@ class Simulation:
         if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
         use, references, jacobian = supervisor.settings.joint_control, controller.references, estimator.jacobian
-        done, refusal = references.move_done, references.refusal
+        told = references.move_done, references.refusal, references.keeper.wall
         decided = self._decision
         before = None if decided is None else decided.law
         # Learned is from planned motion alone: an arm that is freed, or held and yet moves, is moved by a hand, and on a link no
@@ -158,7 +159,7 @@ class Simulation:
         learn = before is _FOLLOW and not references.commanding
         bias, unsure = (decided.baseline, decided.slack.axis) if decided is not None and before is _FREE else (None, 0.0)
         answered = references.answered
-        estimate = estimator.update(sample, done, refusal, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
+        estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value

@@ -23,7 +23,7 @@ SHARED = {"settings", "rows", "entry_rows"}
 GROUND = {"pendant.tick", "pendant.events", "pendant.settings"}
 """What every room of the pendant stands on."""
 
-MODULES_AT_MOST, LINES_AT_MOST = 12, 280
+MODULES_AT_MOST, LINES_AT_MOST = 12, 400
 
 
 def place(module: str) -> str:

@@ -8,8 +8,9 @@ from msgspec import Meta
 from app.session.profiles import AnyProfile, Constant, HalfSine, Ramp
 from app.session.triggers import When
 from pendant.equipment.load import Angles
-from pendant.inputs import Button, Command
+from pendant.inputs import Button
 from pendant.limits.axis_locks import PRESETS, freeing
+from pendant.program.jog_move import Jogged
 from pendant.settings.bounds import MOST_WALLS, Span, Text
 from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Load, Vector
@@ -157,6 +158,13 @@ class LoadProgram(Action, tag="program", frozen=True, kw_only=True):
     command: Literal["start", "pause", "resume", "stop"]
 
 
+class HoldJog(Action, tag="jog", frozen=True, kw_only=True):
+    """A jog button is held for a while: `move: {kind: jog, frame: base, axis: 2, sign: -1}`, or of kind `there` or `straight`."""
+
+    length: Span = msgspec.field(name="for")  # [s]
+    move: Jogged
+
+
 class ChangeSettings(Action, tag="settings", frozen=True, kw_only=True):
     """Settings are changed, by dotted name."""
 
@@ -255,6 +263,7 @@ AnyAction = (
     | Lean
     | Hold
     | LoadProgram
+    | HoldJog
     | ChangeSettings
     | SelectTool
     | SetPayload
@@ -263,13 +272,6 @@ AnyAction = (
     | Laboratory
     | OfClient
 )
-
-COMMAND_OF_PROGRAM = {
-    "start": Command.START_PROGRAM,
-    "pause": Command.PAUSE_PROGRAM,
-    "resume": Command.RESUME_PROGRAM,
-    "stop": Command.STOP_PROGRAM,
-}
 
 
 def triple(values: list[float], factor: float = 1.0) -> Triple:

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from app.session.actions import (
-    COMMAND_OF_PROGRAM,
     Action,
     Axes,
     ChangeSettings,
     DigitalInput,
     Hold,
+    HoldJog,
     Laboratory,
     LoadProgram,
     OfClient,
@@ -25,6 +25,7 @@ from app.session.actions import (
 from app.session.triggers import NEVER, Trigger
 from pendant.decision import Decision
 from pendant.inputs import NOTHING, Button, Command, Inputs
+from pendant.program.jog_move import Jogged
 from pendant.program.steps import Program as Steps
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
@@ -37,6 +38,13 @@ from sim.plant.changes import AnyChange
 from sim.plant.touch import Pull, Touch, Triple
 
 BUTTONS = frozenset(button.value for button in Button)
+
+COMMAND_OF_PROGRAM = {
+    "start": Command.START_PROGRAM,
+    "pause": Command.PAUSE_PROGRAM,
+    "resume": Command.RESUME_PROGRAM,
+    "stop": Command.STOP_PROGRAM,
+}
 
 
 @dataclass(slots=True)
@@ -73,6 +81,8 @@ class _Tick:
     load: Load | None = None
     borders: tuple[AnyBorder, ...] | None = None
     touches: list[Touch] = field(default_factory=list)
+    jog: Jogged | None = None
+    jog_released: bool = False
 
 
 class Timeline:
@@ -124,7 +134,19 @@ class Timeline:
         released, commands = frozenset(now.released), tuple(now.commands)
         held, high = frozenset(self._held), frozenset(self._high)
         self._quiet = Wishes(Inputs(held=held, high=high), (), ())
-        inputs = Inputs(held, released, commands, now.settings, program, high, now.tool, now.load, borders=now.borders)
+        inputs = Inputs(
+            held,
+            released,
+            commands,
+            now.settings,
+            program,
+            high,
+            now.tool,
+            now.load,
+            jog=now.jog,
+            jog_released=now.jog_released,
+            borders=now.borders,
+        )
         return Wishes(inputs, tuple(now.touches), tuple(now.changes))
 
     def see(self, tick: int, decision: Decision) -> None:
@@ -160,6 +182,10 @@ class Timeline:
                 self._let_go(button, now)
             else:
                 self._held.add(button)
+            return
+        if isinstance(action, HoldJog):
+            entry.done = now.jog_released = age >= ticks(action.length)
+            now.jog = None if entry.done else action.move
             return
         entry.done = True
         if isinstance(action, OfClient):

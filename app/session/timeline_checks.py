@@ -10,6 +10,7 @@ from app.session.actions import (
     Axes,
     ChangeSettings,
     Effort,
+    HoldJog,
     Laboratory,
     LoadProgram,
     OfClient,
@@ -20,6 +21,7 @@ from app.session.actions import (
 from app.session.expectations import Displacement, Expectation, Value
 from app.session.session_file import Session
 from pendant.all_settings import Settings, apply
+from pendant.program.jog_move import unfit
 from pendant.program.steps import Program as Steps
 from pendant.settings.schema import SettingError
 from pendant.walls.containment import PARTS, TETHER
@@ -93,6 +95,10 @@ def _check_action(action: Action, field: str, *, session: Session, prepared: Pre
         check_walls(action.walls, prepared.scenario.world, where, f"{field}.walls")
     elif isinstance(action, LoadProgram) and session.program is None:
         raise BadInput(where, f"{field}.do", "program", "needs a `program:` in the header")
+    elif isinstance(action, HoldJog):
+        why = unfit(action.move, prepared.arm.n)
+        if why is not None:
+            raise BadInput(where, f"{field}.move", ABSENT, why)
     elif isinstance(action, Laboratory):
         _check_change(action.change, f"{field}.change", prepared, where)
 

@@ -118,7 +118,7 @@ def begun(plan: Plan, out: Path) -> bytearray:
 
 
 def _described_there(path: Path) -> dict[str, Any]:
-    """What a folder's study.json says. Raises BadInput: it cannot be read, or describes no study."""
+    """What the folder of a study says of it. Raises BadInput: it cannot be read, or describes no study."""
     with open_regular(path) as file:
         text = file.readall()
     try:

@@ -1,7 +1,7 @@
 """Rows of the event table: mode and program, contacts, tool and payload, settings, and the loop."""
 
 from pendant.events.event import Kind
-from pendant.events.event_row import Effect, EventRow, Severity, denied, info
+from pendant.events.event_row import WALL, Effect, EventRow, Severity, denied, info
 
 
 def _touched(headline: str) -> EventRow:
@@ -82,6 +82,13 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_TELLS: EventRow(Effect.INFO, Severity.NOTICE, "{text}", 'Program "{name}".', ("name", "text", "tone")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
+    Kind.MOTION_AT_WALL: EventRow(
+        Effect.INFO,
+        Severity.NOTICE,
+        "Stopped at {wall}: {part}",
+        "At {px:.3f}, {py:.3f}, {pz:.3f} m, {distance:.1f} mm out. Back is {way} of the base.",
+        WALL,
+    ),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
     Kind.JOG_ENDED: info("Jogging {what} ended after {moved}", "{reason}.", ("what", "moved", "reason")),
     Kind.JOG_REFUSED: denied("Not jogged: {what}", "{reason}.", ("what", "reason")),

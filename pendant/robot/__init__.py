@@ -1,1 +1,1 @@
-"""Robot mode and safety mode, safety inputs, stops, requests. Uses freedrive/, limits/, program/, signals/."""
+"""Robot mode and safety mode, safety inputs, stops, requests. Uses freedrive/, limits/, program/, safety/, signals/."""

@@ -9,13 +9,13 @@ SAFETY: dict[Kind, EventRow] = {
         "Protective stop: joint sensors not valid",
         "The program needs {sensor}. Check it, then reset.",
         ("sensor",),
-        category=1,
+        category=0,
     ),
     Kind.MOTOR_ANGLE_LOST: protected(
         "Protective stop: no motor angle of {joint}",
         "Nothing can hold it but its brake. Check its motor encoder, then reset.",
         ("joint",),
-        category=1,
+        category=0,
     ),
     Kind.JOINT_SENSOR_LOST: denied(
         "Lost: {sensor} of {joint}", "{left}. End the motion and check it; free-drive needs it.", ("sensor", "joint", "left")

@@ -6,6 +6,7 @@ from pendant.inputs import Command
 from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
 from pendant.robot.reduced import Reduced, SpeedLimits
 from pendant.robot.robot_mode import Robot
+from pendant.safety.following import left_path
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Mode, Safety
@@ -56,13 +57,16 @@ class SafetyInputs:
             self._reset(estimate, settings, events, stop=stop, held=held)
 
     def watch(self, estimate: Estimate, settings: Settings, events: list[Event]) -> None:
-        """Every tick: what is too fast for REDUCED is stopped, and a joint whose motor angle is lost."""
+        """Every tick: stop where a motor angle is lost, where the arm does not follow, where it is too fast for REDUCED."""
         unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
         self._blind = self._blind + 1 if unseen else 0
         if self._blind == BLIND:
             event = Event(Kind.MOTOR_ANGLE_LOST, estimate.tick, {"joint": self._joints[unseen[0]]})
             self._robot.happen(event, settings, events)
-        if self._reduced.on and self._robot.mode is not Mode.STOP and motion_ok(estimate):
+        stopped = self._robot.mode is _STOP
+        if not stopped and (left := left_path(estimate, settings.following, self._joints)) is not None:
+            self._robot.happen(left, settings, events)
+        elif self._reduced.on and not stopped and motion_ok(estimate):
             excess = self._reduced.step(estimate, settings.reduced, self._joints)
             if excess is not None:
                 event = Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict()))
@@ -110,3 +114,6 @@ class SafetyInputs:
         else:
             robot.reset(self._resting)
             events.append(Event(Kind.RESET, estimate.tick))
+
+
+_STOP = Mode.STOP  # looked up in every tick

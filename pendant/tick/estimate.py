@@ -4,6 +4,7 @@ import math
 from copy import copy
 from dataclasses import dataclass, field, fields
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,20 @@ def _nowhere() -> Array:
 
 GRAVITY = 9.81
 """[m/s²]"""
+
+
+class FollowingError(NamedTuple):
+    """How far the arm is from the reference that its measurement answers to (RL-1)."""
+
+    joint: int = 0  # the one that has the largest share of its limit
+    angle: float = 0.0  # of that joint [rad]
+    limit: float = math.inf  # of it [rad]
+    share: float = 0.0  # of its limit
+    tool: float = 0.0  # at the tool centre point [m]
+
+
+ON_PATH = FollowingError()
+"""The arm is where it should be, or nothing says where that is."""
 
 
 class JointsFeel(IntEnum):
@@ -62,6 +77,8 @@ class Estimate:
     v_elbow: float  # speed of the elbow [m/s]
     move_done: int  # id of the last move that the FOLLOW law finished, 0 before the first
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
+    move_wall: str = ""  # the area at whose border it has stopped that move
+    following: FollowingError = ON_PATH  # of the arm against its reference
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
     theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]
     friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]

@@ -9,9 +9,10 @@ import msgspec
 
 from pendant.limits.resistance import LimitGuard, closeness, resisting
 from pendant.settings.schema import ticks
-from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, dot, finite, product, rotation, seen_from, turned, turned_back
+from pendant.tick.pose import HERE, ORIGIN, Pose, Vector, dot, finite, product, rotation, seen_from, turned
 from pendant.walls.anchors import Anchor, Stay
 from pendant.walls.definitions import AnyBorder, Measure, Policy, Wall
+from pendant.walls.placed_shape import PlacedShape
 from pendant.walls.settings import Reaction
 
 WRONG_WAY = 0.005
@@ -92,24 +93,20 @@ class Barrier:
         "_border",
         "_caught",
         "_constant",
-        "_field",
         "_guard",
         "_lies",
         "_offset",
         "_part",
         "_reference",
-        "_sign",
+        "_shape",
         "_stage",
-        "_turn",
     )
-    NOT_STATE = ("_field",)  # it is made of the border's shape alone
+    NOT_STATE = ("_shape",)  # it is made of the border alone
 
     def __init__(self, border: AnyBorder, stage: Stage) -> None:
         self._border = border
         self._stage = stage
-        self._field = border.shape.field()
-        turn = rotation(border.orientation)
-        self._turn = None if turn == UNTURNED else turn
+        self._shape = PlacedShape(border)
         self._anchor: Anchor | None = None  # of a wall, from its first tick on
         self._guard: LimitGuard | None = None
         self._lies: tuple[Vector, float, Pose] | None = None  # anchor, factor, reference of the tick before
@@ -122,14 +119,12 @@ class Barrier:
         if isinstance(border, Wall):
             self._base = border.activation_size if stage is Stage.ACTIVATION else border.operation_size
             self._offset: Vector = border.offset
-            self._sign = 1.0
             self._anchors = stage is Stage.OPERATION and border.policy is not Policy.FIXED
             safety = ticks(border.safety_period)
             if border.safety_dependence is None:
                 self._constant = (safety, safety if border.redefine_period is None else ticks(border.redefine_period))
         else:
             self._base, self._offset = 1.0, ORIGIN
-            self._sign = -1.0 if border.keep_out else 1.0
 
     def step(self, around: Around) -> Reading:
         """One tick. The first anchors a wall."""
@@ -152,7 +147,7 @@ class Barrier:
             anchor = self._anchor.local
         else:
             anchor = border.position
-        distance, outward = self._measure(local, anchor, factor, reference)
+        distance, outward = self._shape.measure(local, anchor, factor, reference)
         guard = self._guard
         if guard is None:
             guard = self._guard = LimitGuard(distance)
@@ -191,24 +186,6 @@ class Barrier:
         (ax, ay, az), factor, reference = self._lies
         ox, oy, oz = self._offset
         return placed(self._border, (ax + factor * ox, ay + factor * oy, az + factor * oz), factor, reference)
-
-    def _measure(self, local: Vector, anchor: Vector, factor: float, reference: Pose) -> tuple[float, Vector]:
-        """Distance [m] and its gradient in axes of B."""
-        x, y, z = local
-        ax, ay, az = anchor
-        ox, oy, oz = self._offset
-        x, y, z = (x - ax) / factor - ox, (y - ay) / factor - oy, (z - az) / factor - oz
-        turn = self._turn
-        if turn is not None:
-            x, y, z = turned_back(turn, (x, y, z))
-        distance, gx, gy, gz = self._field(x, y, z)
-        sign = self._sign
-        outward = (sign * gx, sign * gy, sign * gz)
-        if turn is not None:
-            outward = turned(turn, outward)
-        if reference.R is not UNTURNED:
-            outward = turned(reference.R, outward)
-        return sign * factor * distance, outward
 
     def _resist(self, exceeded: bool, beyond: float, near: float, speed: float) -> float:
         """Size of the resisting force [N]."""

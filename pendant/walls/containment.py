@@ -7,7 +7,7 @@ import msgspec
 from msgspec.structs import replace
 
 from pendant.events.event import Event, Kind, Values
-from pendant.tick.estimate import GRAVITY, Estimate
+from pendant.tick.estimate import Estimate
 from pendant.tick.pose import HERE, ORIGIN, UNTURNED, Pose, Vector, flat, product
 from pendant.tick.words import difference
 from pendant.walls.barrier import Around, Consequence, Place, Reading, WatchedPart, placed
@@ -15,6 +15,7 @@ from pendant.walls.definitions import AnyBorder, Area, Measure, Policy, Start, W
 from pendant.walls.enclosure import Enclosure, worst
 from pendant.walls.settings import WallSettings
 from pendant.walls.shapes import Sphere
+from pendant.walls.workspace import ArmPoints, Nearby, Workspace, measures, way
 
 PARTS = ("flange", "tcp", "elbow")
 """The points of the arm that a wall can watch."""
@@ -58,7 +59,19 @@ class WallState(msgspec.Struct, frozen=True, gc=False):
 class Containment:
     """All walls of one robot, from the activation period to leaving. It does nothing while they are switched off."""
 
-    __slots__ = ("R_FT", "_enclosure", "_frames", "_measured", "_parts", "_points", "_reading", "_turned", "borders")
+    __slots__ = (
+        "R_FT",
+        "_enclosure",
+        "_frames",
+        "_measured",
+        "_parts",
+        "_points",
+        "_reading",
+        "_turned",
+        "_workspace",
+        "borders",
+    )
+    NOT_STATE = ("_workspace",)  # it is made of the borders and the settings alone
 
     def __init__(self, borders: tuple[AnyBorder, ...], frames: Mapping[str, Pose]) -> None:
         """
@@ -75,6 +88,28 @@ class Containment:
         self._points: dict[str, WatchedPart] = {}  # where they were in the last step
         self._turned: tuple[str, ...] = ()  # parts that are references
         self._measured = False
+        self._workspace: tuple[tuple[AnyBorder, ...], WallSettings, Workspace | None] | None = None
+
+    def workspace(self, walls: WallSettings) -> Workspace | None:
+        """The areas that bind the arm's own motions, the same object until they change; None where there are none.
+
+        A wall round a part is no part of it: free-drive anchors it, and a hand takes it along.
+        """
+        made = self._workspace
+        if made is None or made[0] is not self.borders or made[1] is not walls:
+            areas = [_switched(border, walls) for border in self.borders if border.on and walls.on]
+            held = tuple([area for area in areas if isinstance(area, Area)])
+            made = self._workspace = (self.borders, walls, Workspace(held, self._frames) if held else None)
+        return made[2]
+
+    def reached(self, estimate: Estimate, walls: WallSettings) -> list[Event]:
+        """The event of a motion that was stopped at a border, as `Estimate.move_wall` says."""
+        space = self.workspace(walls)
+        names = [] if space is None else [area.name for area in space.areas]
+        if space is None or estimate.move_wall not in names:
+            return []  # it was deleted in this moment
+        near = space.nearby(names.index(estimate.move_wall), self._seen(estimate))
+        return [Event(Kind.MOTION_AT_WALL, estimate.tick, facts(near))]
 
     def change(self, borders: tuple[AnyBorder, ...], where: str, tick: int) -> list[Event]:
         """Take another list of borders, whole or not at all; what was holds on where it is refused.
@@ -165,6 +200,12 @@ class Containment:
         rest = [area for area in areas if area.name not in names]
         return hold + tuple([(area, placed(area, area.position, area.least, self._frames[area.reference])) for area in rest])
 
+    def _seen(self, estimate: Estimate) -> ArmPoints:
+        R_BF, places = flat(estimate.R_BF), {name: _point(name, estimate).p for name in PARTS}
+        gx, gy, gz = estimate.g_B.tolist()
+        flange, tcp = Pose(places["flange"], R_BF), Pose(places["tcp"], product(R_BF, self.R_FT))
+        return ArmPoints(flange, tcp, places["elbow"], (gx, gy, gz), estimate.load_mass)
+
     def _build(self, walls: WallSettings) -> Enclosure | None:
         borders = self.borders if not walls.tether else (tether(walls), *self.borders)
         borders = tuple([_switched(border, walls) for border in borders if border.on])
@@ -189,25 +230,20 @@ def _switched(border: AnyBorder, walls: WallSettings) -> AnyBorder:
     return border
 
 
-def facts(reading: Reading) -> Values:
+def facts(reading: Reading | Nearby) -> Values:
     """What an event says of a wall: which, which part, where, how far out [mm], and the way back in."""
     x, y, z = reading.outward
     known = reading.distance < math.inf
-    way = f"{_word(-x, 'x')}{_word(-y, 'y')}{_word(-z, 'z')}".strip() if known else "unknown"
+    back = way(reading.outward) if known else "unknown"
     out = 1000.0 * reading.distance if known else 0.0
     px, py, pz = reading.p
-    back = {"x": -x, "y": -y, "z": -z, "px": px, "py": py, "pz": pz}
-    return {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": way} | back
+    vectors = {"x": -x, "y": -y, "z": -z, "px": px, "py": py, "pz": pz}
+    return {"wall": reading.border.name, "part": reading.border.part, "distance": out, "way": back} | vectors
 
 
 def caught(reading: Reading | None) -> bool:
     """The arm is to keep its posture at the wall."""
     return reading is not None and reading.consequence is Consequence.HOLD
-
-
-def _word(share: float, axis: str) -> str:
-    """An axis of B with its sign, if the way leads along it."""
-    return f" {'+' if share > 0.0 else '-'}{axis}" if abs(share) >= 0.4 else ""  # sin 24°: of three axes one at least is named
 
 
 def _point(name: str, estimate: Estimate) -> WatchedPart:
@@ -223,8 +259,4 @@ def _measures(estimate: Estimate) -> dict[Measure, float]:
     """What sizes depend on; a measure that is not in it gives the smallest size."""
     x, y, z = estimate.p_BF.tolist()
     gx, gy, gz = estimate.g_B.tolist()
-    return {
-        Measure.REACH: math.sqrt(x * x + y * y + z * z),
-        Measure.HEIGHT: -(x * gx + y * gy + z * gz) / GRAVITY,
-        Measure.PAYLOAD: estimate.load_mass,
-    }
+    return measures((x, y, z), (gx, gy, gz), estimate.load_mass)

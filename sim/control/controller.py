@@ -9,12 +9,12 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from sim.arm.arm_file import Arm
 from sim.control.feed_forward import FeedForward
-from sim.control.feedback import Feedback, TorqueFeedback
+from sim.control.feedback import Beginning, Feedback, TorqueFeedback
 from sim.control.free_drive_law import FreeDriveLaw
 from sim.control.motor_controller import MotorController
 from sim.estimation.adaptive_friction import AdaptiveFriction
 from sim.estimation.transmission_torque import DEFLECTION, DYNAMICS, MOTOR
-from sim.motion.references import References
+from sim.motion.references import STANDING, References
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
 
@@ -48,7 +48,10 @@ class Controller:
         self._law: Law | None = None
         self._nothing = np.zeros(arm.n)
         self._followed = False  # a motion was followed before the arm was told to brake
+        self._commanded = False  # a script's torques drove the joints in the last tick
+        self._driven = np.zeros(arm.n, dtype=bool)  # the joints that move by them
         self._blind = False  # some joint had no motor angle in the last tick
+        self._seen = np.zeros(arm.n)  # speeds of the motors in the last tick in which all angles were there [rad/s]
         self._fed_back = False  # the torque feedback was on in the last tick
         self._use: JointControl | None = None
         self._lost: tuple[tuple[str, int], ...] = ()
@@ -92,7 +95,10 @@ class Controller:
             torque = self.feed_forward.commanded(commanded, estimate, friction)
         else:
             torque = self._track(estimate, decision, friction=friction, stiffer=stiffer, use=use)
-        if blind:
+        self._commanded = self.references.commanding
+        if not blind:
+            self._seen[:] = estimate.theta_d
+        else:
             self._let_blind_joints_rest(estimate, torque)
         self._law, self._torque = law, None if law is _OFF else torque
         if law is not _BRAKE:
@@ -100,14 +106,15 @@ class Controller:
         return self.motor.current(torque, estimate.theta_d)
 
     def _let_blind_joints_rest(self, estimate: Estimate, torque: Array) -> None:
-        """Without its motor angle a joint gets its static torque alone, and its friction brings it to rest: a loop closed over
-        the spring, or on an old measurement, would drive it. Where a joint has lost both angles, no posture is known, and all
-        joints keep the static torque of the last one.
+        """Without its motor angle a joint that moved gets its static torque alone, and its friction brings it to rest: a loop
+        closed over the spring, or on an old measurement, would drive it. One that stood keeps what held it, also against what
+        it pressed on. Where a joint has lost both angles, no posture is known, and all joints keep the torque of the last one.
         """
         lost = set(estimate.lost)
         blind = _without("motor_encoder", estimate)
         everywhere = not blind or any(("output_encoder", joint) in lost for joint in blind)
-        static = self._dynamics.gravity(estimate.q)
+        stood = np.abs(self._seen) < STANDING
+        static = np.where(stood, self.motor.command, self._dynamics.gravity(estimate.q))
         which = slice(None) if everywhere else blind
         torque[which] = static[which]
 
@@ -116,16 +123,16 @@ class Controller:
     ) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
+        self._driven = self._commanded & (np.abs(estimate.theta_d) > STANDING)
         helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
         rubbing = friction if helped else None
         torque = self.feed_forward.torque(
             reference, rubbing, motion=use.feed_forward, stiffer=stiffer, push=references.push, fresh=references.fresh
         )
         desired = self.feed_forward.tau_J
-        # What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest.
-        start = torque.copy() if references.fresh else None
-        if start is not None and self._law is _FREE:
-            start += self.free_drive.balancing
+        start = None
+        if references.fresh:
+            start = Beginning(self._first(torque, estimate, friction), references.before, self._driven)
         feeding_back = use.torque_feedback
         if feeding_back:
             if use is not self._use or estimate.lost != self._lost:
@@ -133,7 +140,7 @@ class Controller:
                 self.torque_feedback.take_from_motors(_of_motors_alone(estimate, use))
             measured = _actual_torque(estimate, use)
             if references.fresh or not self._fed_back:
-                self.torque_feedback.start(measured, desired)
+                self.torque_feedback.start(np.where(self._driven, desired, measured), desired)
             self.torque_feedback.add(measured, desired, torque)
         self._fed_back = feeding_back
         sticking = friction.breakaway if helped else self._nothing
@@ -144,7 +151,7 @@ class Controller:
             desired,
             estimate,
             use,
-            excess=self.motor.excess,
+            excess=self._nothing if references.fresh else self.motor.excess,
             waits=waits,
             torque=torque,
             start=start,
@@ -152,6 +159,26 @@ class Controller:
             stiffer=stiffer,
         )
         return torque
+
+    def _first(self, torque: Array, estimate: Estimate, friction: AdaptiveFriction) -> Array:
+        """Motor torque (n,) [N·m] with which the posture is held from this tick on.
+
+        What the hand had asked for in free-drive is not kept: it would push on when the arm has come to rest; nor is what a
+        script's torques drove a joint with. Where something held the arm, the motors go on with what the gears bear, and with
+        what stuck on the motors' side: a motor that let go of what is bent would throw the arm back, and more than that would
+        drive it on as soon as nothing holds it (RL-2).
+
+        Args:
+            torque: what the reference needs (n,) [N·m].
+            estimate: of this tick.
+            friction: its estimate.
+        """
+        if self._law is _FREE:
+            return torque + self.free_drive.balancing
+        if not (self.references.caught_up or self._commanded):
+            return torque.copy()
+        last, bears, sticks = self.motor.command, estimate.tau_J, friction.breakaway
+        return np.minimum(np.maximum(last, bears - sticks), bears + sticks)
 
 
 def _actual_torque(estimate: Estimate, use: JointControl) -> Array:

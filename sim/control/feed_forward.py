@@ -49,6 +49,7 @@ class FeedForward:
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics) -> None:
         self._dynamics = dynamics
+        self._rated = np.array(arm.limits.torque)
         spring = arm.transmissions
         self._record = record(
             rotor=(arm.n,),
@@ -105,6 +106,8 @@ class FeedForward:
     def commanded(self, move: DirectTorque, estimate: Estimate, friction: AdaptiveFriction) -> Array:
         """Motor torque (n,) [N·m] of torques that a script commands: those, gravity, and its shares of the friction.
 
+        No joint is asked for more than its rated torque, gravity counted.
+
         The motors' friction turns round with their measured motion, within the way over which bristles bend: by the sign of the
         speed it would drive a joint at rest to and fro. A share below 1 drives no joint that nobody moves.
 
@@ -122,7 +125,8 @@ class FeedForward:
         size = coulomb + viscous  # by which the bristles bend, whatever is made up for
         _bend(self._record, size)
         self._fed, self._commanded = False, True
-        return gravity + move.torque + total * own["direction"]
+        wanted = np.minimum(np.maximum(gravity + move.torque, -self._rated), self._rated)
+        return wanted + total * own["direction"]
 
 
 @kernel

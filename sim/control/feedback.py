@@ -33,6 +33,10 @@ drives the swing on, the more the slower it is. A heavy arm on soft springs swun
 PRESLIDING = 0.4e-3
 """Way over which friction at rest turns into sliding friction [rad]; twice the way to breakaway, for the spring bends too."""
 
+INTEGRAL_SHARE = 0.3
+"""Of a joint's rated torque, up to which the integral grows: the largest payload, not told, asks 0.26 of the wrists and the
+shoulder of a stretched UR5e. What asks more holds the arm, and the integral must not push at it ever harder (AF-6)."""
+
 BACK = 0.02  # of the torque beyond the motor's limits, a tick: as fast as the integral itself
 DEAD_BAND = 3.0  # of the integral, in counts of the output encoder: below it stiction and integral would hunt
 # The optional terms are gentle: they show their effect without touching the loop's margins.
@@ -70,6 +74,15 @@ class Wanted(NamedTuple):
     q_now: Array  # (n,) output angle [rad]
     excess: Array  # (n,) torque that was asked beyond what the motor gave [N·m]
     begin: Array  # (n,) torque that a law begins with [N·m]
+    driven: NDArray[np.bool_]  # (n,): this joint was driven by torques, so that it begins with no integral
+
+
+class Beginning(NamedTuple):
+    """How a law takes over, n joints."""
+
+    torque: Array  # (n,) motor torque that it begins with [N·m]: the integral cancels what all corrections would do at once
+    before: Sequence[Reference]  # references of the last DELAY ticks
+    driven: NDArray[np.bool_]  # (n,): joints that a script's torques drove: they begin with what all corrections do at once
 
 
 class Terms(NamedTuple):
@@ -112,6 +125,7 @@ class Feedback:
             compliance=(n,),
             integral_gain=(n,),
             dead_band=(),  # of the integral [rad]
+            most=(n,),  # of the integral, up to which it grows [N·m]
             integral=(n,),
             at_rest=(n,),  # its part won at rest
             load=(n,),  # of the last tick
@@ -119,11 +133,13 @@ class Feedback:
         own = self._own = self._record[0]
         own["stiffness"], own["damping"], own["compliance"], own["integral_gain"] = stiffness, damping, compliance, integral_gain
         self._rotor, self._damping = rotor, damping
+        own["most"] = INTEGRAL_SHARE * np.array(arm.limits.torque)
         own["dead_band"] = DEAD_BAND * 2.0 * math.pi / arm.sensors.encoders.output_counts
         self._dynamics, self._tcp = dynamics, tcp
         self._past: deque[tuple[Reference, Array]] = deque()
         self._use: JointControl | None = None
         self._on, self._optional = (True, True, True), False
+        self._none = np.zeros(n, dtype=bool)
 
     def add(
         self,
@@ -135,7 +151,7 @@ class Feedback:
         excess: Array,
         waits: bool,
         torque: Array,
-        start: Array | None,
+        start: Beginning | None,
         sticking: Array,
         stiffer: Array,
     ) -> None:
@@ -149,8 +165,7 @@ class Feedback:
             excess: (n,) [N·m] what was asked of the motor beyond what it gave, 0 where it gave all.
             waits: whether the integral shall keep its value, but for what goes back.
             torque: (n,) what the other controllers ask for.
-            start: None, or the torque (n,) [N·m] that the law begins with: the integral then cancels what all corrections
-                would do at once, so that taking over moves nothing by itself.
+            start: None, or how the law begins, so that taking over moves nothing by itself.
             sticking: (n,) [N·m] the friction that is fed forward as soon as a joint moves, and that it may have at rest.
             stiffer: (n,) error of the springs' believed stiffness, as learned, relative to it.
         """
@@ -161,12 +176,13 @@ class Feedback:
         past = self._past
         if start is not None:
             past.clear()
+            past.extend((each, desired) for each in start.before)
             self._own["load"] = desired
         past.append((reference, desired))
         then, load = past.popleft() if len(past) > DELAY else past[0]
         if self._optional:
             self._add_optional(then, estimate, use, torque)
-        begin = torque if start is None else start
+        begin, driven = (torque, self._none) if start is None else (start.torque, start.driven)
         wanted = (
             then.q,
             then.qd,
@@ -179,6 +195,7 @@ class Feedback:
             estimate.q,
             excess,
             begin,
+            driven,
         )
         _correct(self._record, wanted, (*self._on, waits, start is not None), torque)
 
@@ -204,6 +221,20 @@ class Feedback:
         if use.tcp_speed:
             force += TCP_DAMPING * (at_tcp @ (then.qd - estimate.qd))
         torque += at_tcp.T @ force
+
+
+def following_limit(arm: Arm) -> Array:
+    """Error of each joint at which this control asks its rated torque of it (n,) [rad]; beyond it, it has nothing to add.
+
+        e = tau_rated ((1 - SUPPORT) / K + 1 / k)
+
+    K is the stiffness of the position loop, which `SUPPORT` raises by 1 / (1 - SUPPORT), and k that of the gear, for the load
+    bends it as well. An integral makes the error of the same load smaller.
+    """
+    spring = arm.transmissions
+    loop = np.array(arm.motors.rotor_inertia) * (2.0 * math.pi * BANDWIDTH) ** 2
+    gear = np.array(spring.stiffness) + np.array(spring.hysteresis_stiffness)
+    return np.array(arm.limits.torque) * ((1.0 - SUPPORT) / loop + 1.0 / gear)
 
 
 class TorqueFeedback:
@@ -254,11 +285,13 @@ def _correct(feedback, wanted, terms, torque) -> None:
         own.load[i] = load[i]
         if terms.q:
             if terms.fresh:
-                integral[i], at_rest[i] = wanted.begin[i] - total, 0.0
+                integral[i], at_rest[i] = 0.0 if wanted.driven[i] else wanted.begin[i] - total, 0.0
             error = wanted.q[i] - wanted.q_now[i]
             step = -BACK * excess[i]
             if not terms.waits and excess[i] * error <= 0.0 and abs(error) > own.dead_band:
-                step += own.integral_gain[i] * error
+                grown = integral[i] + at_rest[i]
+                if abs(grown) < own.most[i] or grown * error < 0.0:
+                    step += own.integral_gain[i] * error
             if qd_next[i] == 0.0:
                 at_rest[i] += step
             else:

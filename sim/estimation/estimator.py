@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import FrictionFrom, JointControl
-from pendant.tick.estimate import Estimate
+from pendant.tick.estimate import ON_PATH, Estimate, FollowingError
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
@@ -15,6 +15,7 @@ from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
     TORQUE_BANDWIDTH,
     follow,
+    following_error,
     joint_record,
     plan,
     tracking_gains,
@@ -48,9 +49,10 @@ class Estimator:
         calibration: error of the constants that the controller uses.
         dynamics: the controller's rigid model, which holds the configured payload.
         tcp: tool centre point in F (3,) [m].
+        following: largest error of the joints against their reference (n,) [rad].
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, *, following: Array) -> None:
         n, motors, spring = arm.n, arm.motors, arm.transmissions
         self._dynamics, self._tcp = dynamics, tcp
         stiffness = np.array(spring.stiffness) * calibration.stiffness
@@ -59,7 +61,7 @@ class Estimator:
         stiffening = np.array(spring.stiffening) * calibration.stiffness
         self._record = joint_record(n)
         own = self._own = self._record[0]
-        own["most"] = motors.current
+        own["most"], own["following"] = motors.current, following
         own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
         own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
         own["rotor"] = np.array(motors.rotor_inertia) * calibration.rotor_inertia
@@ -103,6 +105,7 @@ class Estimator:
         sample: Sample,
         move_done: int,
         move_refused: str,
+        move_wall: str = "",
         *,
         use: JointControl = SHIPPED,
         answered: Reference | None = None,
@@ -110,7 +113,7 @@ class Estimator:
         bias: tuple[float, ...] | None = None,
         unsure: float = 0.0,
     ) -> Estimate:
-        """Take one tick's measurements; `move_done` and `move_refused` as in `Estimate`, `use` says what the torques stand on,
+        """Take one tick's measurements; `move_done` and the like as in `Estimate`, `use` says what the torques stand on,
         `answered` is the motion that was wanted at the time of the measurement, None if none was: the filters then follow the
         deviation from it, without lag behind a planned acceleration. Without `learn` a hand may move the arm: friction stays
         as known, and the gears are not compared with the rigid model. `bias` is that of the flange sensor in free-drive, in axes
@@ -152,15 +155,23 @@ class Estimator:
         known.joints_valid, known.wrench_valid, known.acceleration_valid = valid, sample.wrench_valid, sample.acceleration_valid
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
-        known.move_done, known.move_refused = move_done, move_refused
+        known.move_done, known.move_refused, known.move_wall = move_done, move_refused, move_wall if move_refused else ""
         known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
+        known.following = self._following(answered)
         if bias is not None or self._free:
             self._free = bias is not None
             self._ask_whose(known, bias if sensed else None, unsure)
         return known
+
+    def _following(self, answered: Reference | None) -> FollowingError:
+        """How far the arm is from the reference that this tick's measurement answers to."""
+        if answered is None or not self._started:
+            return ON_PATH
+        rigid = self._dynamics.recursion
+        return FollowingError._make(following_error(self._record, answered.q, self.q, (rigid.jacobian, rigid.p, rigid.tcp)))
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""

@@ -9,6 +9,7 @@ from pendant.program.jog_move import TURNS, JogMove, MoveStraight, MoveThere
 from pendant.program.steps import Move
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
+from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.line import Line
 from sim.motion.moves import MoveRefused, Reference
 from sim.motion.pace import SHARE, Pace
@@ -88,12 +89,13 @@ class JogTrajectory:
             line.turn = line.R.T @ along
             self._most, self._acceleration = TURN_SPEED, TURN_ACCELERATION
 
-    def step(self, share: float = 1.0, limits: SpeedLimits | None = None) -> Reference:
+    def step(self, share: float = 1.0, limits: SpeedLimits | None = None, keeper: WorkspaceKeeper | None = None) -> Reference:
         """The reference of the next tick.
 
         Args:
             share: of manual speed.
             limits: of REDUCED.
+            keeper: of the arm that it leads; None: it leads none.
         """
         wanted = share * self._most
         if self._length > 0.0:
@@ -106,6 +108,8 @@ class JogTrajectory:
         rate = min(rate, self._most)
         qd = self._speeds(rate)
         allowed = self._allowed(qd, limits)
+        if keeper is not None:
+            allowed = min(allowed, keeper.share(self._q, qd))
         if allowed < 1.0:
             rate *= allowed
             qd = self._speeds(rate)

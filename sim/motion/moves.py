@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pendant.haptics import Shake
 from pendant.tick.modes import TICK
+from sim.braking.stopping_distance import StoppingDistance
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import LATENCY
 
@@ -33,6 +34,14 @@ class Reference(NamedTuple):
     q: Array
     qd: Array
     qdd: Array
+
+
+def led_to(q: Array, qd: Array, qdd: Array) -> list[Reference]:
+    """The references of the last ticks, the oldest first, had they led to angles `q` at speeds `qd` without a change (n,).
+
+    A reference that begins anew has none, and what is measured in the next ticks answers to these.
+    """
+    return [Reference(q - (LATENCY - k) * TICK * qd, qd, qdd) for k in range(DELAY)]
 
 
 def shaken(reference: Reference, shake: Shake) -> Reference:
@@ -78,18 +87,25 @@ class Strength(NamedTuple):
     rotor: Array  # inertia referred to the output (n,) [kg·m²]
     torque: Array  # limits (n,) [N·m]
 
-    def broken(self, now: Reference, limits: tuple[Array, Array, Array]) -> str:
+    def stopping(self) -> StoppingDistance:
+        """What it takes to come to rest."""
+        dynamics, rotor, torque = self
+        return StoppingDistance(lambda q, qd: stop_time(dynamics, q, qd, rotor=rotor, torque=torque), SHORTEST_STOP, REACTION)
+
+    def broken(self, now: Reference, limits: tuple[Array, Array, Array], changing: Array) -> str:
         """Which limit joints that no reference leads have broken, or can no longer keep when they brake; "" for none.
 
         Args:
             now: where they are, and how fast.
             limits: their speed, acceleration and position (±), each (n,).
+            changing: acceleration with which they go on until they brake (n,) [rad/s²].
         """
         q, qd, _ = now
         speed, _, position = limits
-        joint = int(np.argmax(np.abs(qd) / speed))
-        if abs(qd[joint]) > TOO_FAST * speed[joint]:
-            return f"joint {joint + 1} moves at {abs(qd[joint]):.2f} rad/s, allowed {speed[joint]:.2f}"
+        fast = np.abs(qd + REACTION * changing)
+        joint = int(np.argmax(fast / speed))
+        if fast[joint] > TOO_FAST * speed[joint]:
+            return f"joint {joint + 1} moves at {fast[joint]:.2f} rad/s, allowed {speed[joint]:.2f}"
         length = max(SHORTEST_STOP, stop_time(self.dynamics, q, qd, rotor=self.rotor, torque=self.torque))
         stop = q + qd * (0.5 * length + REACTION)
         joint = int(np.argmax(np.abs(stop) / position))

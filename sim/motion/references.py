@@ -20,20 +20,22 @@ from pendant.motion.script_requests import (
 from pendant.program.jog_move import JogMove
 from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunScript
 from pendant.tick.estimate import Estimate
-from pendant.tick.modes import Law
+from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
+from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory, at_manual_speed
 from sim.motion.line import Line
-from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, shaken, stop_time
+from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, led_to, shaken, stop_time
 from sim.motion.pace import Pace
 from sim.motion.planned import JointTrajectory, LinearTrajectory
 from sim.motion.process import ProcessTrajectory
 from sim.motion.streams import JointStream, ServoStream, SpeedStream, ToolStream
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
+from sim.sensing.sensors import LATENCY
 
 Array = NDArray[np.float64]
 
@@ -42,6 +44,9 @@ STANDING = 0.02  # [rad/s]
 SETTLE_RATE = 0.02  # a tick: a time constant of 0.1 s
 PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
 GONE = 0.01  # [N·m]
+HELD = 0.25
+"""Share of the largest following error from which on the arm is not at the reference, and a stop begins at the arm."""
+
 ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
 
@@ -51,9 +56,12 @@ class References:
     Attributes:
         now: the last reference, None before the first.
         fresh: in this tick it started again, at the arm's own state.
+        before: as it started again, the references that led there, of the last DELAY ticks.
+        caught_up: it did so although it was followed: the arm was held, or pushed away.
         driven: it comes from a program, which knows its speed ahead.
         move_done: id of the last move finished.
         refusal: why the move of this tick cannot be done, or "".
+        keeper: keeps it in the workspace.
         commanding: in this tick the joints had torques that a script commands.
         push: torque (n,) with which the joints push against the outside as well [N·m], None for none.
     """
@@ -65,6 +73,7 @@ class References:
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
+        self.keeper = WorkspaceKeeper(dynamics, tcp, R_FT, self._strength.stopping())
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -74,7 +83,8 @@ class References:
         self._standing = np.zeros(arm.n)
         self.now: Reference | None = None
         self._past: deque[Reference] = deque(maxlen=DELAY)
-        self.fresh = True
+        self.fresh, self.caught_up = True, False
+        self.before: list[Reference] = []
         self.driven = False
         self.move_done = 0
         self.refusal = ""
@@ -94,16 +104,18 @@ class References:
         if decision.law is not Law.FOLLOW or not isinstance(move, DirectTorque) or move is self._move:
             return None
         self.skip()
-        self.now = Reference(estimate.q.copy(), estimate.qd.copy(), self._standing)
+        self.now = Reference(estimate.q.copy(), estimate.theta_d.copy(), self._standing)
+        begins = not isinstance(self._move, DirectTorque)
         self._move, self._compliance, self._leaving, self.push = move, None, False, None
         self.move_done, self.commanding = move.id, True
-        self.refusal = self._strength.broken(self.now, self._limits)
+        self.keeper.take(decision, estimate.q, begins=begins)
+        self.refusal = self._strength.broken(self.now, self._limits, estimate.theta_dd) or self.keeper.watch(estimate)
         return move
 
     @property
     def answered(self) -> Reference | None:
-        """The reference that the next tick's measurement answers to; None under free-drive."""
-        return self._past[0] if self._past else None
+        """The reference that the next tick's measurement answers to; None under free-drive, and where a new one has begun."""
+        return None if self.fresh or not self._past else self._past[0]
 
     def wanted(self) -> Array:
         """Angles (n,) of the last reference [rad]; empty under free-drive and before the first."""
@@ -112,18 +124,21 @@ class References:
     def step(self, estimate: Estimate, decision: Decision) -> Reference:
         """The reference of this tick."""
         law = decision.law
-        self.refusal, self.commanding = "", False
-        self.fresh = self.now is None or self._law is Law.FREE
-        if self.now is None or self._law is Law.FREE:
-            self._stop(estimate.q, estimate.qd)
-        elif law is not Law.FOLLOW and self._law is Law.FOLLOW:
+        commanded, self.refusal, self.commanding = self.commanding, "", False
+        begins = law is Law.FOLLOW and decision.move is not self._move
+        ends = law is not Law.FOLLOW and self._law is Law.FOLLOW
+        self.caught_up = self._lost(estimate, law, ends or (begins and isinstance(decision.move, GentleStop | RunScript)))
+        self.fresh = self.now is None or self._law is Law.FREE or self.caught_up
+        if self.now is None or self.fresh:
+            self._restart(estimate, known=self.caught_up or commanded)
+        elif ends:
             self._stop(self.now.q, self.now.qd)
         elif self._settling and self._motion is not None and self._motion.done:
             self._motion = self._settle(estimate, self.now)
         self.driven = law is Law.FOLLOW or (self.driven and not self.fresh)
-        begins = law is Law.FOLLOW and decision.move is not self._move
         if self._compliance is not None and (law is not Law.FOLLOW or decision.force is None):
             self._compliance, begins = None, law is Law.FOLLOW  # the motion goes on from where the force has brought the tool
+        self.keeper.take(decision, estimate.q if self.now is None else self.now.q, begins=begins)
         if begins:
             self._begin(decision.move)
         self._move = decision.move if law is Law.FOLLOW else None
@@ -131,12 +146,15 @@ class References:
         before = self.now
         if law is Law.FOLLOW and isinstance(self._motion, ForceTrajectory):
             self._motion.feel(estimate)
-            self.refusal = self._motion.problem
+            self.refusal = self._motion.problem or self.keeper.watch(estimate)
         motion = self.now = self._advance(self._motion, decision, begins)
         if law is Law.FOLLOW and decision.force is not None:
             self.now = self._comply(decision.force, motion, before, estimate=estimate, decision=decision)
+        self.refusal = self.refusal or self.keeper.problem
         self.push = self._pushing(self._motion, self.now)
         answer = self.now if decision.shake is None else shaken(self.now, decision.shake)
+        if self.fresh and not self.before:
+            self.before = [answer] * DELAY
         self._past.append(answer)
         if law is Law.FOLLOW and self._move is not None and not self.refusal:
             self._leaving = not self._motion.done and self._near_its_end(self._motion, self._move, motion)
@@ -145,16 +163,56 @@ class References:
         self._law = law
         return answer
 
+    def _lost(self, estimate: Estimate, law: Law, ends: bool) -> bool:
+        """Whether the arm is not where the reference is, so that a stop that begins in this tick begins at the arm.
+
+        No stop then goes on from where the arm never came; and an arm that is pushed away while it is stopped is braked from
+        where it is, not drawn back (RL-2).
+
+        Args:
+            estimate: of this tick.
+            law: of this tick.
+            ends: a motion ends in this tick.
+        """
+        if self.now is None or self._law is Law.FREE:
+            return False
+        share = estimate.following.share
+        return share > HELD if ends else law is Law.BRAKE and share > 1.0
+
+    def _restart(self, estimate: Estimate, *, known: bool) -> None:
+        """Come to rest from where the arm is, as fast as it is; nothing is left of what was wanted before.
+
+        Args:
+            estimate: of this tick.
+            known: what drove the arm up to now; so it is known where it has come to since it was measured. An arm that a hand
+                led is held where it was measured.
+        """
+        self._past.clear()
+        self._compliance, self._leaving, self.push, self.before = None, False, None, []
+        q, speed = estimate.q, estimate.qd
+        if known:
+            speed = estimate.theta_d + LATENCY * TICK * estimate.theta_dd
+            q = q + LATENCY * TICK * speed
+            self.before = led_to(q, speed, self._standing)
+            self._past.extend(self.before)
+        self.now = Reference(q, speed, self._standing)
+        self._stop(q, speed)
+        if self.caught_up:  # the joints still push at what held them: they would push on after an end that leans
+            self._settling = 0
+
     def _advance(self, motion: Motion, decision: Decision, begins: bool) -> Reference:
         """The next reference of a motion, at the speed that is allowed."""
+        keeper = self.keeper if decision.force is None else None
         if isinstance(motion, Planned | Blended):
             limits = at_manual_speed(decision.move, decision.speed_limits)
             if begins:
                 moving = isinstance(motion, Blended | ProcessTrajectory) and motion.moving
                 self._pace.begin(motion, limits, decision.speed, moving=moving)
-            return motion.step(self._pace.step(motion, limits, decision.speed))
+            rate = self._pace.step(motion, limits, decision.speed)
+            self._pace.rate = rate if keeper is None else keeper.rate(motion, rate)
+            return motion.step(self._pace.rate)
         if isinstance(motion, JogTrajectory | JointStream):
-            reference = motion.step(decision.speed, decision.speed_limits)
+            reference = motion.step(decision.speed, decision.speed_limits, keeper)
             self.refusal = self.refusal or motion.problem
             return reference
         assert isinstance(motion, Stop | ForceTrajectory)
@@ -183,7 +241,7 @@ class References:
                 return motion
         self._compliance.follow(motion)
         self._compliance.feel(estimate, force)
-        reference = self._compliance.step(1.0, decision.speed_limits)
+        reference = self._compliance.step(1.0, decision.speed_limits, self.keeper)
         self.refusal = self.refusal or self._compliance.problem
         return reference
 
@@ -244,7 +302,7 @@ class References:
             speed = np.abs(now.qd).max()
             if move.of == "tool":
                 speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
-            length = max(length, 0.5 * np.pi * float(speed) / move.deceleration)
+            length = self.keeper.stop_length(now, max(length, 0.5 * np.pi * float(speed) / move.deceleration))
         return Stop(now.q, now.qd, length)
 
     def _line(self, q: Array, move: LinearMove) -> LinearTrajectory | ProcessTrajectory:

@@ -10,6 +10,7 @@ from pendant.motion.script_requests import ServoJoints, ServoTool, SpeedJoints, 
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.arm.frames import matrix_from_quaternion
+from sim.braking.workspace_keeper import WorkspaceKeeper
 from sim.motion.curves import LEVER
 from sim.motion.line import Line, rotation_vector
 from sim.motion.moves import DELAY, MoveRefused, Reference, check_range
@@ -48,19 +49,21 @@ class JointStream:
         self._share = 1.0  # of its own speed
         self.done, self.problem = False, ""
 
-    def step(self, share: float, limits: SpeedLimits | None) -> Reference:
+    def step(self, share: float, limits: SpeedLimits | None, keeper: WorkspaceKeeper | None = None) -> Reference:
         """The reference of the next tick.
 
         Args:
             share: of its own speed.
             limits: of REDUCED.
+            keeper: of the arm that it leads; None: it leads none.
         """
         self._left -= TICK
         self._share += min(max(share - self._share, -TICK / RAMP), TICK / RAMP)
         change = (self._wanted() if self._left > -GRACE else self._braked()) - self._qd
         most = float((np.abs(change) / self._acceleration).max()) / TICK
         qd = self._qd + (change if most <= 1.0 else change / most)
-        qd = qd * self._allowed(qd, limits)
+        allowed = self._allowed(qd, limits)
+        qd = qd * (allowed if keeper is None else min(allowed, keeper.share(self._q, qd)))
         qdd = (qd - self._qd) / TICK
         self._q, self._qd = self._q + TICK * qd, qd
         return Reference(self._q, qd, qdd)

@@ -68,6 +68,16 @@ class Dynamics:
         placement = pin.updateFramePlacement(self.model, self.data, self._flange)
         return placement.translation.copy(), placement.rotation.copy(), self.data.oMi[self._elbow].translation.copy()
 
+    def levers(self, tool: float) -> Array:
+        """From each joint's axis to whatever moves with it, at most (n,) [m].
+
+        Args:
+            tool: from the flange to the furthest point beyond it [m].
+        """
+        lengths = [float(np.linalg.norm(placement.translation)) for placement in self.model.jointPlacements.tolist()[2:]]
+        lengths += [float(np.linalg.norm(self._flange_placement.translation)) + tool]
+        return np.cumsum(lengths[::-1])[::-1]
+
     def flange_motion(self, q: Array, qd: Array) -> tuple[Array, Array, Array, Array]:
         """Flange position (3,), orientation (3, 3), velocity (3,) [m/s] and angular velocity (3,) [rad/s], in B."""
         pin.forwardKinematics(self.model, self.data, q, qd)

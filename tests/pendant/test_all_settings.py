@@ -11,6 +11,9 @@ from pendant.settings.schema import SettingError, SettingRow, Value, ticks
 
 # name: (default, low, high, unit, requirement, locked), copied from the spec by hand
 EXPECTED = {
+    "following.on": (True, None, None, "", "RL-1", True),
+    "following.joint": (0.6, 0.2, 1.0, "", "RL-1", True),
+    "following.tool": (0.025, 0.005, 0.1, "m", "RL-1", True),
     "activation.period": (1.0, 0.0, 15.0, "s", "FD-7", True),
     "sequence.on": (True, None, None, "", "FD-24", True),
     "sequence.period": (1.0, 0.0, 5.0, "s", "FD-9", True),

@@ -116,6 +116,7 @@ EFFECTS = {
     Kind.SENSORS_LOST: Effect.LEAVE_TO_STOP,
     Kind.RUN_SENSORS_LOST: Effect.PROTECTIVE_STOP,
     Kind.MOTOR_ANGLE_LOST: Effect.PROTECTIVE_STOP,
+    Kind.PATH_LEFT: Effect.PROTECTIVE_STOP,
     Kind.EMERGENCY_STOP: Effect.EMERGENCY_STOP,
     Kind.PROTECTIVE_STOP: Effect.PROTECTIVE_STOP,
     Kind.POWERED_OFF: Effect.LEAVE_TO_STOP,
@@ -155,7 +156,7 @@ def test_stop_categories_are_those_of_the_robots() -> None:
     """UR5e user manual, 8.2: an emergency stop removes the power at standstill, a safeguard stop leaves it on; beyond the
     limits of REDUCED is category 0."""
     others = {Kind.EMERGENCY_STOP: 1, Kind.POWERED_OFF: 1, Kind.REDUCED_EXCEEDED: 0}
-    others |= {Kind.RUN_SENSORS_LOST: 1, Kind.MOTOR_ANGLE_LOST: 1}  # no loop holds such a joint
+    others |= {Kind.RUN_SENSORS_LOST: 0, Kind.MOTOR_ANGLE_LOST: 0}  # no loop holds such a joint
     assert {kind: row.category for kind, row in TABLE.items()} == {kind: others.get(kind, 2) for kind in Kind}
 
 

@@ -23,6 +23,7 @@ from pendant.sensor.taring import Taring
 from pendant.tick.modes import Law, Mode, Phase, Safety
 from pendant.tick.pose import from_rpy
 from pendant.tooling.tool_in_use import Tooling
+from pendant.walls.containment import Containment
 
 SETTINGS = apply(Settings(), {"free_drive.gain": 2.5, "free_drive.force_cap": 70.0, "axes.x": False, "program.speed": 0.4})
 SPEEDS = SpeedLimits(0.1, 0.2, 0.3)
@@ -65,6 +66,7 @@ class Parts:
             cast("Tooling", self.tooling),
             cast("Taring", self.taring),
             scripting=cast("Scripting", self.scripting),
+            containment=cast("Containment", SimpleNamespace(workspace=lambda walls: ("workspace", walls))),
         )
         self.publisher.refresh(settings)
         self.settings = settings
@@ -86,7 +88,8 @@ class Parts:
             "force_cap": 70.0, "baseline": self.free.baseline, "periods": PERIODS, "events": (), "program": ProgramState.PAUSED,
             "step": 3, "monitored": (), "contacts": (), "looks": False, "tool_on": True, "outputs": frozenset({3}),
             "walls": ("wall",), "grip": "in the middle",
-            "speed_limits": SPEEDS, "damping": "damping", "zones": (0.5, 0.6), "balance": None,
+            "workspace": ("workspace", self.settings.walls), "speed_limits": SPEEDS,
+            "damping": "damping", "zones": (0.5, 0.6), "balance": None,
             "locks": axis_locks(self.settings.axes), "singularity": "singularity", "shake": SHAKE, "fitting": "fitting",
             "wizard": "progress", "zero": (0.1,) * 6, "zero_due": False, "slack": "slack", "doubtful": "doubtful",
             "limits": limits_checksum(self.settings), "speed": 0.4, "static": False,

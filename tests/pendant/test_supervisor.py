@@ -176,7 +176,7 @@ def test_a_move_that_is_not_possible_ends_the_program_and_says_why() -> None:
 def test_sensors_lost_in_run_are_a_protective_stop_that_ends_the_program() -> None:
     bench = running()
     bench.step(NOTHING, estimate(joints_valid=False))
-    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.PROTECTIVE_STOP, Law.BRAKE)
+    assert (bench.last.mode, bench.last.safety, bench.last.law) == (Mode.STOP, Safety.PROTECTIVE_STOP, Law.OFF)
     assert (bench.last.program, bench.last.move) == (ProgramState.STOPPED, None)
     bench.run(60)
     bench.step(command(Command.RESET))

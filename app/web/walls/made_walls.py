@@ -160,7 +160,7 @@ def about(border: AnyBorder) -> str:
 def listed(borders: Sequence[AnyBorder], on: bool) -> str:
     """All borders in a list, none of which holds while walls are not `on` at all."""
     if not borders:
-        text = "A wall holds the arm while a hand guides it. Programs and jogging pass through it."
+        text = "A wall holds the arm while a hand guides it, and stops programs and jogging at its border."
         return svg.note("No wall yet", text, Colour.GREY)
     told = "" if on else svg.note("All walls are off", "Settings, Virtual walls and areas, switches them on.", Colour.AMBER)
     return told + svg.facts([(border.name, about(border) if on else "off") for border in borders])

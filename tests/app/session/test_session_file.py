@@ -79,6 +79,10 @@ def test_a_whole_header_reaches_the_scenario() -> None:
         ({"features": {"FD-4": "off"}}, "features.FD-4: has no switch; these have: "),
         ({"features": {"FD-99": "off"}}, "features = FD-99: the id of a requirement"),
         ({"features": {"XX-1": "on"}}, "features = XX-1: the id of a requirement"),
+        (
+            {"timeline": [{"at": 0.5, "do": "jog", "for": 0.2, "move": {"kind": "jog", "frame": "joint", "axis": 6, "sign": 1}}]},
+            "s.yaml: timeline[0].move: axis 6, allowed: 0 .. 5",
+        ),
         ({"world": "kitchen"}, "world = kitchen: a list of objects, or one of table, workshop"),
         (
             {"world": [{"kind": "box", "name": "a", "position": [0, 0, 0], "size": [1, 0, 1]}]},

@@ -9,6 +9,7 @@ from app.session.actions import (
     Bump,
     ChangeSettings,
     Hold,
+    HoldJog,
     Laboratory,
     Lean,
     LoadProgram,
@@ -25,6 +26,7 @@ from app.session.timeline import Timeline
 from pendant.decision import Decision
 from pendant.events.event import Kind
 from pendant.inputs import Button, Command
+from pendant.program.jog_move import JogMove
 from pendant.program.steps import Program as Steps
 from pendant.program.steps import Wait
 from pendant.tick.modes import Mode
@@ -62,6 +64,13 @@ def test_a_tap_of_a_button_presses_and_lets_go() -> None:
 def test_commands_act_in_one_tick_only() -> None:
     played = play([Tap(at=0.004, control="emergency_stop"), LoadProgram(at=0.004, command="start")], 4)
     assert [wishes.inputs.commands for wishes in played] == [(), (Command.EMERGENCY_STOP, Command.START_PROGRAM), (), ()]
+
+
+def test_a_jog_button_is_held_for_its_time_and_then_let_go() -> None:
+    move = JogMove(frame="base", axis=2, sign=-1)
+    played = play([HoldJog(at=0.002, length=0.004, move=move)], 5)
+    assert [wishes.inputs.jog for wishes in played] == [move, move, None, None, None]
+    assert [wishes.inputs.jog_released for wishes in played] == [False, False, True, False, False]
 
 
 def test_settings_and_changes_are_passed_on_once() -> None:

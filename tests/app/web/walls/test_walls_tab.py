@@ -54,7 +54,7 @@ def test_what_is_added_is_chosen_has_handles_and_is_undone(served: Served, join:
     client, tab = join(), served.docks.walls
     until(lambda: tab.delete.disabled and not tab.delete.visible, "there is none")
     assert tab.choice.options == (NONE,)
-    assert "Programs and jogging pass through it" in tab.list.shown
+    assert "stops programs and jogging at its border" in tab.list.shown
     client.set(tab.add._impl.uuid, value="Box")
     wished(loop, lambda walls: [wall.name for wall in walls] == ["box 1"], "the box")
     until(lambda: tab.choice.value == "box 1" and tab.handles._gizmo is not None, "chosen, with handles")

@@ -1,0 +1,1 @@
+"""What bench `blocked` has an arm do."""
