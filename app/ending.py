@@ -14,6 +14,9 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 LONGEST = 2.7
 """From the signal to the end of the process, at most [s]."""
 
+STUCK = 2.9
+"""By then the system ends the process by SIGALRM, also where no Python can run any more [s]."""
+
 ORDERLY = 2.0
 """What has not ended in order by then is left, but for what must be finished [s]."""
 
@@ -53,6 +56,8 @@ class ProcessEnd:
         with suppress(OSError):
             os.write(self._write, b"\0")
         self._thread.join()
+        if self.number:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         os.close(self._read)
         os.close(self._write)
 
@@ -61,6 +66,7 @@ class ProcessEnd:
         if self._closed:
             return
         until = time.monotonic() + LONGEST
+        signal.setitimer(signal.ITIMER_REAL, STUCK)
         self.number = number
         _asked.append(number)
         self.asked.set()
