@@ -63,7 +63,7 @@ class ProcessEnd:
 
     def _watch(self) -> None:
         number = os.read(self._read, 1)[0]
-        if self._closed:
+        if not number:  # `close` says so; a signal that came before it counts, however late this thread sees it
             return
         until = time.monotonic() + LONGEST
         signal.setitimer(signal.ITIMER_REAL, STUCK)
