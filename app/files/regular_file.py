@@ -27,5 +27,10 @@ def open_regular(path: Path, mode: str = "rb") -> FileIO:
     return FileIO(number, mode.replace("b", ""))
 
 
+def is_something(path: Path) -> bool:
+    """Whether there is something that is no folder: who opens it says what is wrong with it."""
+    return os.path.exists(path) and not os.path.isdir(path)  # noqa: PTH110, PTH112 - a path's own methods raise at a long name
+
+
 def _kind(path: Path) -> str:
     return "a folder" if path.is_dir() else "a pipe" if path.is_fifo() else "a device or a socket"

@@ -1,6 +1,5 @@
 """Session files: what to simulate, what happens when, and what is expected of it. The schema; `prepare` checks and uses it."""
 
-import os
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
@@ -9,6 +8,7 @@ from msgspec import Meta
 
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import ASSETS, shipped
+from app.files.regular_file import is_something
 from app.session.actions import AnyAction, Walls
 from app.session.expectations import AnyExpectation
 from pendant.equipment.load import Angles
@@ -96,7 +96,7 @@ def find(name: str) -> Path:
     Raises BadInput: neither is there.
     """
     path = Path(name)
-    if os.path.exists(path) and not os.path.isdir(path):  # noqa: PTH110, PTH112 - a path's own methods raise at a long name
+    if is_something(path):
         return path
     if name in bundled("sessions"):
         return folder("sessions") / f"{name}.yaml"
