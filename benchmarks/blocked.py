@@ -95,7 +95,9 @@ class Trial:
         self.direction, self.qd = self._way()
         if case.obstacle in THICK:
             scenario = changed(scenario, world=[self._box(case.obstacle)])
-        use = apply(Settings(), {"program.speed": min(case.speed / MANUAL, 1.0)} if case.moves.startswith("jog") else {})
+        # A collision would stop the arm before it presses.
+        jogs = {"program.speed": min(case.speed / MANUAL, 1.0)} if case.moves.startswith("jog") else {}
+        use = apply(Settings(), {"collision.on": False, **jogs})
         self.device = Simulation(arm, changed(scenario, posture=q), use)
         self.hand = self._hand()
         self.wanted = Wanted(case, probe, q=self.q, qd=self.qd, direction=self.direction, near=self.near)

@@ -23,7 +23,7 @@ from pendant.guided.settings import Unexplained
 from pendant.haptics import HapticUse
 from pendant.limits.settings import AxisSettings, JointLimits, JointSettings, LimitSettings, Soft, Static
 from pendant.program.settings import ProgramUse
-from pendant.safety.settings import FollowingSettings
+from pendant.safety.settings import CollisionSettings, FollowingSettings
 from pendant.settings.renamed import RENAMED
 from pendant.settings.schema import Limit, Section, SettingError, SettingRow, Value
 from pendant.settings.schema import choice as _choice
@@ -93,6 +93,7 @@ class Settings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
     enabling: Enabling = Enabling()
     reduced: ReducedLimits = ReducedLimits()
     following: FollowingSettings = FollowingSettings()
+    collision: CollisionSettings = CollisionSettings()
     limits: LimitSettings = LimitSettings()
     unexplained: Unexplained = Unexplained()
     soft: Soft = Soft()

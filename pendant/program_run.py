@@ -54,6 +54,11 @@ class ProgramRun:
         """The running program waits for a change in contact, or looks for it."""
         return self._robot.sequencer.until is not None or self.scripting.feeling
 
+    @property
+    def presses(self) -> bool:
+        """The running program asked for contact: it moves until one, or with a force."""
+        return self.feels or isinstance(self._robot.sequencer.move, ApplyForce) or self.scripting.force is not None
+
     def contact_use(self, use: ContactUse, estimate: Estimate) -> ContactUse:
         """The settings of contact detection in this tick: their thresholds follow what the robot does (CD-11)."""
         if not follows(use):

@@ -100,7 +100,7 @@ class Supervisor:
         self._monitor = ContactMonitor(sensor)
         self._free = FreeDrive(self._joints, rated, self.containment, zones, sensor=sensor)
         self._robot = Robot(self._free, self._sequencer)
-        self._safety = SafetyInputs(self._robot, self._joints)
+        self._safety = SafetyInputs(self._robot, self._joints, shape.elbow if shape else n_joints // 2 - 1)
         self._run = ProgramRun(self._robot, self._mean, n_joints, self.containment)
         self._tooling = Tooling(equipment or Equipment())
         self._equipping = Equipping(
@@ -150,7 +150,7 @@ class Supervisor:
         if commands:
             self._safety.step(estimate, commands, self.settings, events, held=self._button.held)
             self._obey(estimate, commands, events)
-        self._safety.watch(estimate, self.settings, events)
+        self._safety.watch(estimate, self.settings, events, asked=self._run.presses or self._tooling.changing)
         self._run.step(estimate, inputs, self.settings, events, monitor=self._monitor, changing=self._tooling.changing)
         self._free_drive(estimate, wrench_ok, events)
         mode = Mode.NORMAL if self._run.scripting.equips(inputs.script) else self._robot.mode

@@ -17,6 +17,7 @@ from sim.arm.arm_file import Arm
 from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
+from sim.collisions.link_force import LinkForces
 from sim.control.controller import Controller
 from sim.control.feedback import following_limit
 from sim.estimation.contact_sources import ContactSources
@@ -80,6 +81,7 @@ class Simulation:
         self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp, following=following_limit(arm))
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
+        self.link_forces = LinkForces(self.dynamics, self.estimator.momentum, arm.sensors, arm.chain.elbow)
         self.supervisor = Supervisor(
             settings,
             arm.n,
@@ -161,6 +163,7 @@ class Simulation:
         answered = references.answered
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
+        self.link_forces.read(sample, self._zero, estimate)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)

@@ -16,7 +16,6 @@ import mujoco  # noqa: F401
 import numba
 import numpy as np  # noqa: F401
 import pinocchio  # pyright: ignore[reportMissingTypeStubs, reportUnusedImport]  # noqa: F401
-import ruckig  # pyright: ignore[reportUnusedImport]  # noqa: F401
 import yaml  # noqa: F401
 
 TOPS = ("app", "sim", "pendant", "assets")

@@ -71,7 +71,7 @@ class Wanted:
         """Joint angles (n,) so far on along the joints' way [m]."""
         return self.q + self.qd * (reach / self.case.speed)
 
-    def _reach(self) -> float:
+    def reach(self) -> float:
         """How far the motion would go [m]; one that is to end by itself ends while it presses."""
         if self.case.obstacle == "own link":
             return 0.5 * self.probe.arm.reach
@@ -81,7 +81,7 @@ class Wanted:
 
     def script(self) -> str:
         """The motion as a client sends it."""
-        case, reach = self.case, self._reach()
+        case, reach = self.case, self.reach()
         goal = "[" + ", ".join(f"{value:.6f}" for value in self._goal(reach)) + "]"
         p, R, _ = self.probe.dynamics.places(self.q)
         x, y, z = p + R @ self.probe.tcp + reach * self.direction
@@ -127,7 +127,7 @@ class Wanted:
         return f"{mode}\n  sleep({min(lasts, 30.0):.3f})\n  end_force_mode()"
 
     def program(self) -> Program:
-        reach = self._reach()
+        reach = self.reach()
         if self.case.moves == "program joint":
             share = float(np.max(np.abs(self.qd) / np.array(self.probe.arm.limits.speed)))
             step: Any = JointMove(q=tuple(self._goal(reach).tolist()), speed=min(max(share, 0.001), 1.0))

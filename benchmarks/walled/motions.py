@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from pendant.program.jog_move import Jogged, JogMove, MoveStraight, MoveThere
 from pendant.program.steps import ApplyForce, ContactMove, JointMove, LinearMove, Program
-from sim.arm.frames import quaternion_from_matrix
-from sim.motion.line import rotation_by, rotation_vector
+from sim.arm.frames import quaternion_from_matrix, rotation_by, rotation_vector
 from sim.simulation import Simulation
 
 Array = NDArray[np.float64]

@@ -73,6 +73,7 @@ class Kind(StrEnum):
     EMERGENCY_STOP = "emergency_stop"
     PROTECTIVE_STOP = "protective_stop"
     PATH_LEFT = "path_left"
+    COLLISION = "collision"
     EMERGENCY_STOP_RELEASED = "emergency_stop_released"
     POWERED_OFF = "powered_off"
     SAFEGUARD_STOP = "safeguard_stop"

@@ -6,10 +6,11 @@ from pendant.inputs import Command
 from pendant.limits.validity import JOINTS_SENSED, joints_ok, motion_ok
 from pendant.robot.reduced import Reduced, SpeedLimits
 from pendant.robot.robot_mode import Robot
+from pendant.safety.collision import Collisions
 from pendant.safety.following import left_path
 from pendant.settings.schema import ticks
 from pendant.tick.estimate import Estimate
-from pendant.tick.modes import Mode, Safety
+from pendant.tick.modes import Mode, Phase, Safety
 
 BLIND = ticks(0.1)
 """A motor angle that is out for so long is lost: the arm is stopped, and its brakes hold it. A shorter gap is one of the bus."""
@@ -18,16 +19,18 @@ BLIND = ticks(0.1)
 class SafetyInputs:
     """Their levels, and what they do to the robot."""
 
-    __slots__ = ("_blind", "_joints", "_reduced", "_robot", "_safeguard")
+    __slots__ = ("_blind", "_collisions", "_joints", "_reduced", "_robot", "_safeguard")
 
-    def __init__(self, robot: Robot, joints: tuple[str, ...]) -> None:
+    def __init__(self, robot: Robot, joints: tuple[str, ...], elbow: int) -> None:
         """
         Args:
             robot: that they act on.
             joints: the names used in events, base to flange.
+            elbow: index of the joint whose origin is the elbow.
         """
         self._robot, self._joints = robot, joints
         self._reduced = Reduced()
+        self._collisions = Collisions(elbow)
         self._safeguard = False  # it is open
         self._blind = 0  # ticks for which some motor angle has been out
 
@@ -56,15 +59,31 @@ class SafetyInputs:
         if Command.RESET in commands:
             self._reset(estimate, settings, events, stop=stop, held=held)
 
-    def watch(self, estimate: Estimate, settings: Settings, events: list[Event]) -> None:
-        """Every tick: stop where a motor angle is lost, where the arm does not follow, where it is too fast for REDUCED."""
+    def watch(self, estimate: Estimate, settings: Settings, events: list[Event], *, asked: bool) -> None:
+        """Every tick: stop where a motor angle is lost, the arm does not follow, hits something, or is too fast for REDUCED.
+
+        Args:
+            estimate: of this tick.
+            settings: as they are now.
+            events: of this tick; more are added.
+            asked: a program asked for contact, or what the tool carries is being changed.
+        """
         unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
         self._blind = self._blind + 1 if unseen else 0
         if self._blind == BLIND:
             event = Event(Kind.MOTOR_ANGLE_LOST, estimate.tick, {"joint": self._joints[unseen[0]]})
             self._robot.happen(event, settings, events)
-        stopped = self._robot.mode is _STOP
-        if not stopped and (left := left_path(estimate, settings.following, self._joints)) is not None:
+        robot = self._robot
+        stopped = robot.mode is _STOP
+        hit = None
+        if stopped or robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE:
+            self._collisions.rest()
+        else:
+            moves = robot.move is not None and not asked
+            hit = self._collisions.step(estimate, settings.collision, moves=moves)
+        if hit is not None:
+            robot.happen(hit, settings, events)
+        elif not stopped and (left := left_path(estimate, settings.following, self._joints)) is not None:
             self._robot.happen(left, settings, events)
         elif self._reduced.on and not stopped and motion_ok(estimate):
             excess = self._reduced.step(estimate, settings.reduced, self._joints)
@@ -116,4 +135,4 @@ class SafetyInputs:
             events.append(Event(Kind.RESET, estimate.tick))
 
 
-_STOP = Mode.STOP  # looked up in every tick
+_STOP, _FREE_DRIVE, _SEQUENCE = Mode.STOP, Mode.FREE_DRIVE, Phase.SEQUENCE  # looked up in every tick

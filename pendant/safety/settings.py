@@ -20,3 +20,18 @@ class FollowingSettings(Section, frozen=True, forbid_unknown_fields=True, kw_onl
     tool: Annotated[
         float, _number(0.005, 0.1, "m", "RL-1", text="largest distance of the tool centre point from where it should be")
     ] = 0.025
+
+
+class CollisionSettings(Section, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """With which force the arm may meet something. Source of the clamping force: the third of a UR's four presets of limits."""
+
+    BASIC = ("on", "force")
+
+    on: Annotated[bool, _switch("RL-3", "an arm that hits something is stopped")] = True
+    force: Annotated[
+        float, _number(20.0, 250.0, "N", "RL-3", text="force on tool or link at which a moving arm takes it for a collision")
+    ] = 50.0
+    clamping: Annotated[
+        float,
+        _number(50.0, 250.0, "N", "RL-3", text="the same of an arm that stands, and where a program asked for contact"),
+    ] = 150.0

@@ -40,6 +40,19 @@ ON_PATH = FollowingError()
 """The arm is where it should be, or nothing says where that is."""
 
 
+class LinkForce(NamedTuple):
+    """The least force on a link that explains what the joints feel, beyond what the model may be wrong by (RL-3)."""
+
+    joint: int = -1  # the last one that feels it: it moves the link
+    force: float = 0.0  # [N]
+    torque: float = 0.0  # of the joint that needs this force [N·m]
+    twisted: int = 0  # that joint
+
+
+NO_LINK_FORCE = LinkForce()
+"""Nothing touches a link, as far as the joints feel."""
+
+
 class JointsFeel(IntEnum):
     """What explains the change of the external torques since free-drive began."""
 
@@ -79,6 +92,8 @@ class Estimate:
     move_refused: str = ""  # why the FOLLOW law cannot do the move it was just given
     move_wall: str = ""  # the area at whose border it has stopped that move
     following: FollowingError = ON_PATH  # of the arm against its reference
+    link_force: LinkForce = NO_LINK_FORCE  # on a link; of what the flange carries, too, without a valid flange sensor
+    clipped: bool = False  # the flange sensor's force is at the end of its range
     g_B: Array = field(default_factory=lambda: np.array([0.0, 0.0, -GRAVITY]))  # (3,) gravity in B, by the mounting [m/s²]
     theta_dd: Array = field(default_factory=_no_joints)  # (n,) motor acceleration referred to the output [rad/s²]
     friction: Array = field(default_factory=_no_joints)  # (n,) friction of both sides, with the sign of the speed [N·m]

@@ -120,3 +120,17 @@ def skew(vector: ArrayLike) -> Array:
     """Matrix (3, 3) S with S @ u = vector x u."""
     x, y, z = np.asarray(vector, dtype=float)
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def rotation_vector(R: Array) -> Array:
+    """Axis times angle (3,) [rad] of a rotation matrix (3, 3), by half a turn at most."""
+    w, *v = quaternion_from_matrix(R).tolist()
+    size = math.sqrt(sum(x**2 for x in v))
+    return np.array(v) * (2.0 * math.atan2(size, w) / size if size > 1e-12 else 2.0)
+
+
+def rotation_by(vector: Array) -> Array:
+    """Rotation matrix (3, 3) of axis times angle (3,) [rad]."""
+    angle = float(np.linalg.norm(vector))
+    half = 0.5 * math.sin(0.5 * angle) / (0.5 * angle) if angle > 1e-12 else 0.5
+    return matrix_from_quaternion((math.cos(0.5 * angle), *(half * vector)))

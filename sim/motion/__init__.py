@@ -1,1 +1,1 @@
-"""References in joint and tool space. Uses arm/, braking/, compiled/, rigid_body/, sensing/."""
+"""References in joint and tool space. Uses arm/, braking/, paths/, rigid_body/, sensing/."""

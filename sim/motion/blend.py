@@ -6,14 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, ScriptedLine, ScriptedProcess
-from pendant.program.steps import LinearMove
+from pendant.program.steps import JointMove, LinearMove
+from pendant.tick.modes import TICK
 from sim.motion.moves import Reference, Stop
-from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.planned import JointTrajectory
 from sim.motion.process import ProcessTrajectory
+from sim.motion.tool_trajectory import ToolTrajectory
 
 Array = NDArray[np.float64]
 
-Planned = JointTrajectory | LinearTrajectory | ProcessTrajectory
+Planned = JointTrajectory | ToolTrajectory
 
 Joined = ScriptedJoints | ScriptedLine | ScriptedArc | ScriptedProcess
 """Motions of a script that may go over into the next."""
@@ -37,7 +39,7 @@ def leaves(motion: "Planned | Blended", blend: float, left: float) -> bool:
 
 
 def lengthened(
-    motion: "Planned | Stop | Blended", move: LinearMove | ScriptedJoints, radius: float
+    motion: "Planned | Stop | Blended", move: JointMove | ScriptedJoints | LinearMove, radius: float
 ) -> "Planned | Blended | None":
     """A motion with a script's next one put at its end, both at one speed; None: it ends where it would have.
 
@@ -64,14 +66,14 @@ class Blended:
     """The sum of two motions in joint angles: what the first has still to go is taken off the second's way.
 
     Where the first one only slows down and the second only speeds up, no joint gets faster than in one of them at equal
-    accelerations. Where it would get faster than it may, the second waits for the end of the first; and always until that slows
-    down.
+    accelerations. Where a joint would get faster than it may, be accelerated more, or leave its range, the second waits for the
+    end of the first; and always until that slows down.
 
     Args:
         first: on its way to its end, or to a stop.
         second: planned from there.
         corner: where that is (n,) [rad].
-        most: speeds of the joints (n,) [rad/s].
+        limits: the joints' speed, acceleration and position (±), each (n,).
 
     Attributes:
         goal: where the second ends (n,) [rad].
@@ -82,10 +84,12 @@ class Blended:
 
     moving = True
 
-    def __init__(self, first: "Planned | Stop | Blended", second: Planned, corner: Array, most: Array) -> None:
+    def __init__(
+        self, first: "Planned | Stop | Blended", second: Planned, corner: Array, limits: tuple[Array, Array, Array]
+    ) -> None:
         self.first, self.second, self._corner = first, second, corner
         self.done = self._begun = self._waits = False
-        self._waits = self._fastest(most) > 1.0
+        self._waits = self._most(limits) > 1.0
 
     def __copy__(self) -> "Blended":
         twin = object.__new__(Blended)
@@ -118,10 +122,22 @@ class Blended:
         self.done = self.first.done and self.second.done
         return Reference(first.q + second.q - self._corner, first.qd + second.qd, first.qdd + second.qdd)
 
-    def _fastest(self, most: Array) -> float:
-        """The largest speed of a joint while both run, over what it may have."""
-        probe, worst = copy.copy(self), 0.0
-        stride = max(1.0, self.first.remaining * 500.0 / LOOKS)
+    def _most(self, limits: tuple[Array, Array, Array]) -> float:
+        """The largest speed, acceleration or angle of a joint while both run, over what it may have.
+
+        Where the first alone is accelerated more than that, as a stop may be, no more than that is added.
+        """
+        probe, begun, one, both = copy.copy(self), False, [], []
+        stride = max(1.0, self.first.remaining / TICK / LOOKS)
         while not probe.first.done and not probe.done:
-            worst = max(worst, float((np.abs(probe.step(stride).qd) / stride / most).max()))
-        return worst
+            one.append(probe.first.step(stride).q)
+            begun = begun or probe.first.slowing
+            both.append(one[-1] + probe.second.step(stride).q - self._corner if begun else one[-1])
+        if len(both) < 3:
+            return 0.0
+        step = stride * TICK
+        speed = np.abs(np.diff(both, axis=0)) / step / limits[0]
+        acceleration = np.abs(np.diff(both, 2, axis=0)) / step**2
+        alone = np.abs(np.diff(one, 2, axis=0)) / step**2
+        outermost = np.abs(both) / limits[2]
+        return max(float(speed.max()), float((acceleration / np.maximum(alone, limits[1])).max()), float(outermost.max()))

@@ -9,18 +9,21 @@ from numpy.typing import NDArray
 from pendant.motion.script_requests import SIX_WAYS, ForceMode
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from sim.arm.frames import cross
-from sim.motion.curves import LEVER
-from sim.motion.line import LINE_GAIN, Line, rotation_vector
+from sim.arm.frames import cross, rotation_vector
 from sim.motion.moves import Reference
 from sim.motion.pace import Pace
 from sim.motion.streams import LineStream
+from sim.paths.curves import LEVER
+from sim.paths.tool_point import ToolPoint
 
 Array = NDArray[np.float64]
 
 STILL = 5e-3
 """Slower the tool's way is lost in noise [m/s]; nearer to a point the way to it says nothing [m]."""
 
+
+LINE_GAIN = 20.0
+"""Pulls the reference back to the motion across the free axes [1/s]."""
 
 DAMPING = 400.0
 """Force that is missing over the speed that it leads to where nothing is touched [N·s/m]."""
@@ -103,7 +106,7 @@ class Compliance(LineStream):
 
     Args:
         now: where the reference is.
-        line: of the tool, from there.
+        tool: kinematics of the tool centre point.
         limits: the joints' speed, acceleration and position (±), each (n,).
         pace: knows the speeds of tool and elbow.
 
@@ -111,8 +114,8 @@ class Compliance(LineStream):
         MoveRefused: the tool cannot go everywhere from here.
     """
 
-    def __init__(self, now: Reference, line: Line, limits: tuple[Array, Array, Array], pace: Pace) -> None:
-        super().__init__(now, line, limits, pace)
+    def __init__(self, now: Reference, tool: ToolPoint, limits: tuple[Array, Array, Array], pace: Pace) -> None:
+        super().__init__(now, tool, limits, pace)
         self._axes = _untouched()
         self._under = now
         self._U = np.eye(3)  # the frame, in B
@@ -163,7 +166,7 @@ class Compliance(LineStream):
 
     def _apart(self, p: Array, R: Array, q: Array) -> Array:
         """From the tool of a reference to a place: (6,) in axes of B [m, rad]."""
-        at, turned = self._line.pose(q)
+        at, turned = self._tool.pose(q)
         return np.concatenate((p - at, turned @ rotation_vector(turned.T @ R)))
 
     def _check(self, apart: Array, mode: ForceMode) -> None:
@@ -179,14 +182,14 @@ class Compliance(LineStream):
         mode, U = self._mode, self._U
         assert mode is not None
         self._look()
-        at, turned = self._line.pose(self._under.q)
+        at, turned = self._tool.pose(self._under.q)
         error = self._apart(at, turned, self._q)
-        v, w = self._line.twist(self._under.q, self._under.qd)
+        v, w = self._tool.twist(self._under.q, self._under.qd)
         twist = np.concatenate((U.T @ (v + LINE_GAIN * error[:3]), U.T @ (w + LINE_GAIN * error[3:])))
         for k, axis in enumerate(self._axes):
             if mode.free[k]:
                 twist[k] = axis.speed(mode, k)
-        return self._line.speeds(self._q, U @ twist[:3], U @ twist[3:])
+        return self._tool.speeds(self._q, U @ twist[:3], U @ twist[3:])
 
 
 def _untouched() -> list[Admittance]:

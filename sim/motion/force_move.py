@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from pendant.program.steps import ApplyForce
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
-from sim.motion.line import Line
 from sim.motion.moves import MoveRefused, Reference, check_range
-from sim.rigid_body.dynamics import Dynamics
+from sim.paths.curves import Straight
+from sim.paths.tool_point import Followed, ToolPoint
 
 Array = NDArray[np.float64]
 
@@ -36,13 +36,13 @@ class ForceTrajectory:
         MoveRefused: the tool cannot go everywhere from here.
     """
 
-    def __init__(self, q: Array, move: ApplyForce, dynamics: Dynamics, *, tcp: Array, position: Array) -> None:
+    def __init__(self, q: Array, move: ApplyForce, tool: ToolPoint, *, position: Array) -> None:
         """`position` are the joints' limits (±) (n,) [rad]."""
-        self._line = Line(dynamics, tcp, q)
-        if self._line.singular(q):
+        if tool.singular(q):
             raise MoveRefused("force: singular here; use another posture")
         self._wanted = math.hypot(*move.force)
-        self._line.way = np.array(move.force) / self._wanted
+        self._along = np.array(move.force) / self._wanted
+        self._tool, self._line = tool, Straight(*tool.pose(q), self._along, np.zeros(3))
         self._move, self._position = move, position
         self._untouched = np.array(move.untouched)
         self._smoothing = 1.0 - math.exp(-2.0 * math.pi * BANDWIDTH * TICK)
@@ -50,7 +50,7 @@ class ForceTrajectory:
         self._size = 0.0  # of the joints' push [N]
         self.push = np.zeros_like(q)
         self._s, self._ahead = 0.0, 0.0  # of the reference, of the tool against it [m]
-        self._q, self._qd = q.copy(), np.zeros_like(q)
+        self._joints, self._qd = Followed.at(q.copy()), np.zeros_like(q)
         self._lasted = 0.0  # [s]
         self.done, self.problem = False, ""
 
@@ -60,8 +60,8 @@ class ForceTrajectory:
             self.problem = "force: needs the flange force sensor"
             return
         # F_user is what the outside does to the arm.
-        force = float((self._untouched - estimate.F_user[:3]) @ self._line.way)
-        place = float((estimate.tcp[:3] - self._line.start) @ self._line.way)
+        force = float((self._untouched - estimate.F_user[:3]) @ self._along)
+        place = float((estimate.tcp[:3] - self._line.p) @ self._along)
         if self._felt is None:
             self._felt = force
         self._felt += self._smoothing * (force - self._felt)
@@ -80,12 +80,14 @@ class ForceTrajectory:
         self._s += rate * TICK
         if abs(self._s) > self._move.distance:
             self.problem = f"force: {self._felt or 0.0:.1f} N after {1000.0 * self._move.distance:.0f} mm"
-        qd = self._line.solve(self._q, self._s, rate)
-        qdd = (qd - self._qd) / TICK
-        self._q, self._qd = self._q + TICK * qd, qd
+        joints = self._joints = self._tool.follow(self._line.record, self._s, self._joints, rate * TICK)
+        qd = rate * joints.rate
+        qdd, self._qd = (qd - self._qd) / TICK, qd
+        if joints.singular or not joints.reached:
+            self.problem = "force: singular ahead; use another posture"
         try:
-            check_range(self._q, self._position, "force")
+            check_range(joints.q, self._position, "force")
         except MoveRefused as refusal:
             self.problem = str(refusal)
-        self.push = self._line.torque(self._q, self._size * self._line.way)
-        return Reference(self._q, qd, qdd)
+        self.push = self._tool.torque(joints.q, self._size * self._along)
+        return Reference(joints.q, qd, qdd)

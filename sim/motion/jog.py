@@ -1,6 +1,7 @@
 """The reference of a jogged arm: one joint, or the tool along or about one axis, at manual speed and no further than it can."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +11,11 @@ from pendant.program.steps import Move
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
 from sim.braking.workspace_keeper import WorkspaceKeeper
-from sim.motion.line import Line
-from sim.motion.moves import MoveRefused, Reference
+from sim.motion.moves import MoveRefused, Reference, turning_points
 from sim.motion.pace import SHARE, Pace
-from sim.rigid_body.dynamics import Dynamics
+from sim.motion.tool_trajectory import BEND, SPACING
+from sim.paths.curves import LEVER, NO_WAY, Straight
+from sim.paths.tool_point import Followed, ToolPoint
 
 Array = NDArray[np.float64]
 
@@ -26,8 +28,14 @@ LINE_ACCELERATION, TURN_SPEED, TURN_ACCELERATION = 0.5, 0.5, 1.0
 JOINT_SHARE = 0.25
 """Of a joint's speed and acceleration."""
 
-LOOK_TICKS = 5  # between looks for a singularity
-ENDED = 1e-5  # nearer than this it is there [m or rad]
+LONGEST_WAY = 6.0
+"""That is looked at beforehand: further than any arm reaches; for a turn, three times round [m]."""
+
+BRAKES = 2.0
+"""Times as hard as it speeds up, it may slow down."""
+
+HALVINGS = 20
+"""Of the step beyond the last place that can be gone to, to find that."""
 
 
 def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimits | None:
@@ -41,16 +49,27 @@ def at_manual_speed(move: Move | None, limits: SpeedLimits | None) -> SpeedLimit
     )
 
 
+class Places(NamedTuple):
+    """Of a jogged way: how fast it may be gone there, and how hard the tool or the joint may be accelerated."""
+
+    s: Array  # (k,) from 0 to the end [m or rad]
+    square: Array  # (k,) of the speed
+    acceleration: Array  # (k,)
+
+
 class JogTrajectory:
-    """Speeds up to manual speed; slows down before its length and before the end of a joint's range, and stops there.
+    """Speeds up to manual speed, and slows down before its length, the end of a joint's range, and a singularity.
+
+    Its way is looked through to the end at first. At each place the joints' speeds and accelerations allow a speed along it;
+    backwards from the end, that is lowered to one from which what the next place allows can be come to.
 
     Args:
         q: where the reference is, at rest (n,) [rad].
         move: what is jogged.
-        dynamics: the rigid model.
-        tcp: tool centre point in F (3,) [m].
+        tool: kinematics of the tool centre point.
         R_FT: orientation of the tool in F (3, 3).
         limits: the joints' speed, acceleration and position (±), each (n,).
+        pace: knows the speeds of tool and elbow.
 
     Attributes:
         done: its length is reached.
@@ -61,33 +80,36 @@ class JogTrajectory:
     """
 
     def __init__(
-        self, q: Array, move: JogMove, dynamics: Dynamics, *, tcp: Array, R_FT: Array, limits: tuple[Array, Array, Array]
+        self, q: Array, move: JogMove, tool: ToolPoint, *, R_FT: Array, limits: tuple[Array, Array, Array], pace: Pace
     ) -> None:
-        self._q, self._qd = q.copy(), np.zeros_like(q)
-        self._speed_limits, self._acceleration_limits, self._position = limits
-        self._pace = Pace(dynamics, tcp)
-        self._line: Line | None = None
-        self._joint = np.zeros_like(q)
-        self._length, self._s, self._rate = move.length, 0.0, 0.0
-        self._looks = 0
+        self._tool, self._limits, self._pace = tool, limits, pace
+        self._joints, self._s, self._rate, self._next = Followed.at(q.copy()), 0.0, 0.0, 1
+        self._why = ""  # it ends before its length
         self.done, self.problem = False, ""
+        length = move.length if move.length > 0.0 else math.inf
         if move.frame == "joint":
-            self._joint[move.axis] = move.sign
-            self._most = JOINT_SHARE * float(self._speed_limits[move.axis])
-            self._acceleration = JOINT_SHARE * float(self._acceleration_limits[move.axis])
+            self._line = None
+            self._most = JOINT_SHARE * float(limits[0][move.axis])
+            self._joints.rate[move.axis] = move.sign
+            end = max(float(limits[2][move.axis] - move.sign * q[move.axis]), 0.0)
+            if end < length:
+                self._why = _ended(move.axis, move.sign * float(limits[2][move.axis]))
+            pair = np.array([1.0, 1.0])
+            acceleration = JOINT_SHARE * float(limits[1][move.axis])
+            self._places = _slowing(Places(np.array([0.0, min(end, length)]), self._most**2 * pair, acceleration * pair))
             return
-        self._line = line = Line(dynamics, tcp, q)
-        if line.singular(q):
+        if tool.singular(q):
             raise MoveRefused("jogging: singular here; jog a joint")
+        p, R = tool.pose(q)
         axis = np.zeros(3)
         axis[move.axis % TURNS] = move.sign
-        along = line.R @ R_FT @ axis if move.frame == "tool" else axis  # in B
+        along = R @ R_FT @ axis if move.frame == "tool" else axis  # in B
         if move.axis < TURNS:
-            line.way = along
-            self._most, self._acceleration = MANUAL, LINE_ACCELERATION
-        else:
-            line.turn = line.R.T @ along
-            self._most, self._acceleration = TURN_SPEED, TURN_ACCELERATION
+            self._line, self._most = Straight(p, R, along, np.zeros(3)), MANUAL
+            self._places = self._looked(length, LINE_ACCELERATION)
+        else:  # the way of a turn is that of a lever
+            self._line, self._most = Straight(p, R, np.zeros(3), R.T @ along), LEVER * TURN_SPEED
+            self._places = self._looked(LEVER * length, LEVER * TURN_ACCELERATION)
 
     def step(self, share: float = 1.0, limits: SpeedLimits | None = None, keeper: WorkspaceKeeper | None = None) -> Reference:
         """The reference of the next tick.
@@ -97,50 +119,98 @@ class JogTrajectory:
             limits: of REDUCED.
             keeper: of the arm that it leads; None: it leads none.
         """
-        wanted = share * self._most
-        if self._length > 0.0:
-            left = self._length - self._s
-            self.done = left < ENDED
-            wanted = 0.0 if self.done else min(wanted, math.sqrt(2.0 * self._acceleration * left), left / TICK)
-        rate = min(wanted, self._rate + self._acceleration * TICK)
-        if wanted < self._rate:
-            rate = max(wanted, self._rate - 2.0 * self._acceleration * TICK)
-        rate = min(rate, self._most)
-        qd = self._speeds(rate)
-        allowed = self._allowed(qd, limits)
+        joints, s, (places, square, acceleration) = self._joints, self._s, self._places
+        while self._next < places.size - 1 and places[self._next] <= s:
+            self._next += 1
+        k, left = self._next, places[-1].item() - s
+        span = (places[k] - places[k - 1]).item()
+        beyond = (s - places[k - 1].item()) / span if span > 0.0 else 1.0
+        allowed = math.sqrt(max((square[k - 1] + beyond * (square[k] - square[k - 1])).item(), 0.0))
+        wanted = min(share * self._most, allowed, 1.0 / max(self._pace.over(joints.q, joints.rate, _manual(limits)), 1e-9))
+        change = min(acceleration[k - 1].item(), acceleration[k].item()) * TICK
+        rate = min(max(wanted, self._rate - BRAKES * change), self._rate + change, left / TICK)
         if keeper is not None:
-            allowed = min(allowed, keeper.share(self._q, qd))
-        if allowed < 1.0:
-            rate *= allowed
-            qd = self._speeds(rate)
-        self._look()
-        self._rate, self._s = rate, self._s + rate * TICK
-        qdd = (qd - self._qd) / TICK
-        self._q, self._qd = self._q + TICK * qd, qd
-        return Reference(self._q, qd, qdd)
+            rate *= keeper.share(joints.q, rate * joints.rate)
+        if left == 0.0:
+            self.done, self.problem = not self._why, self._why
+        step, changing = rate * TICK, (rate - self._rate) / TICK
+        self._s, self._rate = (places[-1].item() if rate == left / TICK else s + step), rate
+        if self._line is None:
+            q = joints.q + step * joints.rate
+            self._joints = joints._replace(q=np.minimum(np.maximum(q, -self._limits[2]), self._limits[2]))
+        else:
+            self._joints = self._tool.follow(self._line.record, self._s, joints, step)
+        q, along, bend, _, _ = self._joints
+        return Reference(q, rate * along, changing * along + rate * rate * bend)
 
-    def _speeds(self, rate: float) -> Array:
-        """Joint speeds (n,) [rad/s] at a rate along the way [m/s or rad/s]."""
-        return rate * self._joint if self._line is None else self._line.solve(self._q, self._s, rate)
+    def _looked(self, length: float, acceleration: float) -> Places:
+        """The places of a way of the tool of at most `length`, gone with at most `acceleration` [m/s²]."""
+        end = min(length, LONGEST_WAY)
+        self._why = "" if length <= LONGEST_WAY else f"{LONGEST_WAY:g} m are gone; press again"
+        found, s, step = [(0.0, self._follow(0.0, self._joints, 0.0))], 0.0, 0.0
+        while s < end:
+            joints = found[-1][1]
+            step = min(max(min(SPACING, BEND / max(float(np.abs(joints.rate).max()), 1e-9)), NO_WAY), end - s)
+            ahead = self._follow(s + step, joints, step)
+            against, good, bad = self._against(ahead), 0.0, step
+            way, turned = turning_points(joints, ahead, step)
+            if not against and (np.abs(turned) > self._limits[2]).any():
+                joint = int(np.argmax(np.abs(turned) - self._limits[2]))
+                against, bad = _ended(joint, float(turned[joint])), float(way[joint])
+            if against:
+                for _ in range(HALVINGS):
+                    middle = 0.5 * (good + bad)
+                    tried = self._follow(s + middle, joints, middle)
+                    why = self._against(tried)
+                    good, ahead = (good, ahead) if why else (middle, tried)
+                    bad, against = (middle, why) if why else (bad, against)
+                self._why = against
+                if good > 0.0:
+                    found.append((s + good, ahead))
+                break
+            s = end if step == end - s else s + step
+            found.append((s, ahead))
+        return _slowing(self._allowed(found if len(found) > 1 else 2 * found, acceleration))
 
-    def _allowed(self, qd: Array, limits: SpeedLimits | None) -> float:
-        """The share of these joint speeds that all limits allow, 1 at most."""
-        left = np.maximum(self._position - np.sign(qd) * self._q, 0.0)
-        stopping = np.sqrt(2.0 * JOINT_SHARE * self._acceleration_limits * left)
-        most = np.minimum(JOINT_SHARE * self._speed_limits, stopping)
-        fast = np.abs(qd) > 1e-9
-        share = float(np.min(most[fast] / np.abs(qd[fast]), initial=1.0))
-        if bool((left[fast] < 1e-4).any()):
-            joint = int(np.argmin(np.where(fast, left, math.inf)))
-            self.problem = f"joint {joint + 1} is at the end of its range, {self._q[joint]:.3f} rad"
-            return 0.0
-        share = min(share, 1.0 / max(self._pace.over(self._q, qd, SpeedLimits(MANUAL, MANUAL, math.inf)), 1e-9))
-        if limits is not None:
-            share = min(share, SHARE / max(self._pace.over(self._q, qd, limits), 1e-9))
-        return share
+    def _follow(self, s: float, before: Followed, step: float) -> Followed:
+        assert self._line is not None
+        return self._tool.follow(self._line.record, s, before, step)
 
-    def _look(self) -> None:
-        """Whether the way leads into a singularity."""
-        self._looks += 1
-        if self._line is not None and self._looks % LOOK_TICKS == 0 and self._line.singular(self._q):
-            self.problem = "singular ahead; jog a joint, or back"
+    def _against(self, joints: Followed) -> str:
+        """Why the way cannot be gone to there, or ""."""
+        if joints.singular or not joints.reached:
+            return "singular ahead; jog a joint, or back"
+        beyond = np.abs(joints.q) - self._limits[2]
+        joint = int(np.argmax(beyond))
+        return _ended(joint, float(joints.q[joint])) if beyond[joint] > 0.0 else ""
+
+    def _allowed(self, found: list[tuple[float, Followed]], acceleration: float) -> Places:
+        """What the joints allow at each place. A quarter of their acceleration is for that along the way, or half in braking."""
+        speed, most, _ = self._limits
+        size = np.maximum([np.abs(joints.rate) for _, joints in found], 1e-9)
+        bend = np.maximum([np.abs(joints.bend) for _, joints in found], 1e-9)
+        along = np.minimum((0.5 / BRAKES * most / size).min(axis=1), acceleration)
+        square = ((most - BRAKES * along[:, None] * size) / bend).min(axis=1)
+        square = np.minimum(square, np.minimum((JOINT_SHARE * speed / size).min(axis=1), self._most) ** 2)
+        return Places(np.array([s for s, _ in found]), square, along)
+
+
+def _ended(joint: int, q: float) -> str:
+    return f"joint {joint + 1} is at the end of its range, {q:.3f} rad"
+
+
+def _manual(limits: SpeedLimits | None) -> SpeedLimits:
+    """Of tool, elbow and joints at most, in manual control."""
+    if limits is None:
+        return SpeedLimits(MANUAL, MANUAL, math.inf)
+    return SpeedLimits(min(MANUAL, SHARE * limits.tcp), min(MANUAL, SHARE * limits.elbow), SHARE * limits.joint)
+
+
+def _slowing(places: Places) -> Places:
+    """The places with speeds from which each can slow down to what the next one allows, and to none at the end."""
+    square = places.square.copy()
+    square[-1] = 0.0
+    for k in range(square.size - 2, -1, -1):
+        change = 2.0 * min(places.acceleration[k], places.acceleration[k + 1]) * (places.s[k + 1] - places.s[k])
+        square[k] = min(square[k], square[k + 1] + change)
+    return places._replace(square=square)

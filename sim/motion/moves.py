@@ -1,15 +1,17 @@
 """References that a joint controller follows: what all of them have, a posture kept, a stop."""
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple, Protocol
 
 import numpy as np
-import ruckig
 from numpy.typing import NDArray
 
 from pendant.haptics import Shake
 from pendant.tick.modes import TICK
 from sim.braking.stopping_distance import StoppingDistance
+from sim.paths.timing_law import MoveRefused
+from sim.paths.tool_point import Followed
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import LATENCY
 
@@ -24,8 +26,6 @@ LEAST_BRAKING = 0.1  # of it, where gravity takes all of that
 MOVING_SHARE = 0.75  # of a joint's torque that a move plans with; friction, a wrong payload and the feedback need the rest
 TOO_FAST = 1.05  # times a joint's speed limit, from where its motor drives no further (sim.control.motor_controller)
 REACTION = (DELAY + 2) * TICK  # until joints brake on what was measured: the pendant hears of it a tick later [s]
-GLANCE = 0.02  # between the times of a move whose torques are looked at [s]
-LOOKS = 24  # of them, at least
 
 
 class Reference(NamedTuple):
@@ -59,10 +59,6 @@ class Motion(Protocol):
     done: bool
 
 
-class MoveRefused(ValueError):
-    """A move cannot be done; the text says why, with value and limit."""
-
-
 def stop_time(dynamics: Dynamics, q: Array, qd: Array, *, rotor: Array, torque: Array) -> float:
     """Shortest time [s] in which the joints can brake from qd, all by the same law, half a cosine.
 
@@ -78,6 +74,13 @@ def stop_time(dynamics: Dynamics, q: Array, qd: Array, *, rotor: Array, torque: 
     momentum = dynamics.mass(q) @ qd + rotor * qd
     spare = np.maximum(BRAKING_SHARE * torque - np.abs(dynamics.gravity(q)), LEAST_BRAKING * torque)
     return 0.5 * math.pi * float(np.max(np.abs(momentum) / spare))
+
+
+def stop_room(now: Reference, position: Array) -> float:
+    """Time [s] that a stop may take so that every joint comes to rest within ±`position` (n,) [rad]: it goes half of qd T."""
+    size = np.abs(now.qd)
+    left = np.maximum(position - np.sign(now.qd) * now.q, 0.0)
+    return float(np.min(2.0 * left[size > 0.0] / size[size > 0.0], initial=math.inf))
 
 
 class Strength(NamedTuple):
@@ -113,16 +116,29 @@ class Strength(NamedTuple):
             return f"joint {joint + 1} would stop at {stop[joint]:.2f} rad, allowed ±{position[joint]:.4f}"
         return ""
 
-    def left(self, trajectory: ruckig.Trajectory) -> float:
-        """By which factor the accelerations fit: 1 or more where every joint has enough all the way."""
-        least, count = math.inf, max(LOOKS, math.ceil(trajectory.duration / GLANCE))
-        for k in range(count + 1):
-            q, qd, qdd = map(np.array, trajectory.at_time(k / count * trajectory.duration))
-            gravity = self.dynamics.gravity(q)
-            moving = self.dynamics.inverse(q, qd, qdd) + self.rotor * qdd - gravity
-            spare = np.maximum(MOVING_SHARE * self.torque - np.abs(gravity), LEAST_BRAKING * self.torque)
+    def left(self, references: Iterable[Reference]) -> float:
+        """By which factor the accelerations of a motion fit: 1 or more where every joint has enough at all of its references."""
+        least = math.inf
+        for q, qd, qdd in references:
+            spare, moving = self._spare(q), self._moving(q, qd, qdd)
             least = min(least, float(np.min(spare / np.maximum(np.abs(moving), 1e-9))))
         return least
+
+    def needed(self, joints: Followed) -> tuple[Array, Array, Array]:
+        """What a motion along a path needs at a place: torque that there is for it, and its torques, each (n,).
+
+        With speed v and acceleration a along the path, it needs at most a times the second and v² times the third.
+        """
+        q, rate, bend = joints.q, joints.rate, joints.bend
+        return self._spare(q), np.abs(self._moving(q, np.zeros_like(q), rate)), np.abs(self._moving(q, rate, bend))
+
+    def _spare(self, q: Array) -> Array:
+        """Torque (n,) that gravity leaves for a motion [N·m]."""
+        return np.maximum(MOVING_SHARE * self.torque - np.abs(self.dynamics.gravity(q)), LEAST_BRAKING * self.torque)
+
+    def _moving(self, q: Array, qd: Array, qdd: Array) -> Array:
+        """Torque (n,) of a motion, without gravity [N·m]."""
+        return self.dynamics.inverse(q, qd, qdd) + self.rotor * qdd - self.dynamics.gravity(q)
 
 
 class Stop:
@@ -135,15 +151,16 @@ class Stop:
         q: angles now (n,) [rad].
         qd: speeds now (n,) [rad/s].
         length: how long it takes [s], as `stop_time` says.
+        room: how long it may take, as `stop_room` says; the arm may be left ringing for it, not asked for more torque [s].
     """
 
-    def __init__(self, q: Array, qd: Array, length: float = 0.0) -> None:
+    def __init__(self, q: Array, qd: Array, length: float = 0.0, room: float = math.inf) -> None:
         self._q, self._from, self._speed = q.copy(), q.copy(), qd.copy()
         self._zero = np.zeros_like(qd)
         self._time = 0.0
         self.slowing = True
         self.done = not qd.any()
-        self._length = max(SHORTEST_STOP, length)
+        self._length = max(min(SHORTEST_STOP, room), length, TICK)
 
     @property
     def goal(self) -> Array:
@@ -165,6 +182,16 @@ class Stop:
         phase = rate * self._time
         self._q = self._from + self._speed * (0.5 * (self._time + math.sin(phase) / rate))
         return Reference(self._q, self._speed * (0.5 + 0.5 * math.cos(phase)), self._speed * (-0.5 * rate * math.sin(phase)))
+
+
+def turning_points(joints: Followed, ahead: Followed, step: float) -> tuple[Array, Array]:
+    """Where joints turn round between two places of a path, `step` [m] apart: after which way (n,) [m], and at which angle (n,).
+
+    A joint that does not turn round has 0 and its first angle.
+    """
+    before, after = joints.rate, ahead.rate
+    way = np.where(before * after < 0.0, before, 0.0) / np.where(before * after < 0.0, before - after, 1.0) * step
+    return way, joints.q + 0.5 * way * before
 
 
 def check_range(q: Array, position: Array, move: str) -> None:

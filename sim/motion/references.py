@@ -6,33 +6,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.decision import Decision
-from pendant.motion.script_requests import (
-    DirectTorque,
-    ForceMode,
-    GentleStop,
-    ScriptedJoints,
-    ScriptedProcess,
-    ServoJoints,
-    ServoTool,
-    SpeedJoints,
-    SpeedTool,
-)
-from pendant.program.jog_move import JogMove
-from pendant.program.steps import ApplyForce, JointMove, LinearMove, Move, RunScript
+from pendant.motion.script_requests import DirectTorque, ForceMode, GentleStop
+from pendant.program.steps import Move, RunScript
 from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK, Law
 from sim.arm.arm_file import Arm
 from sim.braking.workspace_keeper import WorkspaceKeeper
-from sim.motion.blend import Blended, Joined, Planned, leaves, lengthened
+from sim.motion.blend import Blended, Joined, Planned, leaves
 from sim.motion.compliance import Compliance
 from sim.motion.force_move import ForceTrajectory
 from sim.motion.jog import JogTrajectory, at_manual_speed
-from sim.motion.line import Line
-from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, led_to, shaken, stop_time
+from sim.motion.moves import DELAY, Motion, MoveRefused, Reference, Stop, Strength, led_to, shaken, stop_room, stop_time
 from sim.motion.pace import Pace
-from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.planner import Planner, renews
 from sim.motion.process import ProcessTrajectory
-from sim.motion.streams import JointStream, ServoStream, SpeedStream, ToolStream
+from sim.motion.streams import JointStream
+from sim.paths.tool_point import ToolPoint
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.calibration import Calibration
 from sim.sensing.sensors import LATENCY
@@ -46,8 +35,6 @@ PUSH_DECAY = 0.996  # a tick: a time constant of 0.5 s
 GONE = 0.01  # [N·m]
 HELD = 0.25
 """Share of the largest following error from which on the arm is not at the reference, and a stop begins at the arm."""
-
-ASIDE = 1e-3  # way of a motion over which the tool's speed is measured [s]
 
 
 class References:
@@ -68,12 +55,13 @@ class References:
 
     def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, *, tcp: Array, R_FT: Array) -> None:
         limits = arm.limits
-        self._dynamics, self._tcp, self._R_FT = dynamics, tcp, R_FT
+        self._dynamics, self._tool = dynamics, ToolPoint(dynamics, tcp)
         self._pace = Pace(dynamics, tcp)
         self._limits = (np.array(limits.speed), np.array(limits.acceleration), np.array(limits.position))
         self._rotor, self._torque = np.array(arm.motors.rotor_inertia) * calibration.rotor_inertia, np.array(limits.torque)
         self._strength = Strength(dynamics, self._rotor, self._torque)
         self.keeper = WorkspaceKeeper(dynamics, tcp, R_FT, self._strength.stopping())
+        self._planner = Planner(self._tool, R_FT, limits=self._limits, strength=self._strength, pace=self._pace)
         self._law: Law | None = None
         self._motion: Motion | None = None
         self._move: Move | None = None
@@ -111,6 +99,11 @@ class References:
         self.keeper.take(decision, estimate.q, begins=begins)
         self.refusal = self._strength.broken(self.now, self._limits, estimate.theta_dd) or self.keeper.watch(estimate)
         return move
+
+    @property
+    def motion(self) -> Motion | None:
+        """What the references come from, None before the first."""
+        return self._motion
 
     @property
     def answered(self) -> Reference | None:
@@ -235,7 +228,7 @@ class References:
         if self._compliance is None:
             now = before or motion
             try:
-                self._compliance = Compliance(now, Line(self._dynamics, self._tcp, now.q), self._limits, self._pace)
+                self._compliance = Compliance(now, self._tool, self._limits, self._pace)
             except MoveRefused as refusal:
                 self.refusal = self.refusal or f"force mode: {refusal}"
                 return motion
@@ -249,16 +242,11 @@ class References:
         """The tool comes to the blend at the end of a script's motion."""
         if not (isinstance(move, Joined) and isinstance(motion, Planned | Blended)) or move.blend == 0.0:
             return False
-        return leaves(motion, move.blend, float(np.linalg.norm(self._tool(now.q) - self._tool(motion.goal))))
-
-    def _tool(self, q: Array) -> Array:
-        """Tool centre point (3,) in B [m]."""
-        p, R, _ = self._dynamics.places(q)
-        return p + R @ self._tcp
+        return leaves(motion, move.blend, float(np.linalg.norm(self._tool.pose(now.q)[0] - self._tool.pose(motion.goal)[0])))
 
     def _stop(self, q: Array, qd: Array) -> None:
         """Come to rest from this motion; one that stood already has nothing to settle."""
-        self._motion = Stop(q, qd, stop_time(self._dynamics, q, qd, rotor=self._rotor, torque=self._torque))
+        self._motion = self._slowed(Reference(q, qd, self._standing))
         self._settling = SETTLE_TICKS if float(np.abs(qd).max()) > STANDING else 0
 
     def _settle(self, estimate: Estimate, reference: Reference) -> Stop:
@@ -273,66 +261,26 @@ class References:
         now = self.now
         assert now is not None
         self._settling = 0
-        q = now.q
-        try:
-            if isinstance(move, JointMove):
-                self._motion = JointTrajectory(q, move, self._limits, self._strength)
-            elif isinstance(move, Joined):
-                self._motion = self._after(move, now)
-            elif isinstance(move, ServoJoints | SpeedJoints | SpeedTool | ServoTool):
-                self._motion = self._stream(move, now)
-            elif isinstance(move, LinearMove):
-                self._motion = self._line(q, move)
-            elif isinstance(move, JogMove):
-                self._motion = JogTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
-            elif isinstance(move, ApplyForce):
-                self._motion = ForceTrajectory(q, move, self._dynamics, tcp=self._tcp, position=self._limits[2])
-            elif isinstance(move, GentleStop | RunScript):
-                self._motion = self._slowed(now, move)
-            else:
-                self._motion = Stop(q, self._standing)
-        except MoveRefused as refusal:
-            self.refusal = str(refusal)
-            self._motion = self._slowed(now)
+        if move is None or isinstance(move, GentleStop | RunScript):
+            self._motion = self._slowed(now, move)
+            return
+        goes_on = self._leaving or renews(move, self._motion)
+        before = self._motion if goes_on else self._slowed(now)
+        assert before is not None
+        answer = self._planner.plan(move, now, before, self._move.blend if isinstance(self._move, Joined) else None)
+        if isinstance(answer, str):
+            self.refusal, self._motion = answer, self._slowed(now)
+        else:
+            self._motion = answer
 
     def _slowed(self, now: Reference, move: Move | None = None) -> Stop:
-        """To rest on the way that the arm is on, as hard as it can or as a script says."""
+        """To rest on the way that the arm is on, as hard as it can or as a script says; in any case within the joints' range."""
         length = stop_time(self._dynamics, now.q, now.qd, rotor=self._rotor, torque=self._torque)
+        room = stop_room(now, self._limits[2])
         if isinstance(move, GentleStop):
             speed = np.abs(now.qd).max()
             if move.of == "tool":
-                speed = np.linalg.norm(self._tool(now.q + ASIDE * now.qd) - self._tool(now.q)) / ASIDE
-            length = self.keeper.stop_length(now, max(length, 0.5 * np.pi * float(speed) / move.deceleration))
-        return Stop(now.q, now.qd, length)
-
-    def _line(self, q: Array, move: LinearMove) -> LinearTrajectory | ProcessTrajectory:
-        if isinstance(move, ScriptedProcess):
-            return ProcessTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
-        return LinearTrajectory(q, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=self._limits)
-
-    def _after(self, move: Joined, now: Reference) -> Planned | Blended:
-        """A script's motion from where the one before ends, or from where the arm comes to rest on its way."""
-        before = self._motion if self._leaving else self._slowed(now)
-        assert isinstance(before, Planned | Blended | Stop)
-        longer = lengthened(before, move, self._move.blend) if isinstance(self._move, Joined) else None
-        if longer is not None:
-            return longer
-        moving = not before.done and float(np.abs(now.qd).max()) > STANDING
-        begin = before.goal if moving else now.q
-        planned = (
-            JointTrajectory(begin, move, self._limits, self._strength)
-            if isinstance(move, ScriptedJoints)
-            else self._line(begin, move)
-        )
-        return Blended(before, planned, begin, self._limits[0]) if moving else planned
-
-    def _stream(self, move: ServoJoints | SpeedJoints | SpeedTool | ServoTool, now: Reference) -> JointStream:
-        """The same stream goes on with another target; any other begins at the reference."""
-        before, limits, pace = self._motion, self._limits, self._pace
-        if isinstance(move, ServoJoints):
-            return before.renew(move) if isinstance(before, ServoStream) else ServoStream(now, move, limits, pace)
-        if isinstance(move, SpeedJoints):
-            return before.renew(move) if isinstance(before, SpeedStream) else SpeedStream(now, move, limits, pace)
-        if isinstance(before, ToolStream):
-            return before.renew(move)
-        return ToolStream(now, move, self._dynamics, tcp=self._tcp, R_FT=self._R_FT, limits=limits, pace=pace)
+                speed = np.linalg.norm(self._tool.twist(now.q, now.qd)[0])
+            length = max(length, min(0.5 * np.pi * float(speed) / move.deceleration, room))
+            length = self.keeper.stop_length(now, length)
+        return Stop(now.q, now.qd, length, room)

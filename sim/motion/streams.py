@@ -9,23 +9,18 @@ from numpy.typing import NDArray
 from pendant.motion.script_requests import ServoJoints, ServoTool, SpeedJoints, SpeedTool
 from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK
-from sim.arm.frames import matrix_from_quaternion
+from sim.arm.frames import cross, matrix_from_quaternion, rotation_vector
 from sim.braking.workspace_keeper import WorkspaceKeeper
-from sim.motion.curves import LEVER
-from sim.motion.line import Line, rotation_vector
 from sim.motion.moves import DELAY, MoveRefused, Reference, check_range
 from sim.motion.pace import RAMP, SHARE, Pace
-from sim.rigid_body.dynamics import Dynamics
+from sim.paths.curves import LEVER
+from sim.paths.joint_speeds import BRAKING_SHARE, SLOWEST, shares, tick_later
+from sim.paths.tool_point import ToolPoint
 
 Array = NDArray[np.float64]
 
-LOOK_TICKS = 5  # between looks for a singularity
 GRACE = 4 * TICK
 """A command's time may be over for so long: a cycle of the older controllers, which a client at 125 Hz may be late by [s]."""
-BRAKING_SHARE = 0.5
-"""Of a joint's acceleration, with which a stream out of date comes to rest, and with which it keeps off the end of the range."""
-NEAR = 1e-4
-"""So near to its end a range ends a stream that goes there [rad]."""
 
 
 class JointStream:
@@ -43,8 +38,7 @@ class JointStream:
 
     def __init__(self, now: Reference, limits: tuple[Array, Array, Array], pace: Pace) -> None:
         self._q, self._qd = now.q.copy(), now.qd.copy()
-        self._speed, self._acceleration, self._position = limits
-        self._pace = pace
+        self._limits, self._pace = limits, pace
         self._left = math.inf  # time that the command still holds [s]
         self._share = 1.0  # of its own speed
         self.done, self.problem = False, ""
@@ -59,11 +53,17 @@ class JointStream:
         """
         self._left -= TICK
         self._share += min(max(share - self._share, -TICK / RAMP), TICK / RAMP)
-        change = (self._wanted() if self._left > -GRACE else self._braked()) - self._qd
-        most = float((np.abs(change) / self._acceleration).max()) / TICK
-        qd = self._qd + (change if most <= 1.0 else change / most)
-        allowed = self._allowed(qd, limits)
-        qd = qd * (allowed if keeper is None else min(allowed, keeper.share(self._q, qd)))
+        wanted = self._wanted() if self._left > -GRACE and not self.problem else self._braked()
+        room, fast = shares(self._q, wanted, self._limits)
+        allowed = min(room, self._share * fast, 1.0)
+        if limits is not None and allowed > 0.0:
+            allowed = min(allowed, SHARE / max(self._pace.over(self._q, wanted, limits), 1e-9))
+        qd = allowed * wanted
+        tick_later(self._q, self._qd, qd, self._limits)
+        if keeper is not None:
+            qd = qd * keeper.share(self._q, qd)
+        if room < 1.0 and self._ended(wanted):
+            qd = np.zeros_like(qd)
         qdd = (qd - self._qd) / TICK
         self._q, self._qd = self._q + TICK * qd, qd
         return Reference(self._q, qd, qdd)
@@ -75,25 +75,20 @@ class JointStream:
     def _braked(self) -> Array:
         """Joint speeds (n,) of a stream whose command is out of date [rad/s]: slower along its way."""
         fastest = float(np.abs(self._qd).max())
-        most = BRAKING_SHARE * float(self._acceleration.min()) * TICK
+        most = BRAKING_SHARE * float(self._limits[1].min()) * TICK
         return self._qd * (max(fastest - most, 0.0) / fastest) if fastest > 0.0 else self._qd
 
-    def _allowed(self, qd: Array, limits: SpeedLimits | None) -> float:
-        """The share of these joint speeds that the range, REDUCED and the override allow, 1 at most."""
-        if not qd.any():
-            return 1.0
-        left = np.maximum(self._position - np.sign(qd) * self._q, 0.0)
-        stopping = np.sqrt(2.0 * BRAKING_SHARE * self._acceleration * left)
-        most = np.minimum(self._share * self._speed, stopping)
-        fast = np.abs(qd) > 1e-9
-        if bool((left[fast] < NEAR).any()):
-            joint = int(np.argmin(np.where(fast, left, math.inf)))
-            self.problem = f"joint {joint + 1} is at the end of its range, {self._q[joint]:.3f} rad"
-            return 0.0
-        allowed = float(np.min(most[fast] / np.abs(qd[fast]), initial=1.0))
-        if limits is not None:
-            allowed = min(allowed, SHARE / max(self._pace.over(self._q, qd, limits), 1e-9))
-        return allowed
+    def _ended(self, wanted: Array) -> bool:
+        """Whether a joint that is wanted to go on has come to the end of its range; all can stand a tick later."""
+        if (np.abs(self._qd) > self._limits[1] * TICK).any():
+            return False
+        left = self._limits[2] - np.sign(wanted) * self._q
+        at_end = (np.abs(wanted) > SLOWEST) & (left <= 2.0 * TICK * np.abs(self._qd))
+        if not at_end.any():
+            return False
+        joint = int(np.argmax(at_end))
+        self.problem = f"joint {joint + 1} is at the end of its range, {self._q[joint]:.3f} rad"
+        return True
 
 
 class ServoStream(JointStream):
@@ -118,9 +113,12 @@ class ServoStream(JointStream):
             MoveRefused: it is out of range.
         """
         self._target = np.array(move.q)
-        check_range(self._target, self._position, "servoj")
+        check_range(self._target, self._limits[2], "servoj")
         self._gain, self._ahead, self._left = move.gain, move.lookahead - DELAY * TICK, move.time
         return self
+
+    def _ended(self, wanted: Array) -> bool:
+        return False  # its target is in range: a joint that would swing over stops there, and comes back
 
     def _wanted(self) -> Array:
         # Implicit in the speed, so that the largest gain and look-ahead are stable at this tick.
@@ -155,7 +153,7 @@ class LineStream(JointStream):
 
     Args:
         now: where the reference is.
-        line: of the tool, from there.
+        tool: kinematics of the tool centre point.
         limits: the joints' speed, acceleration and position (±), each (n,).
         pace: knows the speeds of tool and elbow.
 
@@ -163,16 +161,15 @@ class LineStream(JointStream):
         MoveRefused: the tool cannot go everywhere from here.
     """
 
-    def __init__(self, now: Reference, line: Line, limits: tuple[Array, Array, Array], pace: Pace) -> None:
+    def __init__(self, now: Reference, tool: ToolPoint, limits: tuple[Array, Array, Array], pace: Pace) -> None:
         super().__init__(now, limits, pace)
-        self._line, self._looks = line, 0
-        if line.singular(self._q):
+        self._tool = tool
+        if tool.singular(self._q):
             raise MoveRefused("singular here; use a joint motion")
 
     def _look(self) -> None:
-        """Now and then, whether it still can."""
-        self._looks += 1
-        if self._looks % LOOK_TICKS == 0 and self._line.singular(self._q):
+        """Whether it still can."""
+        if self._tool.singular(self._q):
             self.problem = "singular ahead; use a joint motion"
 
 
@@ -181,8 +178,7 @@ class ToolStream(LineStream):
 
     Args:
         now: where the reference is.
-        dynamics: the rigid model.
-        tcp: tool centre point in F (3,) [m].
+        tool: kinematics of the tool centre point.
         R_FT: its orientation in F (3, 3).
         limits: the joints' speed, acceleration and position (±), each (n,).
         pace: knows the speeds of tool and elbow.
@@ -195,16 +191,16 @@ class ToolStream(LineStream):
         self,
         now: Reference,
         move: SpeedTool | ServoTool,
-        dynamics: Dynamics,
+        tool: ToolPoint,
         *,
-        tcp: Array,
         R_FT: Array,
         limits: tuple[Array, Array, Array],
         pace: Pace,
     ) -> None:
-        super().__init__(now, Line(dynamics, tcp, now.q), limits, pace)
+        super().__init__(now, tool, limits, pace)
         self._R_FT = R_FT
-        self._v, self._w = self._line.twist(self._q, self._qd)
+        self._v, self._w = self._tool.twist(self._q, self._qd)
+        self._goal = self._tool.pose(self._q)
         self.renew(move)
 
     def renew(self, move: SpeedTool | ServoTool) -> Self:
@@ -215,6 +211,7 @@ class ToolStream(LineStream):
             self._left = move.time if move.time > 0.0 else math.inf
         else:
             self._change = (move.acceleration * TICK, move.acceleration * TICK / LEVER)
+            self._goal = np.array(move.position), matrix_from_quaternion(move.quaternion) @ self._R_FT.T
         return self
 
     def _wanted(self) -> Array:
@@ -224,28 +221,28 @@ class ToolStream(LineStream):
         self._w, upright = _towards(self._w, self._share * w, self._change[1])
         self.done = self.done or (near and upright)
         self._look()
-        return self._line.speeds(self._q, self._v, self._w)
+        return self._tool.speeds(self._q, self._v, self._w)
 
     def _course(self) -> tuple[Array, Array]:
         """Speed of the tool centre point and about it, that are wanted, in B (3,), (3,)."""
         move = self._move
         if isinstance(move, SpeedTool):
             return np.array(move.speed), np.array(move.turning)
-        p, R = self._line.pose(self._q)
-        way = np.array(move.position) - p
-        turn = R @ rotation_vector(R.T @ matrix_from_quaternion(move.quaternion) @ self._R_FT.T)
-        left = max(float(np.linalg.norm(way)), LEVER * float(np.linalg.norm(turn)))
+        p, R = self._tool.pose(self._q)
+        way, turn = self._goal[0] - p, R @ rotation_vector(R.T @ self._goal[1])
+        far = float(np.linalg.norm(way))
+        left = max(far, LEVER * float(np.linalg.norm(turn)))
         if left < 1e-9:
             return way, turn
         # The tool comes there on a circle that its way touches: the smaller that is, the slower it goes.
-        sine = float(np.linalg.norm(np.cross(self._v, way))) / max(float(np.linalg.norm(self._v) * np.linalg.norm(way)), 1e-12)
+        sine = float(np.linalg.norm(cross(self._v, way))) / max(float(np.linalg.norm(self._v)) * far, 1e-12)
         round_it = math.sqrt(0.5 * move.acceleration * left / max(sine, 1e-9))
         pace = min(move.speed, round_it, math.sqrt(2.0 * BRAKING_SHARE * move.acceleration * left), left / (2.0 * TICK)) / left
         return pace * way, pace * turn
 
     def _braked(self) -> Array:
         qd = super()._braked()
-        self._v, self._w = self._line.twist(self._q, qd)
+        self._v, self._w = self._tool.twist(self._q, qd)
         return qd
 
 

@@ -122,7 +122,7 @@ def _norm(a):
 
 
 @kernel
-def _place(model, i, behind, pose) -> None:
+def place(model, i, behind, pose) -> None:
     """Pose (p, R) of joint i, of the flange after the last, placed in the pose `behind` of the joint before it."""
     p_at, R_at = model.p_at[i], model.R_at[i]
     behind_p, behind_R = behind
@@ -142,13 +142,13 @@ def _run(rigid, q, motion, tcp):
     p, R = np.zeros((n + 1, 3)), own.turns
     behind_p, behind_R = np.zeros(3), np.eye(3)
     for i in range(n):
-        _place(own, i, (behind_p, behind_R), (p[i], R[i]))
+        place(own, i, (behind_p, behind_R), (p[i], R[i]))
         c, s = np.cos(q[i]), np.sin(q[i])
         for k in range(3):
             x, y = R[i, k, 0], R[i, k, 1]
             R[i, k, 0], R[i, k, 1] = c * x + s * y, c * y - s * x
         behind_p, behind_R = p[i], R[i]
-    _place(own, n, (behind_p, behind_R), (p_F, R_F))
+    place(own, n, (behind_p, behind_R), (p_F, R_F))
     p[n] = p_F
     origins = own.origins
     for i in range(n):

@@ -11,8 +11,7 @@ from pendant.tick.estimate import Estimate
 from pendant.tick.modes import Law
 from pendant.tooling.tool_in_use import Fitting
 from sim.arm.chain import load_body, tool_body
-from sim.arm.frames import rotation_from_rpy
-from sim.motion.line import rotation_vector
+from sim.arm.frames import rotation_from_rpy, rotation_vector
 from sim.simulation import Simulation
 
 Array = NDArray[np.float64]

@@ -25,8 +25,7 @@ from app.urscript.machine.signature import (
     within,
 )
 from app.urscript.machine.values import PoseValue, Value
-from sim.arm.frames import matrix_from_quaternion
-from sim.motion.line import rotation_vector
+from sim.arm.frames import matrix_from_quaternion, rotation_vector
 from sim.rigid_body.dynamics import Dynamics
 
 Array = NDArray[np.float64]

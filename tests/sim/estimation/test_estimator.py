@@ -17,8 +17,8 @@ from sim.estimation.joint_tracking import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, tra
 from sim.estimation.transmission_torque import DEFLECTION
 from sim.exchange.desk import Wishes
 from sim.flange.flange_forces import FlangeForces
-from sim.motion.line import Line
 from sim.motion.moves import Reference
+from sim.paths.tool_point import ToolPoint
 from sim.plant.changes import AttachPayload, SensorFault
 from sim.plant.touch import Pull
 from sim.rigid_body.dynamics import Dynamics
@@ -478,8 +478,9 @@ def test_the_following_error_is_that_of_the_joint_with_the_largest_share_and_of_
     assert found.following.angle == pytest.approx(abs(error))
     assert found.following.limit == LIMIT[joint]
     assert found.following.share == pytest.approx(abs(error) / LIMIT[joint])
-    line = Line(device._dynamics, np.array(PROBE.tcp), np.array(BENT))
-    assert found.following.tool == pytest.approx(float(np.linalg.norm(line.pose(wanted)[0] - line.start)), rel=0.02)
+    tool = ToolPoint(device._dynamics, np.array(PROBE.tcp))
+    apart = tool.pose(wanted)[0] - tool.pose(np.array(BENT))[0]
+    assert found.following.tool == pytest.approx(float(np.linalg.norm(apart)), rel=0.02)
     assert device.update(sample(np.array(BENT), np.array(BENT)), 0, "").following == ON_PATH, "no reference, no error"
 
 

@@ -7,8 +7,10 @@ from pendant.motion.script_requests import ScriptedArc, ScriptedJoints, Scripted
 from sim.arm.frames import quaternion_from_matrix
 from sim.motion.blend import Blended
 from sim.motion.moves import MoveRefused, Reference
-from sim.motion.planned import JointTrajectory, LinearTrajectory
-from tests.sim.motion.test_moves import HOME, LIMITS, SPEED, TCP, TICK, check_consistency, model, play, tool
+from sim.motion.planned import JointTrajectory
+from sim.motion.tool_trajectory import ToolTrajectory, planned_line
+from sim.paths.tool_point import ToolPoint
+from tests.sim.motion.test_moves import HOME, LIMITS, TCP, TICK, check_consistency, model, play, tool
 
 NEXT = np.add(HOME, [0.4, 0.0, 0.0, 0.0, 0.0, 0.0])
 LAST = np.add(HOME, [0.4, 0.3, 0.0, 0.0, 0.0, 0.0])
@@ -18,7 +20,7 @@ def joints(q: np.ndarray, goal: np.ndarray, time: float = 0.0, speed: float = 1.
     return JointTrajectory(q, ScriptedJoints(q=tuple(goal.tolist()), acceleration=1.4, speed=speed, time=time), LIMITS)
 
 
-def circular(via: list[float], end: list[float], *, fixed: bool = False, speed: float = 0.1) -> LinearTrajectory:
+def circular(via: list[float], end: list[float], *, fixed: bool = False, speed: float = 0.1) -> ToolTrajectory:
     """Along the circle through where the tool is, and points so far from there."""
     p, R = tool(HOME)
     move = ScriptedArc(
@@ -29,7 +31,7 @@ def circular(via: list[float], end: list[float], *, fixed: bool = False, speed: 
         speed=speed,
         acceleration=0.5,
     )
-    return LinearTrajectory(HOME, move, model(), tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
+    return planned_line(HOME, move, ToolPoint(model(), TCP), R_FT=np.eye(3), limits=LIMITS)
 
 
 def begun(motion: JointTrajectory) -> list[Reference]:
@@ -43,7 +45,7 @@ def begun(motion: JointTrajectory) -> list[Reference]:
 def test_a_blend_does_not_stop_and_ends_where_the_second_motion_does() -> None:
     first = joints(HOME, NEXT)
     rows = begun(first)
-    both = Blended(first, joints(NEXT, LAST), NEXT, SPEED)
+    both = Blended(first, joints(NEXT, LAST), NEXT, LIMITS)
     assert not both.done
     rows += play(both)  # type: ignore[arg-type]
     check_consistency(rows, HOME)
@@ -60,7 +62,7 @@ def test_where_a_joint_would_get_too_fast_the_second_waits() -> None:
     speed = np.full(6, 0.5)
     first = joints(HOME, NEXT, speed=0.5)
     rows = begun(first)
-    both = Blended(first, joints(NEXT, np.add(NEXT, [0.4, 0.0, 0.0, 0.0, 0.0, 0.0]), speed=0.5), NEXT, 0.4 * speed)
+    both = Blended(first, joints(NEXT, np.add(NEXT, [0.4, 0.0, 0.0, 0.0, 0.0, 0.0]), speed=0.5), NEXT, (0.4 * speed, *LIMITS[1:]))
     assert both.remaining > first.remaining
     rows += play(both)  # type: ignore[arg-type]
     assert max(float(np.abs(row.qd).max()) for row in rows) <= 0.5 * (1.0 + 1e-6)
@@ -70,7 +72,7 @@ def test_where_a_joint_would_get_too_fast_the_second_waits() -> None:
 def test_it_slows_down_when_its_second_motion_does() -> None:
     first = joints(HOME, NEXT)
     begun(first)
-    both = Blended(first, joints(NEXT, LAST), NEXT, SPEED)
+    both = Blended(first, joints(NEXT, LAST), NEXT, LIMITS)
     seen = []
     while not both.done:
         both.step()
@@ -87,7 +89,7 @@ def test_a_motion_takes_the_time_it_is_given(time: float) -> None:
     )
     for motion in (
         joints(HOME, NEXT, time),
-        LinearTrajectory(HOME, line, model(), tcp=TCP, R_FT=np.eye(3), limits=LIMITS),
+        planned_line(HOME, line, ToolPoint(model(), TCP), R_FT=np.eye(3), limits=LIMITS),
     ):
         assert TICK * len(play(motion)) == pytest.approx(time, abs=0.02)
 
@@ -136,3 +138,30 @@ def test_a_circle_of_more_than_half_a_turn_goes_the_long_way() -> None:
 def test_three_points_that_make_no_circle_are_refused(via: list[float], end: list[float], said: str) -> None:
     with pytest.raises(MoveRefused, match=said):
         circular(via, end)
+
+
+def test_where_a_joint_would_be_accelerated_more_than_it_may_the_second_waits() -> None:
+    """There and back as hard as one joint can: both accelerations have the same sign."""
+    for hard, waits in ((0.4, False), (0.9, True)):
+        most = hard * float(LIMITS[1][0])
+        there, back = (ScriptedJoints(q=tuple(q.tolist()), acceleration=most, speed=1.0) for q in (NEXT, HOME))
+        first = JointTrajectory(HOME, there, LIMITS)
+        rows = begun(first)
+        both = Blended(first, JointTrajectory(NEXT, back, LIMITS), NEXT, LIMITS)
+        before = len(rows)
+        while not both.first.done:
+            rows.append(both.step())
+        assert bool(abs(rows[-1].qd[0]) < 0.05) is waits, "it is at rest where the second waited"
+        rows += play(both)  # type: ignore[arg-type]
+        jump = np.abs(np.diff([row.qd for row in rows[before - 1 :]], axis=0)) / TICK
+        assert (jump <= LIMITS[1] * 1.01).all()
+
+
+def test_where_a_joint_would_leave_its_range_the_second_waits() -> None:
+    end = np.add(HOME, [0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
+    limits = (LIMITS[0], LIMITS[1], np.add(np.abs(end), [1e-6, 7.0, 7.0, 7.0, 7.0, 7.0]))
+    first, second = joints(end, HOME, speed=0.3), joints(HOME, end, speed=3.0)
+    rows = begun(first)
+    both = Blended(first, second, HOME, limits)
+    rows += play(both)  # type: ignore[arg-type]
+    assert max(float(row.q[0]) for row in rows) <= end[0] + 1e-6

@@ -12,6 +12,8 @@ from sim.arm.frames import quaternion_from_matrix
 from sim.exchange.desk import Wishes
 from sim.motion.jog import JOINT_SHARE, MANUAL, JogTrajectory, at_manual_speed
 from sim.motion.moves import MoveRefused
+from sim.motion.pace import Pace
+from sim.paths.tool_point import ToolPoint
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench
 from tests.sim.laws import dynamics
@@ -24,7 +26,7 @@ LIMITS = (np.array(UR5E.limits.speed), np.array(UR5E.limits.acceleration), np.ar
 
 def jog(frame: str, axis: int, sign: int, length: float = 0.0, q: np.ndarray = HOME) -> JogTrajectory:
     move = JogMove(id=-1, frame=frame, axis=axis, sign=sign, length=length)  # type: ignore[arg-type]
-    return JogTrajectory(q, move, MODEL, tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
+    return JogTrajectory(q, move, ToolPoint(MODEL, TCP), R_FT=np.eye(3), limits=LIMITS, pace=Pace(MODEL, TCP))
 
 
 def tool(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -15,9 +15,12 @@ from sim.motion.moves import (
     Reference,
     Stop,
     Strength,
+    stop_room,
     stop_time,
 )
-from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.planned import JERK_TIME, JointTrajectory
+from sim.motion.tool_trajectory import ToolTrajectory, planned_line
+from sim.paths.tool_point import ToolPoint
 from sim.rigid_body.dynamics import Dynamics
 from tests.sim.arms import UR5E
 
@@ -34,7 +37,7 @@ LIMITS = (SPEED, ACCELERATION, POSITION)
 TCP = np.array([0.01, -0.02, 0.15])
 
 
-def play(motion: JointTrajectory | LinearTrajectory | Stop, ticks: int = 20000) -> list[Reference]:
+def play(motion: JointTrajectory | ToolTrajectory | Stop, ticks: int = 20000) -> list[Reference]:
     """All references until the motion is done, and three more."""
     rows = []
     for _ in range(ticks):
@@ -127,6 +130,18 @@ def test_a_stop_does_not_hold_on_to_the_arrays_it_was_given() -> None:
     assert (motion.step().q == twin.step().q).all()
 
 
+def test_a_stop_before_the_end_of_a_range_is_short_enough_to_end_within_it() -> None:
+    near = HOME.copy()
+    near[0] = POSITION[0] - 0.01
+    now = Reference(near, np.array([0.5, -0.1, 0.0, 0.0, 0.0, 0.0]), np.zeros(6))
+    room = stop_room(now, POSITION)
+    assert room == pytest.approx(2.0 * 0.01 / 0.5)
+    rows = play(Stop(now.q, now.qd, 0.0, room))
+    assert rows[-1].q[0] == pytest.approx(POSITION[0])
+    assert stop_room(Reference(near, np.zeros(6), np.zeros(6)), POSITION) == np.inf
+    assert len(play(Stop(now.q, now.qd, 0.2, room))) > 100, "no more torque than there is"
+
+
 # Joint moves
 
 
@@ -182,18 +197,18 @@ def tool(q: Array) -> tuple[Array, Array]:
 
 def line(
     way: list[float], turn: Array | None = None, q: Array = HOME, limits: Limits = LIMITS, **speeds: float
-) -> LinearTrajectory:
+) -> ToolTrajectory:
     p, R = tool(q)
     goal = R if turn is None else R @ turn
     move = LinearMove(position=tuple(p + way), quaternion=tuple(quaternion_from_matrix(goal)), **speeds)
-    return LinearTrajectory(q, move, model(), tcp=TCP, R_FT=np.eye(3), limits=limits)
+    return planned_line(q, move, ToolPoint(model(), TCP), R_FT=np.eye(3), limits=limits)
 
 
 def test_a_line_ends_with_the_tools_own_frame_where_it_was_told() -> None:
     p, R = tool(HOME)
     R_FT, goal = rotation_from_rpy([0.0, 0.4, 1.2]), R @ rotation_from_rpy([0.2, 0.0, 0.3])
     move = LinearMove(position=tuple(np.add(p, [0.0, 0.1, 0.05])), quaternion=tuple(quaternion_from_matrix(goal @ R_FT)))
-    rows = play(LinearTrajectory(HOME, move, model(), tcp=TCP, R_FT=R_FT, limits=LIMITS))
+    rows = play(planned_line(HOME, move, ToolPoint(model(), TCP), R_FT=R_FT, limits=LIMITS))
     end, flange = tool(rows[-1].q)
     assert np.linalg.norm(end - p - [0.0, 0.1, 0.05]) < 1.5e-4
     assert angle_between(flange @ R_FT, goal @ R_FT) < 1e-3
@@ -305,6 +320,16 @@ def test_a_line_beyond_a_joint_limit_is_refused() -> None:
     assert len(play(line([0.0, 0.0, 0.0], rotation(2, -0.6), q=wound))) > 10, "the other way is open"
 
 
+@pytest.mark.parametrize("acceleration", [0.5, 1.0, 1.2, 2.5])
+def test_a_line_whose_length_lies_on_the_border_of_two_profiles_is_planned(acceleration: float) -> None:
+    """Its length is 2 a t², t the time in which the acceleration is reached: a search for roots fails for most of the starts."""
+    length = 2.0 * acceleration * JERK_TIME**2
+    for k in range(20):
+        q = HOME + 0.01 * k
+        rows = play(line([0.0, 0.0, length], q=q, speed=1.0, acceleration=acceleration))
+        assert np.linalg.norm(tool(rows[-1].q)[0] - tool(q)[0] - [0.0, 0.0, length]) < 1e-4
+
+
 def test_a_move_that_needs_more_torque_than_there_is_is_accelerated_less() -> None:
     stretched = np.array([0.0, -0.1, 0.0, 0.0, 0.0, 0.0])
     move = JointMove(q=tuple((stretched - [0.0, 1.2, 0.0, 0.0, 0.0, 0.0]).tolist()))
@@ -326,3 +351,23 @@ def test_a_move_that_needs_more_torque_than_there_is_is_accelerated_less() -> No
     small = JointMove(q=tuple((light + 0.1).tolist()))
     strong = play(JointTrajectory(light, small, LIMITS, Strength(nothing, rotor, torque)))
     assert len(strong) == len(play(JointTrajectory(light, small, LIMITS)))
+
+
+def test_a_line_on_which_a_joint_turns_round_outside_its_range_is_refused() -> None:
+    """Between two places that are looked at, both in range."""
+    rows = play(line([0.0, 0.2, 0.0]))
+    angles = np.array([row.q for row in rows])
+    turns = [j for j in range(6) if angles[:, j].max() > max(angles[0, j], angles[-1, j]) + 1e-4]
+    assert turns, "some joint goes out and comes back"
+    joint = turns[0]
+    for beyond, refused in ((-1e-5, True), (1e-5, False)):
+        position = POSITION.copy()
+        position[joint] = angles[:, joint].max() + beyond
+        if position[joint] < abs(angles[:, joint]).max() - 2e-5:
+            continue
+        limits = (SPEED, ACCELERATION, position)
+        if refused:
+            with pytest.raises(MoveRefused, match=f"joint {joint + 1} would reach"):
+                line([0.0, 0.2, 0.0], limits=limits)
+        else:
+            line([0.0, 0.2, 0.0], limits=limits)

@@ -9,7 +9,9 @@ from pendant.robot.reduced import SpeedLimits
 from pendant.tick.modes import TICK, Mode, Safety
 from sim.arm.frames import quaternion_from_matrix
 from sim.motion.pace import RAMP, SHARE, Pace
-from sim.motion.planned import JointTrajectory, LinearTrajectory
+from sim.motion.planned import JointTrajectory
+from sim.motion.tool_trajectory import ToolTrajectory, planned_line
+from sim.paths.tool_point import ToolPoint
 from tests.sim.arms import UR5E
 from tests.sim.bench import Bench
 from tests.sim.laws import dynamics
@@ -26,11 +28,11 @@ def joint_move() -> JointTrajectory:
     return JointTrajectory(HOME, FAST, LIMITS)
 
 
-def line() -> LinearTrajectory:
+def line() -> ToolTrajectory:
     p, R, _ = MODEL.update(HOME)
     place = p + R @ TCP + [0.0, 0.25, -0.1]
     move = LinearMove(id=1, position=tuple(place.tolist()), quaternion=tuple(quaternion_from_matrix(R)), speed=1.0)
-    return LinearTrajectory(HOME, move, MODEL, tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
+    return planned_line(HOME, move, ToolPoint(MODEL, TCP), R_FT=np.eye(3), limits=LIMITS)
 
 
 def speeds(before: np.ndarray, after: np.ndarray) -> tuple[float, float, float]:

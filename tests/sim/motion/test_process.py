@@ -7,12 +7,13 @@ import pytest
 
 from pendant.motion.script_requests import ScriptedLine, ScriptedProcess
 from pendant.tick.modes import TICK
-from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
+from sim.arm.frames import quaternion_from_matrix, rotation_by, rotation_from_rpy, rotation_vector
 from sim.motion.blend import Blended, leaves, lengthened
-from sim.motion.line import rotation_by, rotation_vector
 from sim.motion.moves import MoveRefused, Reference, Stop
-from sim.motion.planned import LinearTrajectory
+from sim.motion.planned import JERK_TIME
 from sim.motion.process import ProcessTrajectory
+from sim.motion.tool_trajectory import planned_line
+from sim.paths.tool_point import ToolPoint
 from tests.sim.motion.test_moves import HOME, LIMITS, SPEED, TCP, check_consistency, model, tool
 
 ASIDE, UP, BACK = [0.0, 0.1, 0.0], [0.0, 0.1, 0.1], [0.0, 0.0, 0.1]
@@ -40,7 +41,7 @@ def line(
 
 
 def begun(move: ScriptedProcess) -> ProcessTrajectory:
-    return ProcessTrajectory(HOME, move, model(), tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
+    return ProcessTrajectory(HOME, move, ToolPoint(model(), TCP), R_FT=np.eye(3), limits=LIMITS)
 
 
 def gone(*moves: ScriptedProcess, rate: float = 1.0) -> tuple[ProcessTrajectory, list[Reference]]:
@@ -184,8 +185,8 @@ def test_another_kind_of_motion_begins_when_the_line_slows_down() -> None:
     straight = ScriptedLine(position=line(UP).position, quaternion=line(UP).quaternion, speed=0.1, acceleration=0.5, blend=0.0)
     assert lengthened(first, straight, 0.02) is None
     assert lengthened(Stop(HOME, np.zeros(6)), line(UP), 0.02) is None
-    second = LinearTrajectory(first.goal, straight, model(), tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
-    both = Blended(first, second, first.goal, SPEED)
+    second = planned_line(first.goal, straight, ToolPoint(model(), TCP), R_FT=np.eye(3), limits=LIMITS)
+    both = Blended(first, second, first.goal, LIMITS)
     while not both.done:
         rows.append(both.step())
     check_consistency(rows, HOME)
@@ -194,22 +195,33 @@ def test_another_kind_of_motion_begins_when_the_line_slows_down() -> None:
 
 
 def test_a_line_after_a_motion_of_another_kind_takes_the_next_one_too() -> None:
-    first = LinearTrajectory(
+    first = planned_line(
         HOME,
         ScriptedLine(position=line(ASIDE).position, quaternion=line(ASIDE).quaternion, speed=0.1, acceleration=0.5, blend=0.02),
-        model(),
-        tcp=TCP,
+        ToolPoint(model(), TCP),
         R_FT=np.eye(3),
         limits=LIMITS,
     )
     rows = [first.step()]
     while not first.slowing:
         rows.append(first.step())
-    second = ProcessTrajectory(first.goal, line([0.0, 0.1, 0.2]), model(), tcp=TCP, R_FT=np.eye(3), limits=LIMITS)
-    both = Blended(first, second, first.goal, SPEED)
+    second = ProcessTrajectory(first.goal, line([0.0, 0.1, 0.2]), ToolPoint(model(), TCP), R_FT=np.eye(3), limits=LIMITS)
+    both = Blended(first, second, first.goal, LIMITS)
     while not leaves(both, 0.02, 1.0):
         rows.append(both.step())
     assert lengthened(both, line([0.0, 0.0, 0.2], 0.0), 0.02) is both
     while not both.done:
         rows.append(both.step())
     np.testing.assert_allclose(places(rows)[-1], [0.0, 0.0, 0.2], atol=3e-4)
+
+
+@pytest.mark.parametrize("acceleration", [0.4, 0.5, 1.0, 1.2])
+def test_a_process_line_whose_length_lies_on_the_border_of_two_profiles_is_planned(acceleration: float) -> None:
+    """As for a linear move, and where another line is put at its end."""
+    length = 2.0 * acceleration * JERK_TIME**2
+    for height in np.linspace(0.0, 0.05, 20):
+        up = line([0.0, height, length], speed=1.0, acceleration=acceleration)
+        start = line([0.0, height, 0.0], speed=1.0, acceleration=acceleration)
+        motion, _ = gone(start, up) if height else gone(up)
+        p, _ = tool(motion.goal)
+        assert np.linalg.norm(p - tool(HOME)[0] - [0.0, height, length]) < 1e-4

@@ -12,6 +12,7 @@ from sim.arm.frames import quaternion_from_matrix, rotation_from_rpy
 from sim.motion.moves import DELAY, MoveRefused, Reference
 from sim.motion.pace import Pace
 from sim.motion.streams import GRACE, JointStream, ServoStream, SpeedStream, ToolStream
+from sim.paths.tool_point import ToolPoint
 from tests.sim.motion.test_moves import ACCELERATION, HOME, LIMITS, POSITION, SPEED, TCP, model, tool
 
 MODEL = model()
@@ -24,7 +25,7 @@ def servo(ahead: float = 0.1, gain: float = 300.0, q: np.ndarray = HOME, time: f
 
 
 def tool_stream(move: SpeedTool | ServoTool, now: Reference = REST) -> ToolStream:
-    return ToolStream(now, move, MODEL, tcp=TCP, R_FT=np.eye(3), limits=LIMITS, pace=PACE)
+    return ToolStream(now, move, ToolPoint(MODEL, TCP), R_FT=np.eye(3), limits=LIMITS, pace=PACE)
 
 
 def play(stream: JointStream, ticks: int, limits: SpeedLimits | None = None, share: float = 1.0) -> list[Reference]:
@@ -202,3 +203,50 @@ def test_on_the_way_to_another_pose_the_speed_stays_and_the_way_is_a_circle() ->
     centre = np.add(turning, [0.0, 0.0, radius])
     arc = places[302:330]
     assert np.linalg.norm(arc - centre, axis=1) == pytest.approx(radius, abs=1e-3)
+
+
+def test_as_reduced_begins_the_joints_slow_down_within_their_accelerations() -> None:
+    stream = SpeedStream(REST, SpeedJoints(qd=(2.0, -1.0, 0.0, 0.0, 0.0, 0.0), acceleration=10.0), LIMITS, PACE)
+    before = play(stream, 150)[-1]
+    rows = [before, *(stream.step(1.0, SpeedLimits(0.1, 0.1, 0.2)) for _ in range(300))]
+    change = np.abs(np.diff([row.qd for row in rows], axis=0))
+    assert (change <= ACCELERATION * TICK * (1.0 + 1e-9)).all()
+    assert 0.1 < float(np.abs(rows[-1].qd).max()) <= 0.2
+
+
+def test_a_joint_at_the_end_of_its_range_stops_a_faster_one_without_a_step() -> None:
+    near = HOME.copy()
+    near[0] = POSITION[0] - 0.05
+    move = SpeedJoints(qd=(0.02, 2.5, 0.0, 0.0, 0.0, 0.0), acceleration=10.0)
+    stream = SpeedStream(Reference(near, np.zeros(6), np.zeros(6)), move, LIMITS, PACE)
+    rows = play(stream, 3000)
+    assert stream.problem.startswith("joint 1 is at the end of its range")
+    assert max(float(row.qd[1]) for row in rows) > 1.0
+    assert max(float(row.q[0]) for row in rows) <= POSITION[0]
+    assert not rows[-1].qd.any()
+
+
+def test_what_another_joint_wants_does_not_keep_one_from_its_stop() -> None:
+    """Joint 2 turns round as hard as it can, again and again, while joint 1 comes to the end of its range."""
+    near = HOME.copy()
+    near[0] = POSITION[0] - 0.4
+    stream = SpeedStream(
+        Reference(near, np.zeros(6), np.zeros(6)), SpeedJoints(qd=(1.5, 0.0, 0.0, 0.0, 0.0, 0.0), acceleration=50.0), LIMITS, PACE
+    )
+    rows = []
+    for k in range(400):
+        other = 3.0 if k // 20 % 2 else -3.0
+        stream.renew(SpeedJoints(qd=(1.5, other, 0.0, 0.0, 0.0, 0.0), acceleration=1000.0))
+        rows += play(stream, 5) if k == 0 else [stream.step(1.0, None) for _ in range(5)]
+    assert max(float(row.q[0]) for row in rows) <= POSITION[0]
+    change = np.abs(np.diff([row.qd for row in rows], axis=0))
+    assert (change <= ACCELERATION * TICK * (1.0 + 1e-9)).all()
+
+
+def test_a_servo_target_at_the_very_end_of_a_range_is_reached() -> None:
+    near, target = HOME.copy(), HOME.copy()
+    near[0], target[0] = POSITION[0] - 0.1, POSITION[0]
+    stream = ServoStream(Reference(near, np.zeros(6), np.zeros(6)), servo(q=target, gain=200.0, time=10.0), LIMITS, PACE)
+    rows = play(stream, 2000)
+    assert not stream.problem
+    assert rows[-1].q[0] == pytest.approx(POSITION[0], abs=1e-6)

@@ -1,0 +1,1 @@
+"""Random motions, and what must hold for each of them."""
