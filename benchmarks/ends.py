@@ -136,7 +136,7 @@ def unreadable(folder: Path) -> list[str]:
         try:
             log = read(path)
             if len(log):
-                log.state["q"], log.truth["touched"]
+                assert len(log.state["q"]) == len(log.truth["touched"])
             elif not log.missing and not log.whole:
                 found.append(f"{path.name}: nothing is said of what it lacks")
         except BadInput as error:
