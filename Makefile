@@ -6,6 +6,8 @@
 #   make e2e-full    every browser test at every size of the window; make test has one size of what is the same at all
 #   make bench       every benchmark, quick sizes (20 minutes at most); make bench-full: full sizes; SEED=1000 is their seed base;
 #                    their results are in out/bench, and python -m tools.results makes docs/results of them
+#   make races       page, scripts, network, recorder and laboratory against each other, threads changed every 20 us, for ten minutes;
+#                    make races-full: for an hour
 #   make soak        the page served for an hour to three clients who do whatever they may; make soak-quick: for ten minutes
 #   make mutate      every small change of the pendant's logic that no test notices; 40 minutes on two cores
 #   make claims      every claim with its switch and its mutants, into out/claims; 25 minutes at most on two cores
@@ -33,7 +35,7 @@ BENCHES := $(filter-out __init__ arms common network_clients postures viewer,$(b
 unexport PYTHONDONTWRITEBYTECODE
 BROWSERS := chromium chromium-browser google-chrome google-chrome-stable
 
-.PHONY: run test bench bench-full soak soak-quick mutate claims fuzz clean lint types contracts kernels wheel browser pictures
+.PHONY: run test bench bench-full races races-full soak soak-quick mutate claims fuzz clean lint types contracts kernels wheel browser pictures
 .PHONY: paced computing pushed e2e e2e-full
 
 run: $(VENV)/run.stamp
@@ -142,6 +144,10 @@ bench bench-full: $(VENV)/dev.stamp
 	@failed=; for name in $(BENCHES); do \
 		$(BIN)/python -m benchmarks.$$name --seed $(SEED) $(if $(filter bench-full,$@),--full) || failed="$$failed $$name"; \
 	done; [ -z "$$failed" ] || { echo "missed a bar, or gave no result:$$failed" >&2; exit 1; }
+
+# By itself: nothing may break, whatever happens when.
+races races-full: $(VENV)/dev.stamp
+	$(BIN)/python -m benchmarks.races --seed $(SEED) $(if $(filter races-full,$@),--full)
 
 # By itself, and with the machine to itself: it measures memory and pace.
 soak soak-quick: $(VENV)/dev.stamp

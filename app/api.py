@@ -2,7 +2,8 @@
 
     from app.api import read, run, session, stepped
 
-`read(path)` gives an `app.log.reader.Log`. Errors are `BadInput`, whose text is one line: file, field, value, what is allowed.
+`read(path)` gives an `app.log_reading.reader.Log`. Errors are `BadInput`, whose text is one line: file, field, value, what is
+allowed.
 """
 
 from collections.abc import Iterable
@@ -12,8 +13,8 @@ from typing import Any
 import msgspec
 
 from app.files.checked import BadInput, convert
-from app.log.reader import Log
-from app.log.reader import read as read_log
+from app.log_reading.reader import Log
+from app.log_reading.reader import read as read_log
 from app.runs.jobs import Job, run_all, work
 from app.runs.runner import RunOutcome, simulate
 from app.session.prepare import prepare
@@ -57,13 +58,18 @@ def session(source: str | Path | dict[str, Any] | Session, **fields: Any) -> Ses
     return made
 
 
-def read(path: str | Path) -> Log:
-    """A recording, as numpy arrays by name.
+def read(path: str | Path, begin: float | None = None, end: float | None = None) -> Log:
+    """A recording, as numpy arrays by name; what is in it is read when it is asked for.
+
+    Args:
+        path: of its file; of a recording in parts, of its folder.
+        begin: time from which on [s]; None: from the beginning.
+        end: time before which [s]; None: to the end.
 
     Raises:
-        BadInput: the file cannot be read, is no recording, or is damaged before its last chunk.
+        BadInput: it cannot be read, or is no recording. What is damaged within raises the same when it is asked for.
     """
-    return read_log(Path(path))
+    return read_log(Path(path), begin, end)
 
 
 def run(what: Session, out: str | Path | None = None) -> RunOutcome:

@@ -1,15 +1,14 @@
 """The command line `pendant`. Exit codes: 0 done, 1 an expectation or a check failed, 2 bad input, said in one line."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
-import msgspec
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.command_exit import run_command_line
 from app.command_options import (
     PORT,
     AnyFile,
@@ -17,31 +16,27 @@ from app.command_options import (
     Host,
     Keep,
     Offset,
-    Out,
     Port,
     Programs,
+    Record,
+    RecordRates,
+    RecordSplit,
     Robot,
-    Seed,
-    SessionNames,
-    Set,
+    allowed_files,
     announce,
     announce_robot,
     as_kept,
     example,
-    setting,
+    set_up,
 )
+from app.ending import ending
 from app.export_command import EXAMPLES, export_
 from app.file_commands import CHECK_EXAMPLES, SCHEMA_EXAMPLES, check_, schema_
-from app.files.checked import ABSENT, BadInput
 from app.files.library import load_arm, robots
-from app.session.prepare import prepare
-from app.session.session_file import FIRST_START, Session, Setup, find_all, opened
-from app.session.timeline_checks import Prepared
+from app.run_command import RUN_EXAMPLES, run_
+from app.session.session_file import FIRST_START, Setup
 from app.sweep_command import SWEEP_EXAMPLES, sweep_
 from sim.arm.arm_file import Arm
-
-# Usage errors, whichever click typer was built on: the base of the one that typer exports.
-UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 app = typer.Typer(
     name="pendant",
@@ -59,6 +54,7 @@ app = typer.Typer(
         "pendant serve --config cell.yaml",
         "pendant serve --host 0.0.0.0",
         "pendant serve --record logs",
+        "pendant serve --record logs --record-split 60 --record-rates state=50,truth=10,pictures=10",
         "pendant serve --interfaces",
         "pendant serve --fresh",
     )
@@ -70,10 +66,9 @@ def serve(
     host: Host = "127.0.0.1",
     port: Port = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
-    record: Annotated[
-        Path | None,
-        typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
-    ] = None,
+    record: Record = None,
+    record_rates: RecordRates = None,
+    record_split: RecordSplit = None,
     interfaces: Annotated[
         bool,
         typer.Option(
@@ -90,13 +85,15 @@ def serve(
 
     Set-up, settings and what was taught are kept for the next start with the same arm, unless --config says what to begin with.
     """
+    from app.log.recording_plan import recording_plan
     from app.serving import Network, serve_until_interrupted
 
-    prepared = _set_up(robot, config, any_file, "serve", shipped=FIRST_START)
+    plan = recording_plan(record_rates, record_split)
+    prepared = set_up(robot, config, any_file, "serve", shipped=FIRST_START)
     keeper, lesson = None, None
     if not fresh and (config is None or keep is not None):
         prepared, keeper, lesson = as_kept(prepared, keep)
-    network = Network(host, port_offset, programs) if interfaces else None
+    network = Network(host, port_offset, programs, allowed_files(config, any_file)) if interfaces else None
     with serve_until_interrupted(
         prepared,
         host=host,
@@ -104,6 +101,7 @@ def serve(
         usual=PORT,
         open_browser=open_browser,
         record=record,
+        plan=plan,
         network=network,
         keeper=keeper,
         lesson=lesson,
@@ -123,70 +121,24 @@ def robot_(
     host: Host = "127.0.0.1",
     port_offset: Offset = 0,
     programs: Programs = None,
-    record: Annotated[Path | None, typer.Option(help="Record from the start, into this folder.", show_default=False)] = None,
+    record: Record = None,
+    record_rates: RecordRates = None,
+    record_split: RecordSplit = None,
     any_file: AnyFile = False,
 ) -> None:
     """Serve a robot on the network, without a page: RTDE, dashboard, client interfaces, faults on command."""
-    from app.robot_serving import Network, robot_until_interrupted, until_stopped
+    from app.log.recording_plan import recording_plan
+    from app.robot_serving import Network, get_ready, robot_until_interrupted
 
-    prepared = _set_up(robot, config, any_file, "robot", shipped=Setup())
-    with robot_until_interrupted(prepared, Network(host, port_offset, programs), record, until_stopped()) as interfaces:
+    plan = recording_plan(record_rates, record_split)
+    prepared = set_up(robot, config, any_file, "robot", shipped=Setup())
+    get_ready()
+    network = Network(host, port_offset, programs, allowed_files(config, any_file))
+    with robot_until_interrupted(prepared, network, record, plan) as interfaces:
         announce_robot(prepared.arm, interfaces)
 
 
-@app.command(
-    epilog=example(
-        "pendant run free-drive",
-        "pendant run my.yaml --out results --seed 7 --set free_drive.period=5",
-        "pendant run sessions/ more.yaml --junit results/junit.xml",
-        "pendant run hold --realtime",
-    )
-)
-def run(
-    sessions: SessionNames,
-    *,
-    out: Out = Path("out"),
-    seed: Seed = None,
-    realtime: Annotated[bool, typer.Option("--realtime", help="Keep the pace of the clock.")] = False,
-    set_: Set = None,
-    junit: Annotated[Path | None, typer.Option(help="Write the expectations as JUnit XML.", show_default=False)] = None,
-    any_file: AnyFile = False,
-) -> None:
-    """Run sessions without a window, as fast as they go; several in parallel. Exit code 1 when an expectation is not met."""
-    from app.runs.jobs import Job, run_all, work
-    from app.runs.junit import write as write_junit
-    from app.runs.progress import counting, progress, show, show_all
-
-    changes = dict(setting(text) for text in set_ or [])
-    jobs: list[Job] = []
-    paths = [path for name in sessions for path in find_all(name)]
-    for path in paths:
-        content = opened(path, Session, any_file)
-        content = msgspec.structs.replace(
-            content, seed=content.seed if seed is None else seed, settings={**content.settings, **changes}
-        )
-        prepare(content, path.name)
-        jobs.append(Job(path.name, content, out if len(paths) == 1 else out / path.stem, realtime))
-    if len({job.out for job in jobs}) < len(jobs):
-        raise BadInput("run", "SESSION", ABSENT, "two files of the same name; their results would overwrite each other")
-    if len(jobs) == 1:
-        with progress(jobs[0].session) as advance:
-            outcomes = [work(jobs[0], advance)]
-        show(jobs[0].session, outcomes[0], out)
-    else:
-        with counting("sessions") as told:
-            found = {}
-            for place, outcome in run_all(jobs):
-                found[place] = outcome
-                told(len(found), len(jobs))
-        outcomes = [found[place] for place in range(len(jobs))]
-        show_all([path.stem for path in paths], outcomes, out)
-    if junit is not None:
-        write_junit(junit, {Path(job.name).stem: outcome for job, outcome in zip(jobs, outcomes, strict=True)})
-    if not all(outcome.passed for outcome in outcomes):
-        raise typer.Exit(1)
-
-
+app.command("run", epilog=RUN_EXAMPLES)(run_)
 app.command("sweep", epilog=SWEEP_EXAMPLES)(sweep_)
 app.command("schema", epilog=SCHEMA_EXAMPLES)(schema_)
 app.command("check", epilog=CHECK_EXAMPLES)(check_)
@@ -194,7 +146,10 @@ app.command("check", epilog=CHECK_EXAMPLES)(check_)
 
 @app.command(epilog=example("pendant replay out/log.mcap --open"))
 def replay(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="A log.mcap; one without its end is repaired.")],
+    log: Annotated[
+        Path,
+        typer.Argument(metavar="LOG", help="A recording, or the folder of its parts; a file without its end is repaired."),
+    ],
     host: Host = "127.0.0.1",
     port: Port = None,
     open_browser: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
@@ -219,7 +174,7 @@ def claims(
     from app.runs.coverage import cover, totals, with_trials, write
     from app.runs.progress import counting
 
-    with counting("claims") as told:
+    with ending(interrupts=True), counting("claims") as told:
         rows = cover(out, told)
         if mutants:
             rows = with_trials(rows, run_mutants(declared(), told))
@@ -252,29 +207,6 @@ def _source(arm: Arm) -> str:
     return " ".join(arm.masses.source.split()).partition(";")[0]
 
 
-def _set_up(robot: str | None, config: Path | None, any_file: bool, command: str, *, shipped: Setup) -> Prepared:
-    """What the options of a command ask for; `shipped` where no file says it."""
-    setup = shipped if config is None else opened(config, Setup, any_file)
-    if robot is not None:
-        setup = msgspec.structs.replace(setup, robot=robot)
-    return prepare(setup, command if config is None else config.name)
-
-
 def main() -> None:
-    """Entry point: bad input is one line on standard error and exit code 2, never a traceback."""
-    try:
-        code = typer.main.get_command(app).main(sys.argv[1:] or ["--help"], prog_name="pendant", standalone_mode=False)
-    except UsageError as error:
-        text = error.format_message() if hasattr(error, "format_message") else str(error)  # type: ignore[attr-defined]
-        sys.exit(_refuse(text))
-    except BadInput as error:
-        sys.exit(_refuse(str(error)))
-    except typer.Abort:
-        sys.exit(1)
-    sys.exit(code or 0)
-
-
-def _refuse(text: str) -> int:
-    """Say one line on standard error; the exit code to end with."""
-    sys.stderr.write(" ".join(f"pendant: {text}".split()) + "\n")
-    return 2
+    """Run the command line."""
+    run_command_line(app)

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import msgspec
 import typer
 from rich.console import Console
 from rich.markup import escape
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from app.kept_setup import Keeper
     from app.robot_interface.interfaces import RobotInterfaces
     from app.session.prepare import Prepared
+    from app.session.session_file import AllowedFiles, Setup
 
 PORT = 8080
 """Where the web app is, when this port is free and no other was asked for."""
@@ -42,6 +44,23 @@ Programs = Annotated[
     typer.Option(
         help="Folder of programs that clients can load, beside those bundled.", file_okay=False, exists=True, show_default=False
     ),
+]
+Record = Annotated[
+    Path | None,
+    typer.Option(help="Record from the start, into this folder; the page has a switch for it.", show_default=False),
+]
+RecordRates = Annotated[
+    str | None,
+    typer.Option(
+        "--record-rates",
+        metavar="TOPIC=RATE,...",
+        help="Record less: state, truth, pictures, a second. All of them without it.",
+        show_default=False,
+    ),
+]
+RecordSplit = Annotated[
+    float | None,
+    typer.Option("--record-split", metavar="MINUTES", help="Record in files of so many minutes.", show_default=False),
 ]
 AnyFile = Annotated[bool, typer.Option("--any-file", help="Arms and tools that a file names may be in any folder.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Setting in place of the file's; repeatable.")]
@@ -117,3 +136,21 @@ def setting(text: str) -> tuple[str, float | bool | str]:
         return name, float(value)
     except ValueError:
         return name, value
+
+
+def allowed_files(config: Path | None, any_file: bool) -> "AllowedFiles":
+    """What a set-up may name that comes over the network: what one of the command line may."""
+    from app.session.session_file import AllowedFiles
+
+    return AllowedFiles(None if config is None else config.parent.resolve(), any_file)
+
+
+def set_up(robot: str | None, config: Path | None, any_file: bool, command: str, *, shipped: "Setup") -> "Prepared":
+    """What the options of a command ask for; `shipped` where no file says it."""
+    from app.session.prepare import prepare
+    from app.session.session_file import Setup, opened
+
+    setup = shipped if config is None else opened(config, Setup, any_file)
+    if robot is not None:
+        setup = msgspec.structs.replace(setup, robot=robot)
+    return prepare(setup, command if config is None else config.name)

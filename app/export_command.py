@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from app.command_options import example
+from app.ending import ending
 from app.learning.export_defaults import RATE, TASK
 
 EXAMPLES = example("pendant export logs/ --out demonstrations", "pendant export out/log.mcap --pictures")
@@ -27,6 +28,6 @@ def export_(
     from app.learning.exported import export
     from app.runs.progress import counting
 
-    with counting("recordings") as told:
+    with ending(interrupts=True), counting("recordings") as told:
         made = export(recordings, out, rate=rate, task=task, pictures=pictures, told=told)
     Console().print(escape(f"{made.demonstrations} demonstrations, {made.frames} rows: {made.folder}"))

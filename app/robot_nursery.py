@@ -16,7 +16,7 @@ from app.files.bad_input import BadInput
 from app.robot_serving import Network, robot_until_interrupted
 from app.runs.warm_up import warm_up
 from app.session.prepare import prepare
-from app.session.session_file import Setup, opened
+from app.session.session_file import AllowedFiles, Setup, opened
 
 
 def main() -> None:
@@ -71,12 +71,10 @@ def _start(order: dict[str, Any]) -> int:
 
 
 def _be_a_robot(order: dict[str, Any]) -> int:
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
     try:
+        network = Network(order["host"], files=AllowedFiles(Path(order["folder"]).resolve()))
         setup = Setup() if order["setup"] is None else opened(Path(order["setup"]), Setup)
-        with robot_until_interrupted(prepare(setup, "setup.yaml"), Network(order["host"]), None, ended):
+        with robot_until_interrupted(prepare(setup, "setup.yaml"), network, None):
             pass
     except BadInput as error:
         sys.stderr.write(f"{error}\n")

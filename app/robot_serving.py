@@ -1,18 +1,21 @@
 """Serves a robot on the network until the user stops it: for `pendant robot`, and for `pendant serve --interfaces`."""
 
+import logging
 import os
-import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from app.log.live import LiveRecording, must_be_writable
+from app.ending import ending
+from app.log.live import LiveRecording
+from app.log.recording_plan import ALL, RecordingPlan
 from app.robot_interface.interfaces import RobotInterfaces
 from app.runs.runner import simulate
 from app.runs.warm_up import warm_up
+from app.session.session_file import SHIPPED_ALONE, AllowedFiles
 from app.session.timeline_checks import Prepared
 from app.web.access.listening import access_through
 from sim.run.loop import Loop
@@ -32,20 +35,17 @@ class Network(NamedTuple):
     host: str = "127.0.0.1"
     offset: int = 0  # added to all ports
     programs: Path | None = None  # folder of programs that clients can load
+    files: AllowedFiles = SHIPPED_ALONE  # that a set-up of the control channel may name
 
 
-def until_stopped() -> threading.Event:
-    """Make ready what is compiled. Returns what is set when the user stops the program, politely or by Ctrl-C."""
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
+def get_ready() -> None:
+    """Make ready what is compiled, and say so where that takes a while."""
     notice = threading.Timer(PATIENCE, lambda: sys.stdout.write(f"{COMPILING}\n"))
     notice.start()
     try:
         warm_up()
     finally:
         notice.cancel()
-    return ended
 
 
 def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording: LiveRecording) -> RobotInterfaces:
@@ -62,6 +62,7 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
         programs=network.programs,
         token=os.environ.get(TOKEN),
         recording=recording,
+        files=network.files,
     )
     interfaces.start()
     return interfaces
@@ -69,31 +70,45 @@ def open_interfaces(loop: Loop, prepared: Prepared, network: Network, recording:
 
 @contextmanager
 def robot_until_interrupted(
-    prepared: Prepared, network: Network, record: Path | None, ended: threading.Event
+    prepared: Prepared, network: Network, record: Path | None, plan: RecordingPlan = ALL
 ) -> Iterator[RobotInterfaces]:
-    """Serve a robot without a page; the body runs once it answers; then wait until it is ended.
+    """Serve a robot without a page; the body runs once it answers; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
     Args:
         prepared: what to simulate.
         network: where its interfaces are to be.
         record: record from the start, into this folder.
-        ended: set when it is to end, as `until_stopped` gives it.
+        plan: how often what is recorded, and how long a file of it is.
 
     Raises:
         BadInput: an address cannot be used, or `record` not be written.
     """
-    if record is not None:
-        must_be_writable(record)
     loop = Loop(lambda: simulate(prepared))
-    recording = LiveRecording(loop, record or Path())
-    interfaces = open_interfaces(loop, prepared, network, recording)
-    try:
-        loop.start()
-        if record is not None:
-            recording.start()
-        yield interfaces
-        ended.wait()
-    finally:
-        interfaces.close()
-        recording.close()
-        loop.stop()
+    with ending() as end:
+        recording = LiveRecording(loop, record or Path(), plan)
+        end.see_to(recording.close)
+        interfaces = open_interfaces(loop, prepared, network, recording)
+        try:
+            loop.start()
+            if record is not None:
+                recording.start().result()
+            yield interfaces
+            end.asked.wait()
+        finally:
+            end_in_turn(lambda: recording.close(FINISHED), interfaces.close, lambda: loop.stop(STOOD))
+
+
+FINISHED = 1.5
+"""Time that files have to be finished [s]."""
+
+STOOD = 0.5
+"""Time in which the loop must have ended its tick [s]."""
+
+
+def end_in_turn(*steps: Callable[[], object]) -> None:
+    """End one thing after the other; what fails is logged, and keeps nothing else from its end."""
+    for step in steps:
+        try:
+            step()
+        except Exception:
+            logging.getLogger(__name__).exception("something did not end as it should")

@@ -1,10 +1,8 @@
 """Serves a prepared simulation until the user stops it."""
 
-import signal
-import threading
-import time
 import webbrowser
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -12,18 +10,20 @@ from typing import NamedTuple
 
 import msgspec
 
+from app.ending import ending
 from app.files.checked import BadInput
-from app.files.library import mesh_path, robots
+from app.files.library import robots
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper, keeper_for
 from app.log.live import LiveRecording
-from app.log.playback import Player
-from app.log.reader import read
-from app.log.scan import repair
+from app.log.recording_plan import ALL, RecordingPlan
+from app.log_reading.playback import Player
+from app.log_reading.reader import files_of, read
+from app.mcap_file.mending import repair
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.interfaces import JOINTS, RobotInterfaces
-from app.robot_serving import Network, open_interfaces, until_stopped
+from app.robot_serving import FINISHED, STOOD, Network, end_in_turn, get_ready, open_interfaces
 from app.runs.runner import simulate
 from app.session.prepare import Prepared, prepare
 from app.session.session_file import FIRST_START
@@ -36,9 +36,7 @@ from app.web.server import Served
 from app.web.server import serve as serve_web
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
-
-LOOK = 0.01
-"""Time between two looks at whether the next arm runs [s]."""
+from sim.run.troubles import reason_of
 
 
 class Serving(NamedTuple):
@@ -57,11 +55,12 @@ def serve_until_interrupted(
     usual: int,
     open_browser: bool,
     record: Path | None,
+    plan: RecordingPlan = ALL,
     network: Network | None = None,
     keeper: Keeper | None = None,
     lesson: Lesson | None = None,
 ) -> Iterator[Serving]:
-    """Serve; the body runs once the page is up; then wait for Ctrl-C or a polite end of the process.
+    """Serve; the body runs once the page is up; then wait for Ctrl-C or SIGTERM, which end all in seconds.
 
     Args:
         prepared: what to simulate.
@@ -70,6 +69,7 @@ def serve_until_interrupted(
         usual: the port that a user's bookmark knows.
         open_browser: open the page too.
         record: record from the start, into this folder.
+        plan: how often what is recorded, and how long a file of it is.
         network: where the robot's network interfaces are to be; None for the page alone.
         keeper: as `app.web.server.serve`.
         lesson: as `app.web.server.serve`.
@@ -77,50 +77,51 @@ def serve_until_interrupted(
     Raises:
         BadInput: an address cannot be used.
     """
-    ended = until_stopped()
+    get_ready()
     loop = Loop(lambda: simulate(prepared))
-    recording = LiveRecording(loop, record or Path())
-    arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
-    interfaces = arms.open(prepared)
-    try:
-        loop.start()
-        scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
-        robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
-        page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
-        served = _serve(partial(page, host=host, open_browser=open_browser, record=record), port=port, usual=usual)
+    with ending() as end:
+        recording = LiveRecording(loop, record or Path(), plan)
+        end.see_to(recording.close)
+        arms = ServedArms(loop, recording, network=network, folder=None if keeper is None else keeper.path.parent)
+        interfaces = arms.open(prepared)
         try:
-            yield Serving(served, interfaces)
-            ended.wait()
+            loop.start()
+            if record is not None:
+                recording.start().result()
+            scripts = scripts_beside(loop, prepared.arm) if interfaces is None else interfaces.scripts
+            robot = partial(serve_web, loop, prepared.arm, prepared.scenario, recording=recording, interfaces=interfaces)
+            page = partial(robot, scripts=scripts, keeper=keeper, lesson=lesson, arms=arms)
+            served = _serve(partial(page, host=host, open_browser=open_browser), port=port, usual=usual)
+            try:
+                yield Serving(served, interfaces)
+                end.asked.wait()
+            finally:
+                end_in_turn(lambda: recording.close(FINISHED), served.close)
         finally:
-            served.close()
-    finally:
-        arms.close()
-        loop.stop()
+            end_in_turn(lambda: recording.close(FINISHED), arms.close, lambda: loop.stop(STOOD))
 
 
 @contextmanager
 def replay_until_interrupted(path: Path, *, host: str, port: int | None, usual: int, open_browser: bool) -> Iterator[Site]:
-    """Show a recording, as `serve_until_interrupted` serves a simulation; a log without its end is repaired first.
+    """Show a recording, as `serve_until_interrupted` serves a simulation; a file without its end is repaired first.
 
     Raises:
         BadInput: the log cannot be read or repaired, or the address cannot be used.
     """
-    repair(path)
+    for file in files_of(path):
+        repair(file)
     player = Player(read(path))
-    ended = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: ended.set())
     access = access_through(host)
-    names = ("foot", *player.log.arm.chain.joints)
-    meshes = {part: mesh_path(player.log.arm.name, part).read_bytes() for part in names}
-    shown = Replay(player, meshes, access, free_port(access.host, port, usual))
-    try:
-        if open_browser:
-            webbrowser.open(shown.link)
-        yield shown
-        ended.wait()
-    finally:
-        shown.close()
+    meshes = meshes_of(player.log.arm)
+    with ending() as end:
+        shown = Replay(player, meshes, access, free_port(access.host, port, usual))
+        try:
+            if open_browser:
+                webbrowser.open(shown.link)
+            yield shown
+            end.asked.wait()
+        finally:
+            shown.close()
 
 
 class ServedArms:
@@ -180,11 +181,11 @@ class ServedArms:
         told: list[str] = []
         self.close()
         loop.companion = None
-        loop.begin(lambda: simulate(prepared))
-        while not loop.failure and loop.latest().scenario is not prepared.scenario:
-            time.sleep(LOOK)
-        if loop.failure:
-            raise BadInput("the page", "arm", prepared.arm.name, f"an arm that can be simulated: {loop.failure}")
+        try:
+            loop.begin(lambda: simulate(prepared)).result()
+        except (Exception, CancelledError) as error:
+            allowed = f"an arm that can be simulated: {reason_of(error)}"
+            raise BadInput("the page", "arm", prepared.arm.name, allowed) from error
         if self._recording.on:
             told.append("The recording goes on in a file of its own.")
         if self._network is not None:
@@ -201,8 +202,14 @@ def scripts_beside(loop: Loop, arm: Arm) -> ScriptRunner | None:
     """Runs programs in URScript beside the page, without a network; None for an arm that the language does not know."""
     if arm.n != JOINTS:
         return None
-    cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(), lambda: loop.desk.high)
-    cabinet.state.remote = False
+    cabinet = Cabinet(
+        lambda: loop.simulation,
+        arm.chain.joints,
+        ProgramFolder(),
+        lambda: loop.desk.high,
+        between=loop.between_ticks,
+        remote=False,
+    )
     loop.companion = cabinet
     return ScriptRunner(cabinet)
 

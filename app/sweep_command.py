@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from app.command_options import AnyFile, Seed, example
+from app.ending import ending
 
 SWEEP_EXAMPLES = example(
     "pendant sweep sequence-limit --quick",
@@ -42,7 +43,7 @@ def sweep_(
     name = Path(study).stem
     folder = out if out is not None else Path("out") / (f"{name}-quick" if quick else name)
     try:
-        with counting("runs") as told:
+        with ending(interrupts=True), counting("runs") as told:
             said = sweep(
                 content,
                 base,
@@ -53,8 +54,8 @@ def sweep_(
                 said=lambda line: console.print(escape(line)),
             )
     except KeyboardInterrupt:
-        console.print("Stopped. What is done is kept; the same command goes on.")
-        raise typer.Exit(130) from None
+        console.print("What is done is kept; the same command goes on.")
+        raise
     before = f", {said.kept} of them before" if said.kept else ""
     Console(soft_wrap=True).print(
         f"{said.runs} runs{before}; the rows are in {escape(str(folder / 'rows'))}, see {escape(str(folder / 'report.html'))}"

@@ -108,7 +108,7 @@ class Reaching(Wanted):
 class Trial:
     """One run, tick by tick."""
 
-    def __init__(self, strike: Strike, use: dict[str, object]) -> None:
+    def __init__(self, strike: Strike, use: dict[str, bool]) -> None:
         self.strike, self.rng = strike, np.random.default_rng([strike.seed, 62])
         arm = load_arm(strike.arm)
         tool = ToolModel(name="rod", mass=0.3, com=[0.0, 0.0, 0.05], tcp=[0.0, 0.0, 0.15], length=0.15, radius=0.02)

@@ -10,7 +10,7 @@ import urllib.request
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.serving import replay_until_interrupted
 from benchmarks.common import Report, main
 from pendant.tick.modes import TICK

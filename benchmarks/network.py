@@ -48,6 +48,9 @@ class Clock:
     def repeat(self) -> None:
         """A robot that stands does not matter."""
 
+    def again(self) -> None:
+        """Nor does one whose loop is busy."""
+
 
 def gaps(times: list[float]) -> list[float]:
     """Between one and the next, smallest first."""

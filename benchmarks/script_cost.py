@@ -5,7 +5,7 @@ import sys
 import time
 
 from app.api import session
-from app.robot_interface.controller.cabinet import Ask
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.interfaces import RobotInterfaces
 from app.runs.runner import simulate
 from app.session.prepare import prepare

@@ -8,6 +8,7 @@ import yaml
 from yaml.composer import Composer
 
 from app.files.bad_input import ABSENT, BadInput, shown
+from app.files.regular_file import open_regular
 
 LARGEST = 2_000_000
 """Largest file that is read [bytes]."""
@@ -25,22 +26,22 @@ def read(path: Path, where: str) -> str:
     Raises:
         BadInput: there is none, it is too large or not UTF-8.
     """
+    if "\0" in str(path):
+        raise BadInput(where, "", str(path), "expected the name of a file")
+    data = bytearray()
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST + 1)
-    except FileNotFoundError:
-        raise BadInput(str(path), "", ABSENT, "expected an existing file") from None
+        with open_regular(path) as file:
+            while len(data) <= LARGEST and (part := file.read(LARGEST + 1)):
+                data += part
     except OSError as error:
         raise BadInput(str(path), "", ABSENT, f"expected a readable file ({error.strerror})") from None
-    except ValueError:  # a NUL in it
-        raise BadInput(where, "", str(path), "expected the name of a file") from None
     if len(data) > LARGEST:
         raise BadInput(where, "", ABSENT, f"expected at most {LARGEST} bytes")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        raise BadInput(where, f"line {line}", data[error.start : error.start + 4], "expected text in UTF-8") from None
+        raise BadInput(where, f"line {line}", bytes(data[error.start : error.start + 4]), "expected text in UTF-8") from None
 
 
 class _Loader(Composer, yaml.CSafeLoader):

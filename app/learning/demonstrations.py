@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from app.files.bad_input import BadInput
 from app.log.layout import WORDS
-from app.log.reader import Log
+from app.log_reading.reader import Log
 from pendant.tick.modes import TICK_RATE, Mode, Phase
 
 LEAST = TICK_RATE // 2

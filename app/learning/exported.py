@@ -11,8 +11,8 @@ from app.files.bad_input import ABSENT, BadInput
 from app.learning.demonstrations import Demonstration, demonstrations
 from app.learning.export_defaults import RATE, TASK
 from app.learning.lerobot_files import DataSet
-from app.log.playback import snapshot_at
-from app.log.reader import Log, read
+from app.log_reading.playback import snapshot_at
+from app.log_reading.reader import Log, read
 
 PIXELS = (240, 320)
 """Height and width of the pictures."""
@@ -99,14 +99,14 @@ def _filmed(log: Log, shown: Demonstration, path: Path, rate: int) -> NDArray[np
     from app.learning.camera import ArmCamera
     from app.learning.video import Video
 
-    at = np.array([each.tick for each in log.pictures])
+    at, ticks = log.picture_ticks, log.ticks
     samples: list[NDArray[np.float64]] = []
     every = max(1, shown.rows.size // SAMPLES)
     camera = ArmCamera(log.arm, log.scenario, *PIXELS)
     try:
         with Video(path, rate) as video:
             for k, row in enumerate(shown.rows.tolist()):
-                last = max(int(np.searchsorted(at, log.ticks[row], side="right")) - 1, 0)
+                last = max(int(np.searchsorted(at, ticks[row], side="right")) - 1, 0)
                 picture = camera.picture(snapshot_at(log, last, row))
                 video.add(picture)
                 if k % every == 0:

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-COMMAND = "from app.cli import main; main()"
+COMMAND = "from app.start import main; main()"
 
 
 class Exporting:

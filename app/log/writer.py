@@ -1,6 +1,7 @@
 """Packs the blocks of a recording into messages and puts them into the file."""
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,9 +12,9 @@ from app.files.checked import ABSENT, BadInput
 from app.files.library import mesh_path
 from app.files.versions import versions
 from app.log import foxglove, layout
-from app.log.container import Container
 from app.log.events_file import line_of
 from app.log.layout import CDR, CODES, STATE, TRUTH, WORDS
+from app.mcap_file.container import Container
 from pendant.all_settings import Settings, describe, digest, limits_checksum, value_of
 from pendant.decision import Decision
 from pendant.event_table import TABLE, render
@@ -21,6 +22,9 @@ from pendant.events.event import Event
 from pendant.guided.force_covariance import UncertainForce
 from sim.arm.scenario import Plane, Scenario
 from sim.simulation import Simulation
+
+PICTURES, TOLD = "pictures", "told"
+"""Topics that share their chunks: what is drawn, and what happens now and then. /state and /truth have chunks of their own."""
 
 
 class Picture(NamedTuple):
@@ -36,13 +40,19 @@ class Picture(NamedTuple):
     user: UncertainForce | None  # what free-drive takes for the user's force
 
 
+class TickRows(NamedTuple):
+    """Of /state or /truth."""
+
+    ticks: np.ndarray[Any, Any]  # (k,)
+    numbers: np.ndarray[Any, Any]  # (k, ...)
+
+
 class Block(NamedTuple):
     """Ticks on their way to the file."""
 
-    ticks: np.ndarray[Any, Any]  # (k,)
-    numbers: np.ndarray[Any, Any]  # (k, ...) of /state
-    codes: list[tuple[int, ...]]  # of each tick
-    truth: np.ndarray[Any, Any]  # (k, ...) of /truth
+    state: TickRows
+    codes: list[tuple[int, ...]]  # of each tick of /state
+    truth: TickRows
     pictures: list[Picture]
     events: list[tuple[int, Event]]
     settings: list[tuple[int, Settings]]
@@ -59,29 +69,45 @@ class Writer:
         path: of the file; one that is there is replaced.
         simulation: what is recorded.
         title: of the session.
-        planned: how long it is to last [s]; None: nobody knows.
+        notes: that go with title and versions: planned, how long it is to last [s]; recording and part, of one in parts.
+        thinned: topics that have not every message, with the ticks from one to the next.
 
     Raises:
         BadInput: the file cannot be written.
     """
 
-    def __init__(self, path: Path, simulation: Simulation, title: str, planned: float | None = None) -> None:
+    def __init__(
+        self, path: Path, simulation: Simulation, title: str, *, notes: Mapping[str, str], thinned: Mapping[str, int]
+    ) -> None:
         self._names = ["foot", *simulation.arm.chain.joints, "flange"]
         self._n = n = simulation.arm.n
         self._file = Container(path, f"pendant {versions()['pendant']}")
         try:
-            self._channels = self._declare(simulation, title, planned)
+            self._channels = self._declare(simulation, title, notes, thinned)
         except OSError as error:
+            self._file.abandon()
             raise BadInput(str(path), "", ABSENT, f"cannot be written ({error.strerror})") from None
         self._state_type = layout.record(layout.width(STATE, n), len(CODES))
         self._truth_type = layout.record(layout.width(TRUTH, n), 0)
+
+    @property
+    def end(self) -> int:
+        """Room that the file's end will take [bytes], about."""
+        return self._file.end
 
     def close(self) -> None:
         """Write the end of the file. Raises OSError: the disk is full or gone."""
         self._file.close()
 
+    def abandon(self) -> None:
+        """Nothing more can be written: end the file where it is whole."""
+        self._file.abandon()
+
     def pack(self, block: Block) -> None:
         """Write a block, as one chunk. Raises OSError: the disk is full or gone."""
+        if self._shapes_told is not None and len(block.state.ticks):
+            self._file.add(self._channels["/robot"], (int(block.state.ticks[0]) - 1) * foxglove.NANOSECONDS, self._shapes_told)
+            self._shapes_told = None
         for tick, settings in block.settings:
             values = {row.name: value_of(settings, row.name) for row in describe()}
             self._say("/settings", tick, {"tick": tick, "values": values})
@@ -93,15 +119,14 @@ class Writer:
         for picture in block.pictures:
             self._draw(picture.tick, picture)
         rows = [
-            self._records(self._state_type, "/state", block.ticks, numbers=block.numbers, codes=block.codes),
-            self._records(self._truth_type, "/truth", block.ticks, numbers=block.truth, codes=[]),
+            self._records(self._state_type, "/state", block.state, block.codes),
+            self._records(self._truth_type, "/truth", block.truth, []),
         ]
         self._file.flush(rows)
 
-    def _records(
-        self, kind: np.dtype, topic: str, ticks: np.ndarray, *, numbers: np.ndarray, codes: list[tuple[int, ...]]
-    ) -> np.ndarray[Any, Any]:
+    def _records(self, kind: np.dtype, topic: str, told: TickRows, codes: list[tuple[int, ...]]) -> np.ndarray[Any, Any]:
         """Whole message records, a row a tick."""
+        ticks = told.ticks
         rows = np.zeros(len(ticks), dtype=kind)
         rows["opcode"] = 5
         rows["length"] = kind.itemsize - 9
@@ -110,7 +135,7 @@ class Writer:
         rows["log_time"] = rows["publish_time"] = ticks * np.uint64(foxglove.NANOSECONDS)
         rows["cdr"] = CDR
         rows["tick"] = ticks
-        rows["numbers"] = numbers
+        rows["numbers"] = told.numbers
         if codes:
             rows["codes"] = codes
         return rows
@@ -145,7 +170,9 @@ class Writer:
     def _say(self, topic: str, tick: int, content: Any) -> None:
         self._file.add(self._channels[topic], tick * foxglove.NANOSECONDS, msgspec.json.encode(content))
 
-    def _declare(self, simulation: Simulation, title: str, planned: float | None) -> dict[str, int]:
+    def _declare(
+        self, simulation: Simulation, title: str, notes: Mapping[str, str], thinned: Mapping[str, int]
+    ) -> dict[str, int]:
         """Channels, and what does not change: arm, scenario, versions; the shapes go into /robot."""
         file, arm, scenario, n = self._file, simulation.arm, simulation.scenario, self._n
         self._objects = [f"object {thing.name}" for thing in scenario.world]
@@ -158,25 +185,31 @@ class Writer:
                 "seed": str(scenario.seed),
                 "settings": digest(simulation.settings),
                 "limits": limits_checksum(simulation.settings),
-                **({} if planned is None else {"planned": f"{planned:g}"}),
+                **notes,
             },
         )
+        if thinned:
+            file.note("rates", {topic: str(ticks) for topic, ticks in thinned.items()})
         file.note("words", {name: " ".join(words) for name, words in WORDS.items()})
         file.attach("arm.json", "application/json", msgspec.json.encode(arm))
         file.attach("scenario.json", "application/json", msgspec.json.encode(scenario))
         channels: dict[str, int] = {}
         packed = {"/state": ("pendant/msg/State", STATE, CODES), "/truth": ("pendant/msg/Truth", TRUTH, ())}
         for topic, (name, fields, codes) in packed.items():
-            channels[topic] = file.channel(topic, name, layout.schema(fields, n, codes), encoding="cdr", of_schema="ros2msg")
+            text = layout.schema(fields, n, codes)
+            channels[topic] = file.channel(topic, name, text, encoding="cdr", of_schema="ros2msg", together=topic)
         drawn = {"/tf": "FrameTransforms", "/scene": "SceneUpdate", "/robot": "SceneUpdate", "/log": "Log"}
         for topic, name in drawn.items():
             schema = msgspec.json.encode(foxglove.SCHEMAS[f"foxglove.{name}"]).decode()
-            channels[topic] = file.channel(topic, f"foxglove.{name}", schema, encoding="json", of_schema="jsonschema")
+            together = PICTURES if topic in ("/tf", "/scene") else TOLD
+            channels[topic] = file.channel(
+                topic, f"foxglove.{name}", schema, encoding="json", of_schema="jsonschema", together=together
+            )
         for topic, name in (("/pendant", "pendant.Pendant"), ("/events", "pendant.Event"), ("/settings", "pendant.Settings")):
             schema = msgspec.json.encode({"title": name, "type": "object"}).decode()
-            channels[topic] = file.channel(topic, name, schema, encoding="json", of_schema="jsonschema")
-        message = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
-        file.add(channels["/robot"], 0, message)
+            together = PICTURES if topic == "/pendant" else TOLD
+            channels[topic] = file.channel(topic, name, schema, encoding="json", of_schema="jsonschema", together=together)
+        self._shapes_told: bytes | None = msgspec.json.encode(foxglove.update(self._shapes(arm.name, scenario)))
         return channels
 
     def _shapes(self, arm: str, scenario: Scenario) -> list[foxglove.Json]:

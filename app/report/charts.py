@@ -1,25 +1,20 @@
 """The figures of a report, as SVG: drawn without a screen, with peaks that no thinning takes away."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
-from app.log.playback import pull_at
-from app.log.reader import Log
 from app.report.drawing import INK, empty_axes, svg_of
+from app.report.gathering import Array, Column, Gathered, Span
 from app.report.pull_colours import PULL_COLOURS
-from app.report.summary import SLOW, Span, Summary
-from pendant.guided.pull import SHARE_WORDS, PullCauses
+from app.report.summary import SLOW, Summary
+from pendant.guided.pull import SHARE_WORDS
 from pendant.limits.parameters import PARAMETERS
-from pendant.tick.modes import TICK
 
-Array = NDArray[np.float64]
-POINTS = 1500
-"""Most points of a line."""
+Line = tuple[Array, Array]
+"""Times and values."""
 
 COLOURS = {
     "NORMAL": "#2f9e44",
@@ -46,74 +41,47 @@ PARAMETERS_DRAWN = 6
 """Monitored parameters in their chart: those nearest to their limits."""
 
 
-COLUMNS = 200
-"""Stretches of the run in the chart of what pulls at the arm: each some pixels wide."""
-
 PULL_CAPTION = (
     "What pulls at the free arm, as the controller sees it: how likely each cause is. Each stretch shows the moment in which a "
     "hand is least likely."
 )
 
 
-def charts(log: Log, summary: Summary) -> list[tuple[str, str]]:
+def charts(gathered: Gathered, summary: Summary) -> list[tuple[str, str]]:
     """Captions and SVG texts."""
-    t = log.t
-    if not len(t):
+    log = gathered.log
+    if not len(log):
         return []
-    force = np.linalg.norm(log.state["F_user"][:, :3], axis=1)
-    torque = np.abs(log.state["tau_ext"])
-    speeds = [("tcp", 1000 * log.state["v_tcp"]), ("elbow", 1000 * log.state["v_elbow"])]
-    torques = [(name, torque[:, i]) for i, name in enumerate(log.arm.chain.joints)]
+    lines = {name: line.found for name, line in gathered.lines.items()}
+    speeds = [(name, lines[name]) for name in ("tcp", "elbow")]
+    torques = [(joint, line.found) for joint, line in gathered.torques.items()]
     marks = [event.t for event in (*summary.messages, *summary.contacts)]
-    columns = pulls(log)
+    columns, end = gathered.pulls.found, gathered.end
     drawn = [
         ("Modes, and phases of free-drive", _bars(summary.modes, summary.phases, summary)),
-        ("Speed of tool centre point and elbow, against 250 mm/s", _lines(t, speeds, "speed [mm/s]", marks, bar=1000 * SLOW)),
-        ("Force at the flange, as the controller estimates it", _lines(t, [("force", force)], "force [N]", marks)),
+        (
+            "Speed of tool centre point and elbow, against 250 mm/s",
+            _lines(end, speeds, "speed [mm/s]", marks, bar=1000 * SLOW),
+        ),
+        ("Force at the flange, as the controller estimates it", _lines(end, [("force", lines["force"])], "force [N]", marks)),
         *([(PULL_CAPTION, _stacked(columns, summary.duration))] if columns else []),
-        ("External torque of the joints, size", _lines(t, torques, "torque [N·m]", marks)),
+        ("External torque of the joints, size", _lines(end, torques, "torque [N·m]", marks)),
     ]
-    shares = _shares(log)
+    shares = _shares(gathered)
     if shares:
-        drawn.append(
-            ("Monitored values against their limits, while they are checked", _lines(t, shares, "of limit [%]", marks, bar=100))
-        )
+        caption = "Monitored values against their limits, while they are checked"
+        drawn.append((caption, _lines(end, shares, "of limit [%]", marks, bar=100)))
     return drawn
 
 
-def _shares(log: Log) -> list[tuple[str, Array]]:
+def _shares(gathered: Gathered) -> list[tuple[str, Line]]:
     """Monitored values over their limits [%], those that come nearest; NaN while they are not checked."""
-    found: list[tuple[float, str, Array]] = []
+    found: list[tuple[float, str, Line]] = []
     for name, row in PARAMETERS.items():
-        share = 100.0 * np.abs(log.state[f"monitored_{name}"] / log.state[f"limit_{name}"])
-        if np.isfinite(share).sum() > 1:
-            found.append((float(np.nanmax(share)), row.text, share))
-    return [(text, share) for _, text, share in sorted(found, key=lambda each: -each[0])[:PARAMETERS_DRAWN]]
-
-
-class Column(NamedTuple):
-    """A stretch of time in which the arm is free somewhere."""
-
-    begin: float  # [s]
-    end: float
-    pull: PullCauses
-
-
-def pulls(log: Log) -> list[Column]:
-    """The pull of the tick that is least a hand's, in `COLUMNS` stretches of the run; stretches without free-drive are left out.
-
-    A payload that falls ends free-drive within some ticks: in one of so many stretches they are wide enough to be seen.
-    """
-    free = np.isfinite(log.state["felt"])
-    doubt = np.fmax(np.nan_to_num(log.state["lost_odds"], nan=-np.inf), np.nan_to_num(log.state["step_odds"], nan=-np.inf))
-    found: list[Column] = []
-    for stretch in np.array_split(np.arange(len(free)), min(COLUMNS, len(free))):
-        rows = stretch[free[stretch]]
-        if len(rows):
-            pull = pull_at(log, int(rows[doubt[rows].argmax()]))
-            assert pull is not None
-            found.append(Column(float(log.t[stretch[0]]) - TICK, float(log.t[stretch[-1]]), pull))
-    return found
+        if gathered.checked[name] > 1:
+            t, share = gathered.shares[name].found
+            found.append((float(np.nanmax(share)), row.text, (t, share)))
+    return [(text, line) for _, text, line in sorted(found, key=lambda each: -each[0])[:PARAMETERS_DRAWN]]
 
 
 def _stacked(columns: Sequence[Column], duration: float) -> str:
@@ -138,19 +106,19 @@ def _stacked(columns: Sequence[Column], duration: float) -> str:
     return svg_of(figure)
 
 
-def _lines(t: Array, series: Sequence[tuple[str, Array]], label: str, marks: Sequence[float], *, bar: float = 0.0) -> str:
+def _lines(end: float, series: Sequence[tuple[str, Line]], label: str, marks: Sequence[float], *, bar: float = 0.0) -> str:
     figure, axes = empty_axes(1.9)
-    for name, values in series:
-        axes.plot(*thinned(t, values), linewidth=0.9, label=name)
+    for name, line in series:
+        axes.plot(*line, linewidth=0.9, label=name)
     for mark in marks:
         axes.axvline(mark, color=INK, linewidth=0.7, linestyle=":")
     if bar:
         axes.axhline(bar, color=BAD, linewidth=0.9, linestyle="--")
     axes.set_ylabel(label, fontsize=7.5)
     axes.set_xlabel("time [s]", fontsize=7.5)
-    axes.set_xlim(0.0, float(t[-1]))
+    axes.set_xlim(0.0, end)
     rows = -(-len(series) // 3) if len(series) > 1 else 0
-    top = max(bar, *(float(np.nanmax(values)) for _, values in series))
+    top = max(bar, *(float(np.nanmax(values)) for _, (_, values) in series))
     axes.set_ylim(0.0, top * (1.06 + 0.13 * rows) or 1.0)  # room for the names above the lines
     if len(series) > 1:
         axes.legend(loc="upper right", ncols=min(len(series), 3), frameon=False, fontsize=7, borderaxespad=0.1)
@@ -176,14 +144,3 @@ def _bars(modes: Sequence[Span], phases: Sequence[Span], summary: Summary) -> st
     handles = [Patch(color=colour, label=name) for name, colour in seen.items()]
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 0.97), ncols=NAMES_A_ROW, frameon=False, fontsize=6.5)
     return svg_of(figure)
-
-
-def thinned(t: Array, values: Array) -> tuple[Array, Array]:
-    """At most about POINTS points; of each stretch the largest is kept, at its own time."""
-    step = -(-len(t) // POINTS)
-    if step <= 1:
-        return t, values
-    whole = len(t) // step * step
-    blocks = np.nan_to_num(values[:whole], nan=0.0).reshape(-1, step)
-    at = blocks.argmax(axis=1) + step * np.arange(len(blocks))
-    return np.append(t[at], t[whole:]), np.append(values[at], values[whole:])

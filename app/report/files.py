@@ -6,7 +6,8 @@ from pathlib import Path
 import msgspec
 
 from app.files.checked import ABSENT, BadInput
-from app.log.reader import Log
+from app.log_reading.reader import Log
+from app.report.gathering import Gathered
 from app.report.summary import Summary, summarise
 from app.session.expectation_watch import Verdict
 
@@ -25,11 +26,12 @@ def write_report(log: Log, out: Path, verdicts: Sequence[Verdict] = ()) -> Summa
     from app.report.charts import charts
     from app.report.page import page
 
-    summary = summarise(log, verdicts)
+    gathered = Gathered(log)
+    summary = summarise(gathered, verdicts)
     try:
         out.mkdir(parents=True, exist_ok=True)
         (out / "summary.json").write_bytes(msgspec.json.format(msgspec.json.encode(summary), indent=1) + b"\n")
-        (out / "report.html").write_text(page(summary, charts(log, summary)), encoding="utf-8")
+        (out / "report.html").write_text(page(summary, charts(gathered, summary)), encoding="utf-8")
     except OSError as error:
         raise BadInput(str(out), "", ABSENT, f"cannot be written ({error.strerror})") from None
     return summary

@@ -127,6 +127,7 @@ def _identity(summary: Summary) -> list[tuple[str, str]]:
         ("seed", run.get("seed", "")),
         ("duration", f"{summary.duration:.3f} s"),
         *([("not whole", f"of the recording {summary.missing}")] if summary.missing else []),
+        *([("thinned", f"{summary.thinned}: peaks between these are not in it")] if summary.thinned else []),
         ("payload configured, true", f"{summary.payload_configured:g} kg, {summary.payload_true:g} kg"),
         ("settings", run.get("settings", "")),
         ("check sum of the limits", summary.limits),

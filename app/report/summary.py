@@ -1,17 +1,16 @@
 """The figures of a run, from its log and nothing else; summary.json is this value."""
 
+import bisect
 import hashlib
-import math
 from collections.abc import Sequence
 from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from app.log.events_file import EventLine
-from app.log.layout import WORDS
-from app.log.reader import Log
+from app.log_reading.reader import Log
+from app.report.gathering import Gathered, Peak, Span, from_event
 from app.report.regions import regions
 from app.session.expectation_watch import Verdict
 from pendant.all_settings import describe
@@ -24,9 +23,6 @@ from pendant.tick.modes import TICK, TICK_RATE
 SLOW = 0.25
 """Speed of tcp and elbow that hand guiding is commonly held to [m/s]."""
 
-HELD = TICK_RATE // 2
-"""A force counts as quasi-static when it lasts for so many ticks, 0.5 s."""
-
 AT_REST = 0.01
 """Every joint slower than this: the arm stands [rad/s]."""
 
@@ -38,14 +34,6 @@ NOT_A_VALIDATION = (
     "This is the report of a simulation. It is not a validation of a robot cell: forces and pressures of a real contact have to "
     "be measured on the real robot (ISO/PAS 5672), and its risk assessment is the integrator's."
 )
-
-
-class Span(msgspec.Struct, frozen=True):
-    """A state and the time that it lasted."""
-
-    name: str
-    begin: float  # [s]
-    end: float  # [s]
 
 
 class Margin(msgspec.Struct, frozen=True):
@@ -66,13 +54,6 @@ class StopFigures(msgspec.Struct, frozen=True):
     t: float  # [s]
     time: float | None  # None: it did not stand before the end [s]
     distance: float  # way of the flange [m]
-
-
-class Peak(msgspec.Struct, frozen=True):
-    """The largest of a quantity."""
-
-    value: float
-    t: float  # [s]
 
 
 class Force(msgspec.Struct, frozen=True):
@@ -103,6 +84,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     duration: float  # [s]
     whole: bool  # the log has its end
     missing: str  # what of the run is not in the log, in words; "" where all of it is
+    thinned: str = ""  # how the log was thinned when it was made, in words: peaks between its ticks are not in it
     payload_configured: float  # at the end [kg]
     payload_true: float  # at the end [kg]
     modes: list[Span]
@@ -126,32 +108,32 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
         return all(each.passed for each in self.expectations)
 
 
-def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
+def summarise(gathered: Gathered, verdicts: Sequence[Verdict] = ()) -> Summary:
     """The figures of a run."""
-    state, t = log.state, log.t
-    force = np.linalg.norm(state["F_user"][:, :3], axis=1)
-    peak, held = _peak(force, t), _held(force, t)
+    log = gathered.log
+    peak, held = gathered.force_peak.found, gathered.force_held.found
     table = regions()
     last = log.settings[-1][1] if log.settings else {}
     contacts = [event for event in log.events if event.kind.startswith("contact_")]
     return Summary(
         run=log.run,
         limits=_checksum(last),
-        duration=float(t[-1]) if len(t) else 0.0,
+        duration=gathered.end,
         whole=log.whole,
         missing=log.missing,
-        payload_configured=float(state["configured_mass"][-1]) if len(t) else 0.0,
-        payload_true=float(log.truth["payload_mass"][-1]) if len(t) else 0.0,
-        modes=spans(state["mode"], t, WORDS["mode"]),
-        phases=[span for span in spans(state["phase"], t, WORDS["phase"]) if span.name != "OFF"],
-        margins=_margins(log),
+        thinned=log.thinned,
+        payload_configured=gathered.configured,
+        payload_true=gathered.payload,
+        modes=gathered.modes.found,
+        phases=[span for span in gathered.phases.found if span.name != "OFF"],
+        margins=_margins(gathered),
         messages=[event for event in log.events if _matters(event)],
         stops=[_stop(log, event) for event in log.events if TABLE[Kind(event.kind)].effect in STOPS],
         contacts=contacts,
-        onset_delays=[_since_onset(log, event) for event in contacts],
-        tcp_speed=_peak(state["v_tcp"], t),
-        elbow_speed=_peak(state["v_elbow"], t),
-        joint_speed=_peak(np.abs(state["qd"]).max(axis=1, initial=0.0), t),
+        onset_delays=[_since_onset(gathered, event) for event in contacts],
+        tcp_speed=gathered.tcp_speed.found,
+        elbow_speed=gathered.elbow_speed.found,
+        joint_speed=gathered.joint_speed.found,
         force_peak=peak,
         force_held=held,
         forces=[
@@ -162,38 +144,13 @@ def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
     )
 
 
-def spans(codes: NDArray[Any], t: NDArray[np.float64], words: tuple[str, ...]) -> list[Span]:
-    """Runs of equal codes (k,), as spans."""
-    if not len(codes):
-        return []
-    edges = [0, *(np.flatnonzero(np.diff(codes)) + 1).tolist(), len(codes)]
-    ends = [*t[edges[1:-1]].tolist(), float(t[-1])]
-    return [Span(str(words[codes[a]]), round(float(t[a]), 6), round(end, 6)) for a, end in zip(edges[:-1], ends, strict=True)]
-
-
-def _since_onset(log: Log, event: EventLine) -> float | None:
+def _since_onset(gathered: Gathered, event: EventLine) -> float | None:
     """How long before a change in contact the arm was truly touched, or no more (CD-16) [s]."""
     if event.kind == Kind.CONTACT_RESISTANCE:
         return None
-    way = -1.0 if event.kind == Kind.CONTACT_LOST else 1.0
-    edges = log.t[1:][np.diff(log.truth["touched"]) == way]
-    before = edges[edges <= event.t]
-    return round(event.t - float(before[-1]), 6) if len(before) else None
-
-
-def _peak(values: NDArray[np.float64], t: NDArray[np.float64]) -> Peak:
-    if not len(values):
-        return Peak(0.0, 0.0)
-    k = int(np.argmax(np.nan_to_num(values, nan=-math.inf)))
-    return Peak(float(values[k]), float(t[k]))
-
-
-def _held(force: NDArray[np.float64], t: NDArray[np.float64]) -> Peak:
-    """The largest force that was there for HELD ticks without a break, and when that began."""
-    if len(force) < HELD:
-        return Peak(0.0, 0.0)
-    windows = np.lib.stride_tricks.sliding_window_view(force, HELD)
-    return _peak(windows.min(axis=1), t[: len(windows)])
+    times = gathered.touched[-1.0 if event.kind == Kind.CONTACT_LOST else 1.0]
+    before = bisect.bisect_right(times, event.t)
+    return round(event.t - times[before - 1], 6) if before else None
 
 
 def _within(peak: float, held: float, region: Any) -> tuple[bool, float]:
@@ -203,15 +160,13 @@ def _within(peak: float, held: float, region: Any) -> tuple[bool, float]:
     return share <= 1.0, share
 
 
-def _margins(log: Log) -> list[Margin]:
+def _margins(gathered: Gathered) -> list[Margin]:
     found: list[Margin] = []
     for name, row in PARAMETERS.items():
-        value, limit = log.state[f"monitored_{name}"], log.state[f"limit_{name}"]
-        share = np.abs(value) / np.abs(limit)
-        if np.any(np.isfinite(share)):
-            k = int(np.nanargmax(share))
-            found.append(Margin(row.text, row.unit, float(value[k]), float(limit[k]), float(share[k]), float(log.t[k])))
-    for event in log.events:  # what ends a check at once is told by its event alone
+        worst = gathered.worst.get(name)
+        if worst is not None and gathered.checked[name]:
+            found.append(Margin(row.text, row.unit, worst.value, worst.limit, worst.share, worst.t))
+    for event in gathered.log.events:  # what ends a check at once is told by its event alone
         worse = _told(event)
         if worse is not None and all(worse.share > each.share for each in found if each.parameter == worse.parameter):
             found = [*(each for each in found if each.parameter != worse.parameter), worse]
@@ -236,14 +191,24 @@ def _matters(event: EventLine) -> bool:
 
 
 def _stop(log: Log, event: EventLine) -> StopFigures:
-    after = log.ticks >= event.tick
-    moving = np.abs(log.truth["qd"][after]).max(axis=1, initial=0.0) > AT_REST
-    places = log.truth["flange"][after, :3]
-    # At rest from the first tick that begins so many ticks without motion.
-    quiet = np.convolve(moving, np.ones(RESTING))[RESTING - 1 :][: max(len(moving) - RESTING + 1, 0)] == 0
-    last = int(quiet.argmax()) if quiet.any() else len(moving) - 1
-    way = float(np.linalg.norm(np.diff(places[: last + 1], axis=0), axis=1).sum())
-    return StopFigures(event.kind, event.t, round(last * TICK, 6) if quiet.any() else None, way)
+    """How long and how far from an event until the arm stands: from the first tick that begins RESTING ticks without motion."""
+    moving, ways = np.zeros(0, dtype=bool), np.zeros(0)  # of the last ticks: whether it moves, and how far it has come
+    done, way, place = 0, 0.0, None  # ticks before these; all of the way; where the flange is
+    for part in from_event(log, event.tick * TICK):
+        places = part.truth["flange"][:, :3]
+        before = places[:1] if place is None else place
+        steps = np.linalg.norm(np.diff(np.concatenate((before, places)), axis=0), axis=1)
+        place = places[-1:]
+        moving = np.concatenate((moving, np.abs(part.truth["qd"]).max(axis=1, initial=0.0) > AT_REST))
+        ways = np.concatenate((ways, way + np.cumsum(steps)))
+        way = float(ways[-1])
+        quiet = np.convolve(moving, np.ones(RESTING))[RESTING - 1 :][: max(len(moving) - RESTING + 1, 0)] == 0
+        if quiet.any():
+            last = int(quiet.argmax())
+            return StopFigures(event.kind, event.t, round((done + last) * TICK, 6), float(ways[last]))
+        gone = max(0, len(moving) - RESTING + 1)
+        done, moving, ways = done + gone, moving[gone:], ways[gone:]
+    return StopFigures(event.kind, event.t, None, way)
 
 
 def _checksum(values: dict[str, Any]) -> str:

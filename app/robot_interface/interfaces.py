@@ -1,7 +1,9 @@
 """All network interfaces of one robot, on a thread of their own."""
 
 import asyncio
+import functools
 import ipaddress
+import logging
 import secrets
 import socket
 import threading
@@ -20,18 +22,23 @@ from app.robot_interface.controller.program_folder import ProgramFolder
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.robot_interface.dashboard.dashboard_session import DashboardSession
 from app.robot_interface.faults.control_channel import ControlChannel
+from app.robot_interface.faults.timed_http import TimedHttp
 from app.robot_interface.ports import CONTROL, DASHBOARD, PORTS, PRIMARY, READ_ONLY, REALTIME, RTDE, SECONDARY
 from app.robot_interface.rtde.rtde_inputs import RtdeInputs
 from app.robot_interface.rtde.rtde_session import RtdeSession
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import Conversation, TcpPort
+from app.session.session_file import SHIPPED_ALONE, AllowedFiles
 from app.urscript.running.script_runner import ScriptRunner
 from sim.arm.arm_file import Arm
 from sim.run.loop import Loop
 
 JOINTS = 6
 """Of every arm that these protocols can tell."""
+
+PARTING = 1.0
+"""Time in which all connections must have ended [s]."""
 
 HEARTBEAT = 0.1
 """While nothing is simulated, the last packages are sent again with this period [s]: after 2.5 s of silence clients leave."""
@@ -48,6 +55,7 @@ class RobotInterfaces:
         programs: folder of programs that clients can load, beside the bundled ones.
         token: of the control channel; None for a new one.
         recording: the switch of recordings; None for one of its own, into the working folder.
+        files: that a set-up of the control channel may name.
 
     Raises:
         BadInput: a port is taken, or the arm has not six joints.
@@ -63,14 +71,22 @@ class RobotInterfaces:
         programs: Path | None = None,
         token: str | None = None,
         recording: LiveRecording | None = None,
+        files: AllowedFiles = SHIPPED_ALONE,
     ) -> None:
         if arm.n != JOINTS:
             raise BadInput("--interfaces", "robot", arm.name, f"an arm of {JOINTS} joints: these protocols know no other")
         self.host, self.ports = host, {name: number + offset for name, number in PORTS.items()}
         self.token = token or secrets.token_urlsafe(16)
         self.peers = Peers()
-        self.cabinet = Cabinet(lambda: loop.simulation, arm.chain.joints, ProgramFolder(programs), lambda: loop.desk.high)
+        self.cabinet = Cabinet(
+            lambda: loop.simulation,
+            arm.chain.joints,
+            ProgramFolder(programs),
+            lambda: loop.desk.high,
+            between=loop.between_ticks,
+        )
         self.scripts = ScriptRunner(self.cabinet)
+        self._loop = loop
         self._sockets = {name: _listening(host, number) for name, number in self.ports.items()}
         self._tcp = self._conversations(arm)
         hosts = frozenset(f"{name}:{self.ports[CONTROL]}" for name in (host.lower(), "localhost", "127.0.0.1"))
@@ -82,18 +98,20 @@ class RobotInterfaces:
             recording=recording or LiveRecording(loop, Path()),
             token=self.token,
             hosts=hosts,
+            files=files,
         )
+        logging.getLogger("uvicorn.error").setLevel(logging.ERROR)  # what strangers send is no news
         config = uvicorn.Config(
             channel.app,
+            http=functools.partial(TimedHttp, waiting={}),  # type: ignore[arg-type]
             log_config=None,
             access_log=False,
             server_header=False,
-            limit_concurrency=32,
-            timeout_keep_alive=30,
+            timeout_keep_alive=10,
             ws="none",
+            lifespan="off",
         )
         self._http = uvicorn.Server(config)
-        self._loop = loop
         self._ended = asyncio.Event()
         self._network: asyncio.AbstractEventLoop | None = None
         self._thread = threading.Thread(target=self._run, name="network", daemon=True)
@@ -106,14 +124,17 @@ class RobotInterfaces:
     def start(self) -> None:
         """Begin to answer; the loop's next tick is the first that is told."""
         self._loop.companion = self.cabinet
+        self._loop.log.listen(self.cabinet.note)
         self._thread.start()
 
     def close(self) -> None:
-        """End all connections."""
+        """End all connections; requests that are still done are left to themselves."""
         self._loop.companion = None
+        self._loop.log.forget(self.cabinet.note)
         if self._network is not None:
-            self._network.call_soon_threadsafe(self._ended.set)
-            self._thread.join()
+            with suppress(RuntimeError):  # it has ended already
+                self._network.call_soon_threadsafe(self._ended.set)
+            self._thread.join(PARTING)
 
     def _conversations(self, arm: Arm) -> dict[str, TcpPort]:
         """What is said on each port."""
@@ -142,31 +163,43 @@ class RobotInterfaces:
             opened[PRIMARY + name] = stream(True, writable)
             opened[SECONDARY + name] = stream(False, writable)
             opened[REALTIME + name] = realtime(writable)
-        return {name: TcpPort(name, peers, open_) for name, open_ in opened.items()}
+        return {name: TcpPort(name, peers, open_, self._loop.troubles) for name, open_ in opened.items()}
 
     def _run(self) -> None:
-        asyncio.run(self._serve())
+        try:
+            asyncio.run(self._serve())
+        except Exception as error:  # noqa: BLE001
+            self._loop.troubles.failed("the network", error, for_good=True)
 
     async def _serve(self) -> None:
         self._network = asyncio.get_running_loop()
         tasks = [asyncio.create_task(port.listen(self._sockets[name])) for name, port in self._tcp.items()]
         tasks.append(asyncio.create_task(self._keep_alive()))
         http = asyncio.create_task(self._http.serve(sockets=[self._sockets[CONTROL]]))
+        for task, name in zip((*tasks, http), (*self._tcp, "what keeps clients waiting", CONTROL), strict=True):
+            task.add_done_callback(functools.partial(self._ended_early, name))
         await self._ended.wait()
-        self._http.should_exit = True
+        self._http.should_exit = self._http.force_exit = True
         for task in tasks:
             task.cancel()
         for task in (*tasks, http):
             with suppress(asyncio.CancelledError):
                 await task
 
+    def _ended_early(self, name: str, task: asyncio.Task[None]) -> None:
+        """A task that serves is over: a robot whose port is dead must not look as if it answered."""
+        if not task.cancelled() and (error := task.exception()) is not None:
+            self._loop.troubles.failed(f"the network interface {name}", error, for_good=True)
+
     async def _keep_alive(self) -> None:
-        last = -1
+        last, asked = -1, None
         while True:
             await asyncio.sleep(HEARTBEAT)
-            self.cabinet.state.failure = self._loop.failure
             if self.cabinet.ticks == last:
-                self.cabinet.repeat()
+                if asked is None or asked.done():
+                    asked = self._loop.between_ticks(self.cabinet.repeat)
+                else:  # it has not come to the last one
+                    self.cabinet.again()
             last = self.cabinet.ticks
 
 

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.engine.spreading import spread
-from app.log.reader import read
+from app.files.bad_input import BadInput
+from app.log_reading.reader import read
 from app.report.files import write_report
 from app.runs.runner import Progress, RunOutcome, record, run, silent, simulate
 from app.session.expectation_watch import Verdict
@@ -33,6 +34,19 @@ def work(job: Job, progress: Progress = silent) -> RunOutcome:
     outcome = record(job.session, prepared, job.out, realtime=job.realtime, progress=progress)
     write_report(read(job.out / "log.mcap"), job.out, outcome.verdicts)
     return outcome
+
+
+def tried(job: Job) -> RunOutcome | BadInput:
+    """Run one job; what cannot be used is given back."""
+    try:
+        return work(job)
+    except BadInput as error:
+        return error
+
+
+def run_each(jobs: Iterable[Job]) -> Iterator[tuple[int, RunOutcome | BadInput]]:
+    """As `run_all`, but a job that cannot be run ends no other one."""
+    return spread(tried, jobs)
 
 
 def run_all(jobs: Iterable[Job]) -> Iterator[tuple[int, RunOutcome]]:

@@ -67,14 +67,15 @@ class NetworkRun:
     def repeat(self) -> None:
         """A session does not stand still."""
 
+    def again(self) -> None:
+        """Nor is its loop ever busy."""
+
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot], actions: Sequence[tuple[int, OfClient]]) -> Wishes:
         """What the clients want of the tick; `actions` are those that begin in it, with their places in the time line."""
         for place, action in actions:
             if isinstance(action, DashboardLine):
                 answer = self._commands.answer(action.send, remote=self._cabinet.state.remote)
                 self._asked.append((place, action, answer))
-                if isinstance(answer, Pending):
-                    self._cabinet.ask(answer.ask)
             elif isinstance(action, SendScript):
                 self._send(place, action)
             elif isinstance(action, AskForFreeDrive):
@@ -117,7 +118,7 @@ class NetworkRun:
         """Take in what the robot decided, and judge what the clients were told."""
         self._cabinet.see(tick, decision)
         for place, line, answer in self._asked:
-            said = answer.answer(answer.ask.done.result(0.0)) if isinstance(answer, Pending) else answer
+            said = answer.answer(answer.asked.result(0.0)) if isinstance(answer, Pending) else answer
             wanted = f'timeline[{place}] "{line.send}" is answered "{line.reply}"'
             self._verdicts.append(Verdict(said.startswith(line.reply), wanted, f'"{said}" at {tick * TICK:.3f} s'))
         for place, read in self._reads:

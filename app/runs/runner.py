@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from app.files.bad_input import ABSENT, BadInput
+from app.files.disk_room import must_have_room
 from app.log.events_file import EventsFile
 from app.log.recorder import Recorder
 from app.runs.network_run import NetworkRun
@@ -145,6 +146,7 @@ def record(session: Session, prepared: Prepared, out: Path, *, realtime: bool = 
     Raises:
         BadInput: a file cannot be written, or what is simulated breaks down; the recording ends there, with the cause.
     """
+    must_have_room(out)
     simulation = simulate(prepared)
     with Recorder(out / "log.mcap", simulation, session.title, planned=session.duration) as recorder:
         try:

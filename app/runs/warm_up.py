@@ -1,7 +1,7 @@
 """Makes ready what is compiled before anybody waits for it: a fresh installation compiles here, later starts only load."""
 
+import os
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from app.files.checked import load
 from app.files.library import ASSETS
@@ -21,10 +21,8 @@ def warm_up() -> None:
     session = load(ASSETS / "warm-up.yaml", Session)
     prepared = prepare(session, "warm-up")
     simulation = simulate(prepared)
-    with TemporaryDirectory() as folder:
-        out = Path(folder)
-        with Recorder(out / "log.mcap", simulation, session.title) as recorder:
-            run(session, prepared, simulation, out, see=lambda decision: recorder.see(simulation, decision))
+    with Recorder(Path(os.devnull), simulation, session.title) as recorder:
+        run(session, prepared, simulation, None, see=lambda decision: recorder.see(simulation, decision))
     simulation.snapshot()
     # What no session's step does: direct_torque.
     none = (0.0,) * simulation.arm.n

@@ -1,13 +1,14 @@
 """Session files: what to simulate, what happens when, and what is expected of it. The schema; `prepare` checks and uses it."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 import msgspec
 from msgspec import Meta
 
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import ASSETS, shipped
+from app.files.regular_file import is_something
 from app.session.actions import AnyAction, Walls
 from app.session.expectations import AnyExpectation
 from pendant.equipment.load import Angles
@@ -95,7 +96,7 @@ def find(name: str) -> Path:
     Raises BadInput: neither is there.
     """
     path = Path(name)
-    if path.is_file():
+    if is_something(path):
         return path
     if name in bundled("sessions"):
         return folder("sessions") / f"{name}.yaml"
@@ -128,22 +129,37 @@ def opened(path: Path, kind: type[T], anywhere: bool = False) -> T:
     Raises:
         BadInput: as `load`; or it names a file that is neither in its folder nor below.
     """
-    setup = load(path, kind)
-    folder = path.parent.resolve()
+    return located(load(path, kind), AllowedFiles(path.parent.resolve(), anywhere), path.name)
+
+
+class AllowedFiles(NamedTuple):
+    """The files that a set-up may name, beside the names of what is shipped."""
+
+    folder: Path | None = None  # and below; None: none
+    anywhere: bool = False  # on this machine
+
+
+SHIPPED_ALONE = AllowedFiles()
+
+
+def located(setup: T, files: AllowedFiles, where: str) -> T:
+    """A set-up with the files of arm and tool that it names found. Raises BadInput: it names one that it may not name."""
     found: dict[str, str] = {}
     for field, library in (("robot", "robots"), ("tool", "tools")):
         name = getattr(setup, field)
         if isinstance(name, str) and not shipped(name, library):
-            found[field] = _within(folder, name, anywhere=anywhere, field=field, where=path.name)
+            found[field] = _within(files, name, field=field, where=where)
     return msgspec.structs.replace(setup, **found)
 
 
-def _within(folder: Path, name: str, *, anywhere: bool, field: str, where: str) -> str:
+def _within(files: AllowedFiles, name: str, *, field: str, where: str) -> str:
     try:
-        path = (folder / name).resolve()
-        there = path.exists()
+        path = ((files.folder or Path()) / name).resolve()
+        allowed = files.anywhere or (files.folder is not None and path.is_relative_to(files.folder))
+        there = allowed and path.exists()
     except (OSError, ValueError):  # a circle of links, a NUL, a name that is too long
         raise BadInput(where, field, name, "the name of a file") from None
-    if not (anywhere or path.is_relative_to(folder)):
-        raise BadInput(where, field, name, "a file in the folder of this one or below; with --any-file it may be anywhere")
+    if not allowed:
+        inside = "a shipped one" if files.folder is None else "a file in the folder of this one or below"
+        raise BadInput(where, field, name, f"{inside}; with --any-file it may be anywhere")
     return str(path) if there else name

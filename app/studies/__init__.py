@@ -1,4 +1,4 @@
 """Studies: one session under many conditions, as rows of a data set and a report.
 
-Uses engine/, files/, log/, report/, runs/, session/.
+Uses engine/, files/, log/, log_reading/, report/, runs/, session/.
 """

@@ -12,8 +12,8 @@ import numpy as np
 
 from app.files.bad_input import BadInput
 from app.log.layout import WORDS
-from app.log.reader import Log, read
 from app.log.recorder import Recorder
+from app.log_reading.reader import Log, read
 from app.runs.runner import RunOutcome, run, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session

@@ -8,6 +8,7 @@ from msgspec import Meta
 
 from app.files.checked import ABSENT, BadInput, load
 from app.files.library import ASSETS
+from app.files.regular_file import is_something
 from app.session.session_file import Session, find, opened
 from app.studies.factors import AnyFactor, Name, Sampled
 from app.studies.study_measures import AnyMeasure
@@ -149,7 +150,7 @@ def open_study(name: str, *, quick: bool = False, seed: int | None = None, anywh
         BadInput: it is not there, or does not make a study.
     """
     path = Path(name)
-    if not path.is_file():
+    if not is_something(path):
         if name not in studies():
             raise BadInput(name, "", ABSENT, f"no such file; bundled studies: {', '.join(studies())}")
         path = ASSETS / "studies" / f"{name}.yaml"

@@ -11,6 +11,7 @@ import msgspec
 from app.engine.source import source_commit, source_digest
 from app.engine.spreading import spread
 from app.files.bad_input import ABSENT, BadInput
+from app.files.regular_file import open_regular
 from app.session.session_file import Session
 from app.studies.data_set import done, whole_file, write_data_set
 from app.studies.one_run import CaseOutcome, Common, Task, died, run_case
@@ -98,8 +99,8 @@ def begun(plan: Plan, out: Path) -> bytearray:
         BadInput: the folder holds another study.
     """
     path, ours = out / "study.json", described(plan)
-    if path.is_file():
-        theirs = msgspec.json.decode(path.read_bytes())
+    if path.exists():
+        theirs = _described_there(path)
         field = changed_field(theirs, ours)
         if field == "digest":
             allowed = "its rows were made by another source; take another --out, or go back to that source"
@@ -114,6 +115,16 @@ def begun(plan: Plan, out: Path) -> bytearray:
             raise BadInput(str(out), f"run {number}", ident, "is no row of this study; take another --out")
         there[number] = 1
     return there
+
+
+def _described_there(path: Path) -> dict[str, Any]:
+    """What the folder of a study says of it. Raises BadInput: it cannot be read, or describes no study."""
+    with open_regular(path) as file:
+        text = file.readall()
+    try:
+        return msgspec.json.decode(text, type=dict[str, Any])
+    except msgspec.MsgspecError as error:
+        raise BadInput(str(path), "", ABSENT, f"describes no study ({error}); take another --out, or remove it") from None
 
 
 def row_of(study: Study, outcome: CaseOutcome) -> dict[str, Any]:

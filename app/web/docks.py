@@ -24,6 +24,7 @@ from app.web.tabs.teach_tab import Teach
 from app.web.tabs.tools_tab import ToolsTab
 from app.web.walls.walls_tab import WallsTab
 from app.web.widgets import style, svg
+from app.web.widgets.drawn_parts import DrawnParts
 from app.web.widgets.svg import Colour
 from pendant.events.event import Event
 from sim.arm.arm_file import Arm
@@ -52,40 +53,41 @@ class Docks:
         self._loop, self._arm, self._keeper = loop, arm, keeper
         self._read = 0
         gui = server.gui
+        self.parts = DrawnParts(gui, loop.troubles)
         sheet = gui.add_html("")
         self.panel = Panel(server, guard, loop, arm)
         self._upper = gui.add_panel()
-        with self._upper.add_tab("Teach"):
+        with self._upper.add_tab("Teach") as self._teach_dock:
             self.teach = Teach(server, loop, arm)
-        with self._upper.add_tab("Jog"):
+        with self._upper.add_tab("Jog") as self._jog_dock:
             self.jog = JogTab(server, loop, arm)
-        with self._upper.add_tab("Axes"):
+        with self._upper.add_tab("Axes") as self._axes_dock:
             self.axes = AxesTab(gui, loop, arm)
-        with self._upper.add_tab("Walls"):
+        with self._upper.add_tab("Walls") as self._walls_dock:
             self.walls = WallsTab(server, guard, loop)
-        with self._upper.add_tab("Lab"):
+        with self._upper.add_tab("Lab") as self._lab_dock:
             self.lab = Lab(gui, loop, hand, arm, interfaces=interfaces)
-        with self._upper.add_tab("Tools"):
+        with self._upper.add_tab("Tools") as self._tools_dock:
             self.tools = ToolsTab(server, guard, loop, arm)
         with self._upper.add_tab("Settings") as self.settings_dock:
             self.settings = SettingsTab(gui, self.settings_dock, loop, arm.n)
         self._lower = gui.add_panel()
-        with self._lower.add_tab("Events"):
+        with self._lower.add_tab("Events") as self._events_dock:
             self.journal = Journal(gui)
-        with self._lower.add_tab("Contacts"):
+        with self._lower.add_tab("Contacts") as self._contacts_dock:
             self.contacts = Contacts(server, arm)
-        with self._lower.add_tab("Plots"):
+        with self._lower.add_tab("Plots") as self.plots_dock:
             self.plots = Plots(gui, loop, arm)
         self.journal.look_at = self.plots.look_at
-        with self._lower.add_tab("Record"):
+        with self._lower.add_tab("Record") as self._record_dock:
             self.recording = RecordingSwitch(server, recording, arm)
         self.script: ScriptTab | None = None
         if scripts is not None:
-            with self._lower.add_tab("Script"):
+            with self._lower.add_tab("Script") as self._script_dock:
                 self.script = ScriptTab(gui, scripts)
         self.network: NetworkTab | None = None
         if interfaces is not None:
-            with self._lower.add_tab("Network"):
+            with self._lower.add_tab("Network") as self._network_dock:
                 self.network = NetworkTab(gui, interfaces)
         self._upper.dock_left()
         self._upper.set_width(LEFT)
@@ -137,27 +139,30 @@ class Docks:
         )
 
     def show(self, snapshot: Snapshot) -> bool:
-        """Show a snapshot and the events since the last call; True if anything changed."""
+        """Show a snapshot and the events since the last call, each part for itself; True if anything changed."""
         fresh: list[Event] = self._loop.events(self._read)
         self._read += len(fresh)
-        self.plots.note(fresh)
+        panel, journal, draw = self.panel, self.journal, self.parts.draw
         changed = [
-            self.panel.show(snapshot, fresh),
-            self.journal.show(fresh),
-            self.panel.excused is not None and self.journal.forget(self.panel.excused),
-            self.lab.show(snapshot),
-            self.teach.show(snapshot),
-            self.jog.show(snapshot, fresh),
-            self.axes.show(snapshot),
-            self.walls.show(snapshot, fresh),
-            self.tools.show(snapshot),
-            self.settings.show(snapshot, fresh),
-            self.contacts.show(snapshot, fresh),
-            self.recording.show(snapshot),
-            self.script is not None and self.script.show(),
-            self.network is not None and self.network.show(),
+            draw("the marks in the plots", lambda: self.plots.note(fresh), self.plots_dock),
+            draw("the pendant", lambda: panel.show(snapshot, fresh)),
+            draw("the tab Events", lambda: journal.show(fresh), self._events_dock),
+            draw("the tab Events", lambda: panel.excused is not None and journal.forget(panel.excused), self._events_dock),
+            draw("the tab Lab", lambda: self.lab.show(snapshot), self._lab_dock),
+            draw("the tab Teach", lambda: self.teach.show(snapshot), self._teach_dock),
+            draw("the tab Jog", lambda: self.jog.show(snapshot, fresh), self._jog_dock),
+            draw("the tab Axes", lambda: self.axes.show(snapshot), self._axes_dock),
+            draw("the tab Walls", lambda: self.walls.show(snapshot, fresh), self._walls_dock),
+            draw("the tab Tools", lambda: self.tools.show(snapshot), self._tools_dock),
+            draw("the tab Settings", lambda: self.settings.show(snapshot, fresh), self.settings_dock),
+            draw("the tab Contacts", lambda: self.contacts.show(snapshot, fresh), self._contacts_dock),
+            draw("the tab Record", lambda: self.recording.show(snapshot), self._record_dock),
         ]
-        self.keep()
+        if self.script is not None:
+            changed.append(draw("the tab Script", self.script.show, self._script_dock))
+        if self.network is not None:
+            changed.append(draw("the tab Network", self.network.show, self._network_dock))
+        draw("what is kept for the next start", self.keep, self._teach_dock)
         return any(changed)
 
     def skip(self) -> None:

@@ -9,19 +9,24 @@ import viser
 from viser import uplot
 
 from app.log.events_file import EventLine
-from app.log.playback import Player, snapshot_at
+from app.log_reading.playback import Player, snapshot_at
 from app.web.access.listening import Access
 from app.web.access.site import Site
 from app.web.panel.state_words import FIGURES, SAFETY_WORDS, SEVERITY_COLOURS, WORDS, pull_row, user_row
 from app.web.scene.arm_picture import Scene
 from app.web.widgets import style, svg
+from app.web.widgets.drawn_parts import DrawnParts
 from app.web.widgets.html import Html
 from app.web.widgets.svg import Colour
 from pendant.events.event_row import Severity
 from sim.exchange.snapshot import Snapshot
+from sim.run.troubles import Troubles
 
 POINTS = 600
 """Of a plot's line."""
+
+MOST_EVENTS = 1000
+"""That are listed."""
 
 FRAMES_A_PLOT = 15
 """The mark of the time in the plots is moved with every so many pictures."""
@@ -42,13 +47,14 @@ class Replay(Site):
     """
 
     def __init__(self, player: Player, meshes: Mapping[str, bytes], access: Access, port: int) -> None:
-        super().__init__(access, port)
+        super().__init__(access, port, Troubles(lambda kind, values: None))
         self.player = player
         self._set = -1.0  # where we have put the slider ourselves
         self._before = time.monotonic()
         self._frame, self._marked = 0, -1.0
         log = player.log
         self.scene = Scene(self.server, log.arm, log.scenario, meshes=meshes, first=snapshot_at(log, 0, 0))
+        self.parts = DrawnParts(self.server.gui, self.troubles)
         self._controls()
         self._plots()
         for control in (self.play, self.line, self.speed, self.goto):
@@ -61,7 +67,7 @@ class Replay(Site):
         now = time.monotonic()
         self.player.advance(now - self._before)
         self._before = now
-        self.show()
+        self.parts.draw("the recording", self.show)
         self._frame += 1
         if self._frame % FRAMES_A_PLOT == 0 and self._marked != self.player.time:
             self._marked = self.player.time
@@ -95,11 +101,13 @@ class Replay(Site):
         self.line = gui.add_slider("Time [s]", min=0.0, max=max(round(player.end, 2), 0.01), step=0.01, initial_value=0.0)
         self.speed = gui.add_button_group("Speed", SPEEDS)
         self.speed.value = "1 ×"
-        places = {f"{event.t:.2f} s {event.headline}": event.t for event in log.events}
+        places = {f"{event.t:.2f} s {event.headline}": event.t for event in log.events[-MOST_EVENTS:]}
         self.goto = gui.add_dropdown("Event", (NOWHERE, *places))
         self.facts = Html(gui)
         if log.missing:
             Html(gui, svg.note("Not whole", f"Of this recording {log.missing}.", Colour.AMBER))
+        if log.thinned:
+            Html(gui, svg.fine_print(f"Thinned: {log.thinned}."))
         gui.main_panel.dock_right()
         gui.main_panel.set_width(304)
 
@@ -127,26 +135,28 @@ class Replay(Site):
         gui, log = self.server.gui, self.player.log
         panel = gui.add_panel()
         contacts = [event for event in log.events if event.kind.startswith("contact_")]
-        with panel.add_tab("Events"):
-            Html(gui, svg.table(_line(event) for event in reversed(log.events)))
-        with panel.add_tab("Contacts"):
-            Html(gui, svg.table(_line(event) for event in reversed(contacts)))
-        force = np.linalg.norm(log.state["F_user"][:, :3], axis=1)
-        acceleration = np.linalg.norm(log.state["a_F"], axis=1)
-        step = max(1, len(log.ticks) // POINTS)
+        for name, events in (("Events", log.events), ("Contacts", contacts)):
+            with panel.add_tab(name):
+                if len(events) > MOST_EVENTS:
+                    Html(gui, svg.fine_print(f"The last {MOST_EVENTS} of {len(events)}"))
+                Html(gui, svg.table(_line(event) for event in reversed(events[-MOST_EVENTS:])))
+        step = max(1, len(log) // POINTS)
         self._stretch = step
+        state, truth, t = log.state.sampled(step), log.truth.sampled(step), log.t[::step]
+        force = np.linalg.norm(state["F_user"][:, :3], axis=1)
+        acceleration = np.linalg.norm(state["a_F"], axis=1)
         self._series: list[tuple[viser.GuiUplotHandle, tuple[np.ndarray[Any, Any], ...]]] = []
         with panel.add_tab("Plots"):
             for title, lines in (
-                ("Speed [m/s]", {"tcp": log.state["v_tcp"], "elbow": log.state["v_elbow"]}),
+                ("Speed [m/s]", {"tcp": state["v_tcp"], "elbow": state["v_elbow"]}),
                 ("Force at the flange [N]", {"force": force}),
                 ("Acceleration [m/s²]", {"at the flange": acceleration}),
                 (
                     "Friction of the shoulder [N·m]",
-                    {"true": log.truth["friction"][:, 1], "estimated": log.state["friction"][:, 1]},
+                    {"true": truth["friction"][:, 1], "estimated": state["friction"][:, 1]},
                 ),
             ):
-                data = (log.t[::step], *(np.ascontiguousarray(values[::step], dtype=np.float64) for values in lines.values()))
+                data = (t, *(np.ascontiguousarray(values, dtype=np.float64) for values in lines.values()))
                 series = [uplot.Series(label="t")]
                 colours = ("#1971c2", "#e8590c")
                 series += [uplot.Series(label=name, stroke=c, width=1) for name, c in zip(lines, colours, strict=False)]

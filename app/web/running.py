@@ -1,18 +1,23 @@
 """What the page needs of the loop, sim.run.loop.Loop."""
 
 from collections.abc import Callable
-from typing import Protocol
+from concurrent.futures import Future
+from typing import Protocol, TypeVar
 
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Tool
-from pendant.events.event import Event
+from pendant.events.event import Event, Kind, Values
 from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
-from sim.run.loop import Script
+from sim.run.beginnings import Script
+from sim.run.event_log import EventLog
+from sim.run.troubles import Troubles
 from sim.simulation import Simulation
+
+T = TypeVar("T")
 
 
 class Running(Protocol):
@@ -24,7 +29,8 @@ class Running(Protocol):
     watch: Callable[[Simulation, Decision], None] | None  # shown each tick
     dropped: float  # time that it was too late for, so far [s]
     failure: str  # why nothing is simulated; empty while something is
-    ended: Callable[[Event], None] | None  # told why no tick follows
+    log: EventLog
+    troubles: Troubles  # what around it does not work
 
     @property
     def simulation(self) -> Simulation:
@@ -73,10 +79,18 @@ class Running(Protocol):
         """While paused: one tick."""
         ...
 
-    def reset(self) -> None:
+    def between_ticks(self, work: Callable[[], T]) -> "Future[T]":
+        """Have `work` done on the loop's thread."""
+        ...
+
+    def tell(self, kind: Kind, values: Values) -> None:
+        """Log an event that no tick decides."""
+        ...
+
+    def reset(self) -> "Future[None]":
         """Back to the scenario's start."""
         ...
 
-    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> "Future[None]":
         """Go over to another simulation at the next tick, with a script that acts in it."""
         ...

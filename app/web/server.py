@@ -14,7 +14,7 @@ import viser
 from app.files.checked import BadInput
 from app.files.taught_program import Lesson
 from app.kept_setup import Keeper
-from app.log.live import LiveRecording, must_be_writable
+from app.log.live import LiveRecording
 from app.robot_interface.interfaces import RobotInterfaces
 from app.urscript.running.script_runner import ScriptRunner
 from app.web.access.control import Control
@@ -64,7 +64,7 @@ class Served(Site):
         port: int,
         around: Surround,
     ) -> None:
-        super().__init__(access, port, brand_color=(25, 113, 194))
+        super().__init__(access, port, loop.troubles, brand_color=(25, 113, 194))
         self._loop = loop
         self._shown = -1  # tick of the last picture
         self._frame = 0
@@ -111,19 +111,21 @@ class Served(Site):
         if arms is None or self._changing:
             return
         self._changing = True
-        message = self.lab.setup.message
-        message.show(svg.note("Another arm", f"The {name} is made ready.", Colour.BLUE))
         try:
-            ready = await asyncio.to_thread(arms.ready, name)
-            for client in self.server.get_clients():
-                self._let_go(client)
-            self.docks.keep(now=math.inf)
-            self._still_page = True
-            brought = await asyncio.to_thread(arms.bring, ready)
+            await self._go_over(arms, name)
         except BadInput as refusal:
-            message.show(svg.note("Refused", str(refusal), Colour.AMBER))
-            self._changing = self._still_page = False
-            return
+            self.lab.setup.message.show(svg.note("Refused", str(refusal), Colour.AMBER))
+        finally:
+            self._shown, self._still_page, self._changing = -1, False, False
+
+    async def _go_over(self, arms: ArmChange, name: str) -> None:
+        self.lab.setup.message.show(svg.note("Another arm", f"The {name} is made ready.", Colour.BLUE))
+        ready = await asyncio.to_thread(arms.ready, name)
+        for client in self.server.get_clients():
+            self._let_go(client)
+        self.docks.keep(now=math.inf)
+        self._still_page = True
+        brought = await asyncio.to_thread(arms.bring, ready)
         prepared = ready.prepared
         dark = self.preferences.dark
         self._clear()
@@ -132,7 +134,6 @@ class Served(Site):
         self.docks.skip()
         if ready.lesson is not None:
             self.docks.teach.begin_with(ready.lesson)
-        self._shown, self._still_page, self._changing = -1, False, False
         for number, client in self.server.get_clients().items():
             await self._welcome(client)
             if number in dark:
@@ -152,27 +153,27 @@ class Served(Site):
         self.guard.forget()
 
     def close(self) -> None:
-        """Stop serving; connections are closed, what they held is released, a recording is ended."""
-        self.server.get_event_loop().call_soon_threadsafe(self.control.close)
+        """Stop serving: a recording is ended, connections are closed, what they held is released."""
+        self.attempt("the end of the recording", self.recording.close)
+        self.attempt("the end of the page", lambda: self.server.get_event_loop().call_soon_threadsafe(self.control.close))
         super().close()
-        self.docks.keep(now=math.inf)
-        self.docks.recording.close()
-        self.recording.close()
+        self.attempt("what is kept for the next start", lambda: self.docks.keep(now=math.inf))
+        self.attempt("the export of demonstrations", self.docks.recording.close)
 
     def draw(self) -> bool:
         """Show what is new of the loop; there is always a next picture."""
         if self._still_page:
             return True
-        snapshot = self._loop.latest()
+        snapshot, draw = self._loop.latest(), self.docks.parts.draw
         if snapshot.tick != self._shown:
-            self.scene.show(snapshot)
             self._shown = snapshot.tick
-            self.docks.plots.show(snapshot)
+            draw("the picture of the arm", lambda: self.scene.show(snapshot))
+            draw("the tab Plots", lambda: self.docks.plots.show(snapshot), self.docks.plots_dock)
         if self._frame % FRAMES_A_PANEL == 0:
             self.docks.show(snapshot)
-            self.control.show()
-            self.preferences.show(snapshot.decision)
-            self.beat.show(svg.beat(int(time.monotonic())))
+            draw("who has control", self.control.show)
+            draw("sounds", lambda: self.preferences.show(snapshot.decision))
+            draw("the heartbeat", lambda: self.beat.show(svg.beat(int(time.monotonic()))))
         self._frame += 1
         return True
 
@@ -181,22 +182,30 @@ class Served(Site):
         self.scene.set_theme(client.scene, dark)
 
     async def _welcome(self, client: viser.ClientHandle) -> None:
-        self.control.welcome(client)
-        self.preferences.welcome(client)
+        self.attempt("who has control", lambda: self.control.welcome(client))
+        self.attempt("the preferences of a client", lambda: self.preferences.welcome(client))
 
     async def _farewell(self, client: viser.ClientHandle) -> None:
-        self.control.farewell(client.client_id)
-        self.panel.holds.forget(client.client_id)
-        self.docks.jog.forget(client.client_id)
-        self.preferences.farewell(client.client_id)
-        self.keys.forget(client.client_id)
+        number = client.client_id
+        for forget in (
+            self.control.farewell,
+            self.panel.holds.forget,
+            self.docks.jog.forget,
+            self.preferences.farewell,
+            self.keys.forget,
+        ):
+            self.attempt("a client that leaves", functools.partial(forget, number))
 
     def _let_go(self, client: int) -> None:
-        self.hand.let_go(client)
-        self.panel.let_go(client)
-        self.docks.jog.let_go(client)
-        self.docks.walls.let_go(client)
-        self.docks.tools.frame.handles.let_go(client)
+        """All that a client holds, whatever of it fails."""
+        for let_go in (
+            self.hand.let_go,
+            self.panel.let_go,
+            self.docks.jog.let_go,
+            self.docks.walls.let_go,
+            self.docks.tools.frame.handles.let_go,
+        ):
+            self.attempt("what a client lets go", functools.partial(let_go, client))
         self.guard.operator.engage(client, False, self.guard.now())
 
     def _make_draggable(self, part: str, node: viser.GlbHandle) -> None:
@@ -253,8 +262,7 @@ def serve(
     meshes = meshes_of(arm)
     recording = recording or LiveRecording(loop, record or Path())
     if record is not None:
-        must_be_writable(record)
-        recording.start()
+        recording.start().result()
     served = Served(
         loop,
         arm,

@@ -2,6 +2,7 @@
 
 Two clients use the page at random, one looks on; all come and go. Every ten minutes, or every three in the quick size, the first
 of them does what somebody does who comes back to the arm, and the others look on: free-drive is entered, guided and left alone.
+All the while a script talks, for the page to show.
 """
 
 import json

@@ -10,11 +10,14 @@ import sys
 import threading
 import time
 from collections import deque
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from app.files.library import load_arm
 from app.runs.warm_up import warm_up
+from app.serving import scripts_beside
+from app.urscript.language.trouble import ScriptTrouble
 from app.web.server import serve
 from pendant.all_settings import Settings
 from pendant.tick.modes import TICK
@@ -23,6 +26,9 @@ from sim.run.loop import Loop
 from sim.simulation import Simulation
 
 PERIOD = 0.5  # [s]
+TALK = 'sec talk():\n  i = 0\n  while i < 20:\n    textmsg("so far ", i)\n    i = i + 1\n  end\nend\n'
+"""What is said on the page each PERIOD, beside all that its users do; it takes no time of the arm's."""
+
 BUILD = 10  # periods that building a scenario may take: the arm stands still meanwhile
 
 
@@ -84,10 +90,14 @@ def run(seed: int) -> None:
     loop.start()
     ended = threading.Event()
     threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
-    served = serve(loop, arm, loop.scenario)
+    scripts = scripts_beside(loop, arm)
+    assert scripts is not None
+    served = serve(loop, arm, loop.scenario, scripts=scripts)
     print(served.url, flush=True)
     start, state, pace = time.monotonic(), State(), Pace(loop)
     while not ended.wait(PERIOD):
+        with suppress(ScriptTrouble):  # an arm that is off runs none
+            scripts.offer(TALK)
         pace.look(state)
         state.at, state.memory, state.dropped = time.monotonic() - start, resident(), loop.dropped
         state.events, state.clients = len(loop.events(0)), len(served.server.get_clients())

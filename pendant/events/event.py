@@ -130,6 +130,8 @@ class Kind(StrEnum):
     SETTING_REFUSED = "setting_refused"
     OVERRUN = "overrun"
     BROKEN_DOWN = "broken_down"
+    PART_BROKEN = "part_broken"
+    RECORDING_BROKEN = "recording_broken"
 
 
 class Event(msgspec.Struct, frozen=True):

@@ -164,4 +164,6 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.BROKEN_DOWN: denied(
         "The simulation broke down", "{reason}. Nothing moves any more. Start over, on the tab Lab.", ("reason",)
     ),
+    Kind.PART_BROKEN: denied("Does not work: {part}", "{reason}. The robot goes on.", ("part", "reason")),
+    Kind.RECORDING_BROKEN: denied("The recording ended", "{reason}. What is in {file} can be replayed.", ("file", "reason")),
 }

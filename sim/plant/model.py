@@ -2,6 +2,7 @@
 
 import copy
 import logging
+import threading
 from dataclasses import dataclass
 
 import msgspec
@@ -31,6 +32,7 @@ KEPT = 8
 """Compiled models that a process keeps: many sessions differ only in their seed."""
 
 _compiled: dict[bytes, mujoco.MjModel] = {}
+_keeping = threading.Lock()  # of what is kept: a page makes the next simulation ready while another runs
 
 _TYPES = {
     "force": mujoco.mjtSensor.mjSENS_FORCE,
@@ -70,10 +72,14 @@ def model_of(arm: Arm, scenario: Scenario, step: Step) -> mujoco.MjModel:
     # What the model does not depend on is left out of its name, and nothing else: a new field makes other models.
     alike = msgspec.structs.replace(scenario, seed=0, posture=None, payload_configured=Load(mass=0.0), tools=[], walls=[])
     name = msgspec.msgpack.encode((arm, alike, step), enc_hook=float)  # numbers of numpy are floats, too
-    model = _compiled.pop(name, None) or build(arm, scenario, step).compile()
-    _compiled[name] = model
-    if len(_compiled) > KEPT:
-        del _compiled[next(iter(_compiled))]  # the one that was not asked for the longest
+    with _keeping:
+        kept = _compiled.get(name)
+    model = kept or build(arm, scenario, step).compile()
+    with _keeping:
+        _compiled.pop(name, None)
+        _compiled[name] = model
+        if len(_compiled) > KEPT:
+            del _compiled[next(iter(_compiled))]  # the one that was not asked for the longest
     return copy.copy(model)
 
 

@@ -8,19 +8,24 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import suppress
-from typing import Protocol
+from typing import TypeVar
 
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Tool
-from pendant.events.event import Event, Kind
+from pendant.events.event import Event, Kind, Values
 from pendant.tick.modes import TICK, TICK_RATE
 from pendant.walls.definitions import AnyBorder
 from sim.arm.scenario import Scenario
-from sim.exchange.desk import Desk, Wishes
+from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
+from sim.run.beginnings import Beginnings, Origin, Script
+from sim.run.between_ticks import BetweenTicks
+from sim.run.event_log import EventLog
 from sim.run.lateness import Lateness
+from sim.run.troubles import Troubles, reason_of
 from sim.simulation import Simulation
 
 SNAPSHOT_TICKS = 8
@@ -34,38 +39,22 @@ SWITCH_INTERVAL = 5e-4  # [s] Python's default of 5 ms would let a busy web thre
 DEBT_NAP = 1e-3  # after a dropped debt [s]: a loop that cannot keep up must leave the others some of the processor
 PAUSE_NAP = 0.01  # between looks at the desk while paused [s]
 
-
-LONGEST_REASON = 300
-"""Of what is told of a failure [characters]."""
-
-
-class Script(Protocol):
-    """What acts by itself: a session's time line."""
-
-    def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
-        """The wishes for `tick`, counted from 1; `snapshot` copies the tick before."""
-        ...
-
-    def see(self, tick: int, decision: Decision) -> None:
-        """Take in what the robot decided in `tick`."""
-        ...
-
-
-Beginning = tuple[Callable[[], Simulation], Callable[[], Script] | None]
-"""What makes a simulation, and the script that acts in it."""
+T = TypeVar("T")
 
 
 class Loop:
     """Runs `make()`'s simulation in real time, or slower.
+
+    Its thread is the one writer of what it ticks. Other threads read values that it replaces whole, and hand over what they want:
+    wishes by the desk, other work by `between_ticks`, another simulation by `begin` (docs/explanation/threads.md).
 
     Args:
         make: builds the simulation; called again by `reset`, so that a reset leads back to the scenario's very start.
     """
 
     def __init__(self, make: Callable[[], Simulation]) -> None:
-        self._make = make
-        self._write: Callable[[], Script] | None = None
-        self._next: Beginning | None = None  # what is to begin
+        self._origin = Origin(make)
+        self._beginnings, self._between = Beginnings(), BetweenTicks()
         self._script: Script | None = None
         self.simulation = make()
         self.desk = Desk()
@@ -78,9 +67,9 @@ class Loop:
         self.dropped = 0.0  # debt dropped so far [s]
         self._spell = Lateness()
         self._steps = threading.Semaphore(0)  # single steps asked for and not done yet
-        self.ended: Callable[[Event], None] | None = None  # told on the loop's thread why no tick follows
         self._stop = threading.Event()
-        self._events: list[Event] = []
+        self.log = EventLog()
+        self.troubles = Troubles(self.tell)
         self._snapshot: Snapshot | None = None
         self._thread = threading.Thread(target=self._run, name="simulation", daemon=True)
         self.failure = ""  # why the arm stands and nothing is simulated, until the next start
@@ -118,11 +107,13 @@ class Loop:
         gc.freeze()  # the model and the modules never become garbage: collections stay short
         self._thread.start()
 
-    def stop(self) -> None:
-        """Stop the thread and wait for it."""
+    def stop(self, patience: float | None = None) -> None:
+        """Stop the thread and wait for it, for so long at most [s]; what waits for a tick is given up."""
         self._stop.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(patience)
+        self._between.close()
+        self._beginnings.close()
 
     def latest(self) -> Snapshot:
         """The newest snapshot.
@@ -136,37 +127,47 @@ class Loop:
 
     def events(self, since: int) -> list[Event]:
         """Events from index `since` on, in order; a reset keeps those that were."""
-        return self._events[since:]
+        return self.log.since(since)
+
+    def between_ticks(self, work: Callable[[], T]) -> "Future[T]":
+        """Have `work` done on the loop's thread between two ticks, also while it is paused or has broken down."""
+        return self._between.ask(work)
+
+    def tell(self, kind: Kind, values: Values) -> None:
+        """Log an event that no tick decides, such as a disk that is full; from any thread."""
+        self._between.ask(lambda: self.log.note(Event(kind, self.simulation.plant.tick, values)))
 
     def step_once(self) -> None:
         """While paused: do one tick. Otherwise nothing."""
         if self.paused:
             self._steps.release()
 
-    def reset(self) -> None:
+    def reset(self) -> "Future[None]":
         """Go back to the scenario's start at the next tick; after a failure to that of the last simulation that began.
 
-        Walls and areas stay as they are: a reset takes no protection away.
+        Walls and areas stay as they are: a reset takes no protection away. Returns as `begin`.
         """
-        self._next = (self._make, self._write)
+        return self._beginnings.ask(self._origin)
 
-    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> "Future[None]":
         """Go over to another simulation at the next tick; a later `reset` leads back to its start.
 
         Args:
             make: builds it.
             write: gives the script that is to act in it, beside whoever is at the desk; called anew at each start.
-        """
-        self._next = (make, write)
 
-    def _start_over(self, make: Callable[[], Simulation], write: Callable[[], Script] | None) -> None:
-        self._next = None
-        walls = self.simulation.walls if make is self._make else None  # what was made meanwhile stays through a reset
-        self.simulation = make()
-        self._make, self._write = make, write
+        Returns:
+            See `Beginnings.ask`.
+        """
+        return self._beginnings.ask(Origin(make, write))
+
+    def _start_over(self, origin: Origin) -> None:
+        walls = self.simulation.walls if origin is self._origin else None  # what was made meanwhile stays through a reset
+        self.simulation = origin.make()
+        self._origin = origin
         self.failure = ""
         gc.collect()  # the one before holds megabytes that are not Python's, and would wait long to be found
-        self._script = write() if write is not None else None
+        self._script = origin.write() if origin.write is not None else None
         self.desk.clear()
         if walls is not None and walls != self.simulation.walls:
             self.desk.fence(walls)
@@ -187,7 +188,7 @@ class Loop:
         if (watch := self.watch) is not None:
             watch(self.simulation, decision)
         if decision.events:
-            self._events.extend(decision.events)
+            self.log.extend(decision.events)
         if self.simulation.plant.tick % SNAPSHOT_TICKS == 1:
             self._snapshot = self.simulation.snapshot()
 
@@ -213,13 +214,12 @@ class Loop:
         """The last line of defence: the arm stays where it is, and why is told, until somebody starts over."""
         logging.getLogger(__name__).error("the simulation broke down", exc_info=error)
         self.actual_rate = 0.0
-        self.failure = f"{type(error).__name__}: {' '.join(str(error).split())}"[:LONGEST_REASON]
+        self.failure = reason_of(error)
         event = Event(Kind.BROKEN_DOWN, self.simulation.plant.tick, {"reason": self.failure})
-        self._events.append(event)
-        if self.ended is not None:
-            self.ended(event)
-        while self._next is None and not self._stop.is_set():
+        self.log.note(event)
+        while not self._beginnings.waiting and not self._stop.is_set():
             self.desk.clear()
+            self._between.do()
             time.sleep(PAUSE_NAP)
 
     def _pace(self) -> None:
@@ -228,8 +228,9 @@ class Loop:
         while not self._stop.is_set():
             if spell.times and spell.over(time.perf_counter()):
                 self._tell_spell()
-            if self._next is not None:
-                self._start_over(*self._next)
+            if self._between.waiting:
+                self._between.do()
+            if self._beginnings.waiting and self._beginnings.begin(self._start_over):
                 due = time.perf_counter()
             if self.paused:
                 self._stand()
@@ -259,7 +260,7 @@ class Loop:
             self._tell_spell()
 
     def _tell_spell(self) -> None:
-        self._events.append(self._spell.tell(self.simulation.plant.tick))
+        self.log.extend((self._spell.tell(self.simulation.plant.tick),))
 
 
 def _ask_for_real_time() -> None:

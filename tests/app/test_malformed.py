@@ -166,7 +166,7 @@ def test_a_malformed_log_is_one_line(
 def test_any_byte_of_a_log_may_be_wrong(whole: bytes, tmp_path: Path) -> None:
     """Whatever is wrong in it, it is read, or refused in a line."""
     from app.files.checked import BadInput
-    from app.log.reader import read
+    from app.log_reading.reader import read
 
     chance = random.Random(3)
     path = tmp_path / "bad.mcap"

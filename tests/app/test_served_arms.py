@@ -10,7 +10,7 @@ from app.files.checked import BadInput
 from app.files.taught_program import Lesson, TaughtStep
 from app.kept_setup import Keeper
 from app.log.live import LiveRecording
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.ports import DASHBOARD
 from app.robot_serving import Network

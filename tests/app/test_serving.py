@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.log.reader import read
+from app.log_reading.reader import read
 
 COMMAND = [sys.executable, "-u", "-c", "from app.cli import main; main()", "serve"]
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page
 
-from app.log.playback import Player
-from app.log.reader import read
+from app.log_reading.playback import Player
+from app.log_reading.reader import read
 from tests.e2e.cell import Cell
 from tests.e2e.finger import pointer, tap
 from tests.e2e.test_everyday import open_tab

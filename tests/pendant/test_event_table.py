@@ -29,6 +29,7 @@ EXAMPLE: Values = {
     "cause": "emergency_stop",
     "command": "resume_program",
     "elbow": 0.25,
+    "file": "recording-2026-11-29-183400.mcap",
     "grip": "fully pressed",
     "from": "FREE_DRIVE",
     "gain": 1.0,

@@ -15,10 +15,11 @@ from app.files.checked import BadInput, load, parse
 from app.files.library import ASSETS, load_arm, load_tool, robots, tools
 from app.files.taught_program import Lesson, program
 from app.log.events_file import read as read_events
-from app.log.playback import Player, snapshot_at
-from app.log.reader import read
 from app.log.recorder import Recorder
-from app.log.scan import repair
+from app.log_reading.playback import Player, snapshot_at
+from app.log_reading.reader import read
+from app.mcap_file.mending import repair
+from app.report.gathering import Gathered
 from app.report.summary import summarise
 from app.runs.runner import BROKEN, MOMENT, simulate, try_out, try_tool
 from app.session.actions import AnyAction
@@ -111,7 +112,7 @@ def _message(path: Path) -> None:
 
 def _recording(path: Path) -> None:
     log = read(path)
-    summarise(log)
+    summarise(Gathered(log))
     if log.pictures and len(log.ticks):
         player = Player(log)
         for time in (0.0, player.end / 2.0, player.end):

@@ -3,8 +3,7 @@
 import asyncio
 from collections.abc import Callable
 
-from app.robot_interface.controller.cabinet import Ask
-from app.robot_interface.dashboard.dashboard_commands import DashboardCommands, Pending
+from app.robot_interface.dashboard.dashboard_commands import DashboardCommands
 from app.urscript.language.program_text import LONGEST, ProgramText
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
@@ -29,7 +28,6 @@ class TextCommands:
 
     Args:
         commands: what the lines do.
-        ask: hands a wish to the robot.
         complain: tells the client what cannot be done.
         note: notes what cannot be done where the client has been told already.
         scripts: runs programs; tells all clients why one cannot be begun.
@@ -39,14 +37,13 @@ class TextCommands:
     def __init__(
         self,
         commands: DashboardCommands,
-        ask: Callable[[Ask], object],
         complain: Callable[[str], None],
         note: Callable[[str], None],
         *,
         scripts: ScriptRunner,
         hosts: frozenset[str],
     ) -> None:
-        self._commands, self._ask, self._scripts, self._hosts = commands, ask, scripts, hosts
+        self._commands, self._scripts, self._hosts = commands, scripts, hosts
         self._complain, self._note = complain, note
         self._text = ProgramText()
         self._heard = 0
@@ -91,9 +88,7 @@ class TextCommands:
             return
         if line in LINES:
             for command in LINES[line]:
-                answer = self._commands.answer(command, remote)
-                if isinstance(answer, Pending):
-                    self._ask(answer.ask)
+                self._commands.answer(command, remote)
             return
         try:
             await asyncio.to_thread(self._scripts.offer, text, self._hosts)

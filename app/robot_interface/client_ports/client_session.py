@@ -65,9 +65,8 @@ class StreamSession:
         outbox.patient = writable  # a client may only send programs, and ur-rtde does
         self._peers, self._peer, self._writable, self._scripts = robot.peers, peer, writable, robot.scripts
         hosts = frozenset({peer.address.rpartition(":")[0]})
-        self._text = TextCommands(
-            robot.commands, self.cabinet.ask, self._complain, self._note, scripts=robot.scripts, hosts=hosts
-        )
+        self._text = TextCommands(robot.commands, self._complain, self._note, scripts=robot.scripts, hosts=hosts)
+        self._package = b""  # that was sent last
         self.cabinet.listen(self)
         self._scripts.listen(self.script)
 
@@ -93,6 +92,16 @@ class StreamSession:
     def repeat(self) -> None:
         """No tick has been done for a while."""
 
+    def again(self) -> None:
+        """Send the last package once more; from any thread."""
+        if self._package:
+            self.outbox.offer(self._package)
+
+    def send(self, package: bytes) -> None:
+        """Send a package, and keep it."""
+        self._package = package
+        self.outbox.offer(package)
+
     def script(self, told: Told) -> None:
         """A script tells something."""
 
@@ -113,18 +122,19 @@ class PrimarySession(StreamSession):
     def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool, state: RobotState, messages: bool) -> None:
         self._state, self._messages = state, messages
         self._safety: SafetyMode | None = None
+        self._told = False  # the state, once
+        outbox.send(version_message(robot.cabinet.clock))  # before all that ticks tell
         super().__init__(robot, peer, outbox=outbox, writable=writable)
-        outbox.send(version_message(self.cabinet.clock))
-        self._tell_state()
 
     def tick(self, number: int) -> None:
-        """Every tenth of a second the state; the safety mode as soon as it changes."""
+        """At once and then every tenth of a second the state; the safety mode as soon as it changes."""
+        if number % EVERY == 0 or not self._told:
+            self._told = True
+            self._tell_state()
         safety = self.cabinet.state.safety_mode
         if self._messages and safety is not self._safety:
             self._safety = safety
             self.outbox.send(safety_message(self.cabinet.clock, safety))
-        if number % EVERY == 0:
-            self._tell_state()
 
     def told(self, event: Event) -> None:
         """Messages: keys of programs, texts and errors of everything else that is more than a note."""
@@ -163,23 +173,23 @@ class PrimarySession(StreamSession):
         self.outbox.send(text_of(self.cabinet.clock, text))
 
     def repeat(self) -> None:
-        """Send the last state again, while nothing is simulated."""
+        """Send the state again, while nothing is simulated."""
         self._tell_state()
 
     def _tell_state(self) -> None:
-        self.outbox.offer(self._state.primary() if self._messages else self._state.secondary())
+        self.send(self._state.primary() if self._messages else self._state.secondary())
 
 
 class RealtimeSession(StreamSession):
     """A package every tick."""
 
     def __init__(self, robot: Talking, peer: Peer, *, outbox: Outbox, writable: bool) -> None:
-        self._package = RealtimePackage(robot.cabinet)
+        self._made = RealtimePackage(robot.cabinet)
         super().__init__(robot, peer, outbox=outbox, writable=writable)
 
     def tick(self, number: int) -> None:
         """Send the tick's package."""
-        self.outbox.offer(self._package.bytes())
+        self.send(self._made.bytes())
 
     def repeat(self) -> None:
         """Send it again, while nothing is simulated."""

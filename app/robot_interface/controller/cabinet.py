@@ -3,9 +3,11 @@
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import Any
 
+import msgspec
+
+from app.robot_interface.controller.callers import Act, Ask, Between, Listener, at_once
 from app.robot_interface.controller.controller_state import ControllerState
 from app.robot_interface.controller.field_record import BEGIN, FieldRecord
 from app.robot_interface.controller.measured_fields import MeasuredFields
@@ -19,53 +21,15 @@ from pendant.event_table import TABLE, render
 from pendant.events.event import Event, Kind
 from pendant.events.event_row import Effect
 from pendant.inputs import Command, Inputs
-from pendant.program.steps import Program, is_script
+from pendant.program.steps import is_script
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
-from sim.arm.scenario import Load
 from sim.exchange.desk import Wishes
 from sim.exchange.snapshot import Snapshot
 from sim.simulation import Simulation
 
-
-class Listener(Protocol):
-    """Who is told of every tick, on the loop's thread."""
-
-    def tick(self, number: int) -> None:
-        """A tick is done; `number` counts all of them, through resets too."""
-        ...
-
-    def told(self, event: Event) -> None:
-        """Something happened in it."""
-        ...
-
-    def repeat(self) -> None:
-        """No tick has been done for a while: say again what was said last, on the network's thread."""
-        ...
-
-
 AT_MOST = ticks(1.5)
 """Ticks that a wish waits for the arm to stand still; then the robot says itself that it moves."""
-
-
-@dataclass(slots=True)
-class Ask:
-    """What a client asks the robot for, for one tick: the next, or the first in which the arm stands still."""
-
-    commands: tuple[Command, ...] = ()
-    settings: dict[str, float | bool | str] = field(default_factory=dict)
-    program: Program | None = None
-    load: Load | None = None
-    standing: bool = False  # a robot takes it only where the arm stands
-    waited: int = 0  # ticks for that
-    done: "Future[tuple[Event, ...]]" = field(default_factory=Future)  # the events of that tick
-
-
-class Act(NamedTuple):
-    """Actions that wait for the next tick."""
-
-    actions: Sequence[Action]
-    begun: "Future[int]"  # the tick from which their times count
 
 
 class Cabinet:
@@ -76,6 +40,14 @@ class Cabinet:
         joints: names of the arm's joints, base to flange.
         programs: that can be loaded.
         high: gives the digital inputs that whoever is at the desk keeps high.
+        between: has work done between two ticks, on the thread that does them.
+        remote: it begins in remote control.
+
+    Attributes:
+        state: the controller as of the last tick, replaced whole; the loop's thread writes it.
+        ticks: done so far, through resets too.
+        free_drive_until: tick up to which the remote controller asks for free-drive: its signal, kept alive.
+        writes: how often each input of RTDE was written; by the network's thread.
     """
 
     def __init__(
@@ -84,10 +56,13 @@ class Cabinet:
         joints: list[str],
         programs: ProgramFolder,
         high: Callable[[], frozenset[int]] = frozenset,
+        *,
+        between: Between = at_once,
+        remote: bool = True,
     ) -> None:
-        self._simulation, self._joints, self._high = simulation, joints, high
+        self._simulation, self._joints, self._high, self._between = simulation, joints, high, between
         self.programs = programs
-        self.state = ControllerState()
+        self.state = ControllerState(remote=remote)
         self.record = FieldRecord()
         self._measured, self._status = MeasuredFields(self.record), StatusFields(self.record)
         self._lock = threading.Lock()
@@ -98,13 +73,12 @@ class Cabinet:
         self._timeline = Timeline([], joints)
         self._static = False  # the arm stood still in the last tick
         self._seen: Decision | None = None  # of the last tick
-        self.ticks = 0  # done so far, through resets too
-        self.events: list[Event] = []  # of the running simulation
+        self.ticks = 0
         self._settled = False  # the robot has been brought into remote control
-        self.free_drive_until = 0  # tick up to which the remote controller asks for free-drive: its signal, kept alive
+        self.free_drive_until = 0
         self._wanted = False  # in the last tick
         self.script: Scripts | None = None  # runs scripts
-        self.writes: dict[str, int] = {}  # how often each input of RTDE was written
+        self.writes: dict[str, int] = {}
 
     @property
     def simulation(self) -> Simulation:
@@ -125,7 +99,8 @@ class Cabinet:
     def act(self, actions: Sequence[Action]) -> "Future[int]":
         """Play actions from the next tick on; the result is the tick before it, from which their times count.
 
-        Actions are checked already. While nothing is simulated, there is no result yet.
+        Actions are checked already. While nothing is simulated, there is no result yet; where the simulation starts over before
+        their first tick, they are not played, and the result is cancelled.
         """
         act = Act(actions, Future())
         with self._lock:
@@ -142,9 +117,39 @@ class Cabinet:
         with self._lock:
             self._listeners = tuple(each for each in self._listeners if each is not listener)
 
-    def fresh(self, name: str) -> float | list[float]:
-        """The value of an RTDE field in the tick done last."""
-        return self.record.get(name)
+    def change(self, **values: Any) -> "Future[None]":
+        """Have fields of `state` changed that no tick decides, such as `popup`; it is so when the result is there."""
+        return self._between(lambda: self.set(**values))
+
+    def set(self, **values: Any) -> None:
+        """The same at once, on the loop's thread."""
+        self.state = msgspec.structs.replace(self.state, **values)
+
+    def turn_conveyor(self, encoder: int, rate: float) -> "Future[None]":
+        """Have a conveyor turn an encoder of the robot, 0 or 1, from now on [ticks/s]."""
+
+        def turn() -> None:
+            rates = list(self.state.conveyors)
+            rates[encoder] = rate
+            self.set(conveyors=tuple(rates))
+
+        return self._between(turn)
+
+    def look(self, *names: str) -> "Future[tuple[float | list[float], ...]]":
+        """The values of output fields of RTDE after the tick done last, worked out now."""
+        return self._between(lambda: self._worked_out(names))
+
+    def _worked_out(self, names: tuple[str, ...]) -> tuple[float | list[float], ...]:
+        self.refresh()
+        return tuple(self.record.get(name) for name in names)
+
+    def note(self, event: Event) -> None:
+        """Take in what no tick decided, and tell everybody; on the loop's thread."""
+        if event.kind is Kind.BROKEN_DOWN:
+            self.set(failure=str(event.values["reason"]))
+            self._status.tell(self.state, ending=False)
+        for listener in self._listeners:
+            listener.told(event)
 
     def wishes(self, tick: int, snapshot: Callable[[], Snapshot]) -> Wishes:
         """What the clients, and the faults on command, want of the next tick."""
@@ -158,8 +163,9 @@ class Cabinet:
             self._asked = [ask for ask in ready if ask.done.set_running_or_notify_cancel()]
             acts, self._acts = self._acts, []
         for act in acts:
-            self._timeline.add(act.actions, tick - 1)
-            act.begun.set_result(tick - 1)
+            if act.begun.set_running_or_notify_cancel():
+                self._timeline.add(act.actions, tick - 1)
+                act.begun.set_result(tick - 1)
         commands = [command for ask in self._asked for command in ask.commands]
         if self.state.remote and not self._settled:
             commands.append(Command.REMOTE)
@@ -189,8 +195,8 @@ class Cabinet:
         self._timeline.see(tick, decision)
         if self.script is not None:
             self.script.see(decision)
-            self.state.script = self.script.state
         self._understand(tick, decision)
+        self._status.follow(decision)
         self.record.put("timestamp", self.clock)
         self.record.put("control_step", self.ticks)
         self._seen = decision
@@ -211,18 +217,24 @@ class Cabinet:
             self._status.fill(self.state, self._seen, self._high() | self._timeline.high)
 
     def repeat(self) -> None:
-        """Nothing has been simulated for a while; the network's thread has everybody say that the robot is still there."""
+        """Nothing has been simulated for a while: have everybody say that the robot is still there; on the loop's thread."""
         self._status.tell(self.state, ending=False)
         for listener in self._listeners:
             listener.repeat()
 
+    def again(self) -> None:
+        """The same while the loop is busy, for example with another simulation that is built; from any thread."""
+        for listener in self._listeners:
+            listener.again()
+
     def _begin(self) -> None:
         """A simulation starts: faults of the one before are over, and who had control has it again."""
         with self._lock:
-            self._acts = []
+            acts, self._acts = self._acts, []
+        for act in acts:
+            act.begun.cancel()
         self._timeline = Timeline([], self._joints)
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
-        self.events = []
         self._settled = self._static = False
         self._seen = None
         self.free_drive_until, self._wanted = 0, False
@@ -230,18 +242,22 @@ class Cabinet:
             self.script.begin()
 
     def _understand(self, tick: int, decision: Decision) -> None:
-        state = self.state
-        remote = state.remote
-        state.see(tick, decision)
-        self.events += decision.events
+        idle = None
+        for ask in self._asked:
+            idle = idle if ask.idle is None else ask.idle
+        before, script = self.state, self.script
+        self.state = before.after(tick, decision, None if script is None else script.state, idle)
         for event in decision.events:
-            if event.kind is Kind.RESET and remote:  # a reset leads to TEACH; it takes nobody's control
-                self._settled, state.remote = False, True
+            if event.kind is Kind.RESET and before.remote:  # a reset leads to TEACH; it takes nobody's control
+                self._settled = False
+                self.set(remote=True)
             elif event.kind is Kind.PROGRAM_LOADED:
                 program = self._simulation().supervisor.program
                 if program is not None and not is_script(program):  # what a client sends as a script is never loaded
-                    state.loaded = program
+                    self.set(loaded=program)
+            elif event.kind is Kind.POWERED_OFF:
+                self.set(popup="")
             elif TABLE[event.kind].effect is Effect.NO_ENTRY:
-                state.refusal = " ".join(render(event)[:2])
+                self.set(refusal=" ".join(render(event)[:2]))
             elif event.kind is Kind.ENTERED:
-                state.refusal = ""
+                self.set(refusal="")

@@ -1,9 +1,8 @@
 """What the controller tells of itself in words and numbers of the UR e-Series, derived from the pendant's decision."""
 
-import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import msgspec
 
+from app.robot_interface.controller.question import Question
 from app.robot_interface.controller.robot_words import (
     SAFETY_BITS,
     ControlMode,
@@ -41,58 +40,8 @@ SWITCHING_OFF = frozenset({Kind.POWERED_OFF, Kind.EMERGENCY_STOP})
 """After these the drives are off, and are switched on again by a client."""
 
 
-@dataclass(slots=True, eq=False)
-class Question:
-    """What a program asks people for."""
-
-    kind: str  # "boolean", "integer", "float" or "string"
-    text: str
-    answer: bool | int | float | str | None = None
-
-    def take(self, text: str) -> None:
-        """Answer it. Raises ValueError: this is no value of the kind that is asked for."""
-        read, expected = ANSWERS[self.kind]
-        try:
-            self.answer = read(text)
-        except (ValueError, KeyError):
-            raise ValueError(f"expected {expected}") from None
-
-
-def _whole(text: str) -> int:
-    value = int(text)
-    if not -(1 << 31) <= value < 1 << 31:
-        raise ValueError
-    return value
-
-
-def _finite(text: str) -> float:
-    value = float(text)
-    if not math.isfinite(value):
-        raise ValueError
-    return value
-
-
-def _short(text: str) -> str:
-    if len(text) > LONGEST_ANSWER:
-        raise ValueError
-    return text
-
-
-LONGEST_ANSWER = 1023
-"""Characters of a text, as of a string in a program."""
-
-ANSWERS: dict[str, tuple[Callable[[str], bool | int | float | str], str]] = {
-    "boolean": (lambda text: {"true": True, "false": False}[text.lower()], "true or false"),
-    "integer": (_whole, "a whole number of 32 bits"),
-    "float": (_finite, "a finite number"),
-    "string": (_short, f"a text of {LONGEST_ANSWER} characters at most"),
-}
-"""How an answer to a question of each kind is read, and what is expected."""
-
-
-@dataclass(slots=True)
-class ControllerState:
-    """The controller in one tick."""
+class ControllerState(msgspec.Struct, frozen=True, gc=False):
+    """The controller in one tick: a value, so that whoever reads it sees one tick, whatever the loop does meanwhile."""
 
     mode: Mode = Mode.TEACH
     safety: Safety = Safety.NORMAL
@@ -108,29 +57,55 @@ class ControllerState:
     remote: bool = True  # in remote control
     popup: str = ""  # that is shown
     question: Question | None = None  # that waits for an answer
-    conveyors: list[float] = field(default_factory=lambda: [0.0, 0.0])  # that the laboratory turns: ticks of encoders [1/s]
+    conveyors: tuple[float, float] = (0.0, 0.0)  # that the laboratory turns: ticks of encoders [1/s]
     operational: OperationalMode = OperationalMode.NONE
     failure: str = ""  # why nothing is simulated
     switched_off: bool = False  # it stands because its drives were switched off, or are after an emergency stop
     script: RuntimeState | None = None  # of a script; None: none runs, and the robot's own programs count
     refusal: str = ""  # why free-drive was refused last; "" once it was entered
 
-    def see(self, tick: int, decision: Decision) -> None:
-        """Take in a tick."""
-        before = self.stopped
-        self.tick, self.mode, self.safety = tick, decision.mode, decision.safety
-        if any(event.kind in SWITCHING_OFF for event in decision.events):
-            self.switched_off, self.idle = True, False
-        self.switched_off = self.switched_off and decision.mode is Mode.STOP
-        if self.stopped and not before:
-            self.stopped_at = tick
-        self.phase, self.law, self.program_state = decision.phase, decision.law, decision.program
-        self.forcing, self.torques = isinstance(decision.move, ApplyForce), isinstance(decision.move, DirectTorque)
-        self.idle = self.idle and self.powerless
-        if decision.mode in (Mode.TEACH, Mode.NORMAL):
-            self.remote = False
-        elif decision.mode is Mode.REMOTE:
-            self.remote = True
+    def after(
+        self, tick: int, decision: Decision, script: RuntimeState | None = None, idle: bool | None = None
+    ) -> "ControllerState":
+        """The state after a tick.
+
+        Args:
+            tick: its number.
+            decision: of it.
+            script: state of a script, None where none runs.
+            idle: whether a client has asked for drives that are on with brakes that are closed; None: nobody has asked.
+        """
+        mode, safety, events = decision.mode, decision.safety, decision.events
+        switched_off = self.switched_off
+        idle = self.idle if idle is None else idle
+        if events and any(event.kind in SWITCHING_OFF for event in events):
+            switched_off, idle = True, False
+        switched_off = switched_off and mode is Mode.STOP
+        stopped = _stopped(mode, safety, switched_off)
+        powerless = switched_off or _off(decision.law, safety, stopped)
+        move = decision.move
+        return ControllerState(
+            mode,
+            safety,
+            decision.phase,
+            decision.law,
+            decision.program,
+            self.loaded,
+            isinstance(move, ApplyForce),
+            isinstance(move, DirectTorque),
+            tick if stopped and not self.stopped else self.stopped_at,
+            tick,
+            idle and powerless,
+            mode is Mode.REMOTE or (self.remote and mode not in (Mode.TEACH, Mode.NORMAL)),
+            self.popup,
+            self.question,
+            self.conveyors,
+            self.operational,
+            "",
+            switched_off,
+            script,
+            self.refusal,
+        )
 
     @property
     def program(self) -> str:
@@ -140,14 +115,12 @@ class ControllerState:
     @property
     def stopped(self) -> bool:
         """A protective stop in a UR's sense: also the pendant's STOP without one, which a UR does not know."""
-        if self.safety is Safety.PROTECTIVE_STOP:
-            return True
-        return self.mode is Mode.STOP and self.safety <= Safety.REDUCED and not self.switched_off
+        return _stopped(self.mode, self.safety, self.switched_off)
 
     @property
     def off(self) -> bool:
         """The drives have no power, and no stop is there that has to be unlocked first."""
-        return self.law is Law.OFF and self.safety is not Safety.SAFEGUARD_STOP and not self.stopped
+        return _off(self.law, self.safety, self.stopped)
 
     @property
     def powerless(self) -> bool:
@@ -203,3 +176,13 @@ class ControllerState:
     def locked_for(self) -> float:
         """Time until a protective stop can be unlocked [s]."""
         return max(0.0, UNLOCK_AFTER - (self.tick - self.stopped_at) * TICK)
+
+
+def _stopped(mode: Mode, safety: Safety, switched_off: bool) -> bool:
+    if safety is Safety.PROTECTIVE_STOP:
+        return True
+    return mode is Mode.STOP and safety <= Safety.REDUCED and not switched_off
+
+
+def _off(law: Law, safety: Safety, stopped: bool) -> bool:
+    return law is Law.OFF and safety is not Safety.SAFEGUARD_STOP and not stopped

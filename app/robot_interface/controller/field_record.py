@@ -1,5 +1,6 @@
 """All of RTDE's output fields of one tick, big-endian in one piece of memory, so that a recipe is a choice of its bytes."""
 
+import threading
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,9 +18,14 @@ VOLTS = 0b1111
 
 
 class FieldRecord:
-    """A value for each output field. `put` may be called from any thread; a field is a few bytes and never half old for long."""
+    """A value for each output field.
+
+    One thread writes a field: the network's the inputs that a client may set, the loop's all else. Outputs are the exception, for
+    both switch them: whoever reads, changes and writes one holds `lock` (docs/explanation/threads.md).
+    """
 
     def __init__(self) -> None:
+        self.lock = threading.Lock()
         self._at: dict[str, int] = {}
         size = 0
         for name, kind in OUTPUTS.items():

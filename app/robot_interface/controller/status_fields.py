@@ -35,18 +35,10 @@ class StatusFields:
         self._tool_on = False
         self._outputs: frozenset[int] = frozenset()
 
-    def fill(self, state: ControllerState, decision: Decision, high: frozenset[int]) -> None:
-        """Write the tick done last; what seldom changes only when it does. `high`: digital inputs."""
-        put = self._record.put
-        if decision.periods:
-            put(REMAINING, decision.periods[0].ticks * TICK)
+    def follow(self, decision: Decision) -> None:
+        """Write what a tick alone tells, and no later one does; for every tick."""
         for contact in decision.contacts:
-            put(CONTACT, contact.change is not Change.LOST)
-        if high != self._high:
-            self._high = high
-            bits = sum(1 << number for number in high)
-            put("actual_digital_input_bits", bits)
-            put("actual_configurable_digital_input_bits", bits >> 8 & 0xFF)
+            self._record.put(CONTACT, contact.change is not Change.LOST)
         if decision.tool_on is not self._tool_on:
             self._tool_on = decision.tool_on
             set_outputs(self._record, TOOL_OUTPUT, TOOL_OUTPUT if decision.tool_on else 0)
@@ -54,6 +46,17 @@ class StatusFields:
             changed = sum(1 << number for number in decision.outputs ^ self._outputs)
             self._outputs = decision.outputs
             set_outputs(self._record, changed, sum(1 << number for number in decision.outputs))
+
+    def fill(self, state: ControllerState, decision: Decision, high: frozenset[int]) -> None:
+        """Write the tick done last; what seldom changes only when it does. `high`: digital inputs."""
+        put = self._record.put
+        if decision.periods:
+            put(REMAINING, decision.periods[0].ticks * TICK)
+        if high != self._high:
+            self._high = high
+            bits = sum(1 << number for number in high)
+            put("actual_digital_input_bits", bits)
+            put("actual_configurable_digital_input_bits", bits >> 8 & 0xFF)
         told = (
             state.robot_mode,
             state.safety_mode,
@@ -88,20 +91,22 @@ class StatusFields:
 
 def set_outputs(record: FieldRecord, mask: int, bits: int) -> None:
     """Set the digital outputs in `mask`: 0 to 7 standard, 8 to 15 configurable, 16 and 17 of the tool."""
-    before = record.get("actual_digital_output_bits")
-    assert isinstance(before, int)
-    now = (before & ~mask) | (bits & mask)
-    record.put("actual_digital_output_bits", now)
-    record.put("actual_configurable_digital_output_bits", now >> 8 & 0xFF)
+    with record.lock:
+        before = record.get("actual_digital_output_bits")
+        assert isinstance(before, int)
+        now = (before & ~mask) | (bits & mask)
+        record.put("actual_digital_output_bits", now)
+        record.put("actual_configurable_digital_output_bits", now >> 8 & 0xFF)
 
 
 def set_analog_output(record: FieldRecord, number: int, share: float, *, volts: bool) -> None:
     """Set analog output 0 or 1 to a share of its span, 0 to 10 V or 4 to 20 mA, which is told in volts or amperes."""
-    kinds, bit = record.get("analog_io_types"), 1 << number + 2
-    assert isinstance(kinds, int)
     share = min(max(share, 0.0), 1.0)
-    record.put("analog_io_types", kinds | bit if volts else kinds & ~bit)
-    record.put(f"standard_analog_output{number}", 10.0 * share if volts else 0.004 + 0.016 * share)
+    with record.lock:
+        kinds, bit = record.get("analog_io_types"), 1 << number + 2
+        assert isinstance(kinds, int)
+        record.put("analog_io_types", kinds | bit if volts else kinds & ~bit)
+        record.put(f"standard_analog_output{number}", 10.0 * share if volts else 0.004 + 0.016 * share)
 
 
 def in_volts(record: FieldRecord, output: int) -> bool:
@@ -123,8 +128,9 @@ def write_bit(record: FieldRecord, address: int, value: bool) -> None:
         return
     bit = 1 << address % WORD_BITS
     word = _word("output", address)
-    before = int(record.field(word).item())
-    record.put(word, before | bit if value else before & ~bit)
+    with record.lock:
+        before = int(record.field(word).item())
+        record.put(word, before | bit if value else before & ~bit)
 
 
 def _word(way: str, address: int) -> str:

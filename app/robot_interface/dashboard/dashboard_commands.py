@@ -1,13 +1,15 @@
 """The dashboard server's commands as PolyScope 5 answers them (DashboardServer e-Series), for the robot that there is."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from concurrent.futures import Future
+from typing import Any, NamedTuple
 
 from app.files.bad_input import BadInput
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.robot_words import SERIAL, VERSION, OperationalMode, RobotMode, RuntimeState, SafetyMode
 from app.robot_interface.controller.scripts_side import Scripts
-from pendant.events.event import Event, Kind
+from pendant.events.event import Kind
 from pendant.inputs import Command
 from pendant.program.steps import ProgramState
 from sim.arm.scenario import Load
@@ -25,10 +27,10 @@ READY = frozenset({SafetyMode.NORMAL, SafetyMode.REDUCED})
 
 
 class Pending(NamedTuple):
-    """An answer that follows from what the robot does with a wish in the next tick."""
+    """An answer that follows from what the robot does with a wish."""
 
-    ask: Ask
-    answer: Callable[[tuple[Event, ...]], str]
+    asked: "Future[Any]"
+    answer: Callable[[Any], str]  # of what `asked` gives
 
 
 Answer = str | Pending
@@ -101,11 +103,19 @@ class DashboardCommands:
         text = line.strip()
         low = text.lower()
         if low in self._exact:
-            return LOCAL if low in self._remote_only and not remote else self._exact[low]()
+            return self._refusal(low, remote) or self._exact[low]()
         for verb, act in self._begins.items():
             if low.startswith(f"{verb} ") or low == verb:
-                return LOCAL if verb in self._remote_only and not remote else act(text[len(verb) :].strip())
+                return self._refusal(verb, remote) or act(text[len(verb) :].strip())
         return f"could not understand: '{text}'"
+
+    def _refusal(self, verb: str, remote: bool) -> str:
+        """Why a command cannot be done now at all, or ""."""
+        if verb not in self._remote_only:
+            return ""
+        if not remote:
+            return LOCAL
+        return f"Failed to execute: {verb}" if self._cabinet.state.failure else ""
 
     @property
     def _plays(self) -> bool:
@@ -137,7 +147,7 @@ class DashboardCommands:
             program = self._cabinet.programs.load(path)
         except BadInput:
             return failed
-        return _when(Ask(program=program), Kind.PROGRAM_LOADED, f"Loading program: {name}", failed)
+        return self._when(Ask(program=program), Kind.PROGRAM_LOADED, f"Loading program: {name}", failed)
 
     def _play(self) -> Answer:
         state = self._cabinet.state
@@ -153,7 +163,7 @@ class DashboardCommands:
             return "Failed to execute: play"
         program = state.loaded if self._cabinet.simulation.supervisor.program is not state.loaded and not paused else None
         ask = Ask((command,), program=program, standing=True)
-        return _when(ask, kind, "Starting program", "Failed to execute: play")
+        return self._when(ask, kind, "Starting program", "Failed to execute: play")
 
     def _stop(self) -> Answer:
         if self._cabinet.state.runtime is RuntimeState.STOPPED:
@@ -161,28 +171,27 @@ class DashboardCommands:
         if self._scripted is not None:
             self._scripted.stop()
             return "Stopped"
-        return _when(Ask((Command.STOP_PROGRAM,)), Kind.PROGRAM_STOPPED, "Stopped", "Failed to execute: stop")
+        return self._when(Ask((Command.STOP_PROGRAM,)), Kind.PROGRAM_STOPPED, "Stopped", "Failed to execute: stop")
 
     def _pause(self) -> Answer:
         if self._scripted is not None:
             self._scripted.pause()
             return "Pausing program" if self._plays else "Failed to execute: pause"
-        return _when(Ask((Command.PAUSE_PROGRAM,)), Kind.PROGRAM_PAUSED, "Pausing program", "Failed to execute: pause")
+        return self._when(Ask((Command.PAUSE_PROGRAM,)), Kind.PROGRAM_PAUSED, "Pausing program", "Failed to execute: pause")
 
     def _power_on(self) -> Answer:
         state = self._cabinet.state
         if state.powerless and state.safety_mode in READY:
-            state.idle = True
+            return self._pending(Ask(idle=True), "Powering on")
         return "Powering on"
 
     def _power_off(self) -> Answer:
-        self._cabinet.state.idle = False
-        return Pending(Ask((Command.POWER_OFF,)), lambda events: "Powering off")
+        return self._pending(Ask((Command.POWER_OFF,), idle=False), "Powering off")
 
     def _release_brakes(self) -> Answer:
         state = self._cabinet.state
         if state.powerless and state.safety_mode in READY:
-            return Pending(Ask((Command.RESET,), standing=True), lambda events: "Brake releasing")
+            return self._pending(Ask((Command.RESET,), standing=True), "Brake releasing")
         return "Brake releasing"
 
     def _unlock(self) -> Answer:
@@ -191,19 +200,16 @@ class DashboardCommands:
             return "Protective stop releasing"
         if state.locked_for > 0.0:
             return LOCKED
-        return Pending(Ask((Command.RESET,), standing=True), lambda events: "Protective stop releasing")
+        return self._pending(Ask((Command.RESET,), standing=True), "Protective stop releasing")
 
     def _restart_safety(self) -> Answer:
-        self._cabinet.state.idle = False
-        return Pending(Ask((Command.POWER_OFF,)), lambda events: "Restarting safety")
+        return self._pending(Ask((Command.POWER_OFF,), idle=False), "Restarting safety")
 
-    def _popup(self, text: str) -> str:
-        self._cabinet.state.popup = text
-        return "showing popup"
+    def _popup(self, text: str) -> Answer:
+        return Pending(self._cabinet.change(popup=text), lambda _: "showing popup")
 
-    def _close_popup(self) -> str:
-        self._cabinet.state.popup = ""
-        return "closing popup"
+    def _close_popup(self) -> Answer:
+        return Pending(self._cabinet.change(popup=""), lambda _: "closing popup")
 
     def _answer(self, text: str) -> str:
         """Ours: the value that a program asks people for."""
@@ -216,25 +222,24 @@ class DashboardCommands:
             return f"Failed to execute: answer; {error}"
         return "Answered"
 
-    def _set_operational(self, name: str) -> str:
+    def _set_operational(self, name: str) -> Answer:
         if name.upper() not in ("MANUAL", "AUTOMATIC"):
             return f"could not understand: 'set operational mode {name}'"
-        self._cabinet.state.operational = OperationalMode[name.upper()]
-        return f"Operational mode {name.upper()} is set"
+        asked = self._cabinet.change(operational=OperationalMode[name.upper()])
+        return Pending(asked, lambda _: f"Operational mode {name.upper()} is set")
 
-    def _clear_operational(self) -> str:
-        self._cabinet.state.operational = OperationalMode.NONE
-        return "No longer controlling the operational mode. Current operational mode: NONE"
+    def _clear_operational(self) -> Answer:
+        asked = self._cabinet.change(operational=OperationalMode.NONE)
+        return Pending(asked, lambda _: "No longer controlling the operational mode. Current operational mode: NONE")
 
     def _free_drive(self) -> str:
         """Ours: where free-drive stands, and why it was refused last."""
         state = self._cabinet.state
         return f"Free-drive: {state.phase.value}" + (f"; refused: {state.refusal}" if state.refusal else "")
 
-    def _payload(self) -> str:
+    def _payload(self) -> Answer:
         """Ours: what is configured, tool and payload together."""
-        x, y, z = self._cabinet.record.get("payload_cog")  # type: ignore[misc]
-        return f"Payload: {self._cabinet.record.get('payload'):g} kg at {x:g} {y:g} {z:g} m"
+        return Pending(self._cabinet.look("payload", "payload_cog"), _payload_told)
 
     def _set_payload(self, text: str) -> Answer:
         """Ours: the payload beyond the tool, mass [kg] and centre in F [m]."""
@@ -247,12 +252,21 @@ class DashboardCommands:
             return failed
         load = Load(mass=mass, com=centre) if centre else Load(mass=mass)
         refused = Kind.TOOL_REFUSED
-        return Pending(Ask(load=load), lambda seen: failed if any(e.kind is refused for e in seen) else "Setting payload")
+        asked = self._cabinet.ask(Ask(load=load))
+        return Pending(asked, lambda seen: failed if any(e.kind is refused for e in seen) else "Setting payload")
+
+    def _pending(self, ask: Ask, done: str) -> Pending:
+        """`done`, when the robot has taken it."""
+        return Pending(self._cabinet.ask(ask), lambda _: done)
+
+    def _when(self, ask: Ask, kind: Kind, done: str, failed: str) -> Pending:
+        """`done` if an event of `kind` follows, else `failed`."""
+        return Pending(self._cabinet.ask(ask), lambda events: done if any(event.kind is kind for event in events) else failed)
 
 
-def _when(ask: Ask, kind: Kind, done: str, failed: str) -> Pending:
-    """`done` if an event of `kind` follows, else `failed`."""
-    return Pending(ask, lambda events: done if any(event.kind is kind for event in events) else failed)
+def _payload_told(found: tuple[float, list[float]]) -> str:
+    mass, (x, y, z) = found
+    return f"Payload: {mass:g} kg at {x:g} {y:g} {z:g} m"
 
 
 def _truth(value: bool) -> str:

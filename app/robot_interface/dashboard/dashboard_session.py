@@ -46,11 +46,11 @@ class DashboardSession:
             raise Farewell("it said goodbye")
         answer = self._commands.answer(line, self._remote)
         if isinstance(answer, Pending):
-            asked = asyncio.wrap_future(self._cabinet.ask(answer.ask))
-            try:
-                answer = answer.answer(await asyncio.wait_for(asked, PATIENCE))
-            except TimeoutError:
-                answer = f"Failed to execute: {line}"
+            asked = asyncio.wrap_future(answer.asked)
+            done, _ = await asyncio.wait((asked,), timeout=PATIENCE)
+            given = bool(done) and not asked.cancelled()
+            asked.cancel()
+            answer = answer.answer(asked.result()) if given else f"Failed to execute: {line}"
         self._peers.note(self._peer.interface, self._peer.number, f"{line} -> {answer}")
         self._say(answer)
 

@@ -3,40 +3,41 @@
 import asyncio
 import hmac
 from collections.abc import Awaitable, Callable, Mapping
+from concurrent.futures import Future
 from http import HTTPStatus
 from typing import TypeVar
 
-import msgspec
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 from starlette.routing import Route
 
 from app.files.bad_input import ABSENT, BadInput
-from app.files.checked import convert
 from app.log.live import LiveRecording
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.rtde_fields import OUTPUTS
+from app.robot_interface.faults.channel_messages import WHERE, answer, body, refusal, whole
 from app.robot_interface.faults.channel_requests import Asked, CableFault, ClockPace, ConveyorSpeed, Switched, Timed
 from app.robot_interface.faults.served_loop import ServedLoop
 from app.robot_interface.transport.peers import Peers
 from app.robot_interface.transport.tcp_port import TcpPort
 from app.runs.runner import simulate
 from app.session.prepare import prepare
-from app.session.session_file import Setup
+from app.session.session_file import AllowedFiles, Setup, located
 from app.session.timeline_checks import Prepared, check_actions
 from pendant.event_table import render
 from pendant.inputs import Command
 from pendant.settings.schema import ticks
 from pendant.tick.modes import TICK
+from sim.run.troubles import reason_of
 
-WHERE = "control channel"
-
-MOST_BYTES = 1 << 20
-"""Of a request."""
+LONGEST = 20.0
+"""Time that a request may take, with all that its client has to say [s]."""
 
 PATIENCE = 10.0
-"""Time in which another set-up must have begun [s]."""
+"""Time in which the loop must have done what a request asks of it [s]."""
 
 T = TypeVar("T")
 Handler = Callable[[Request], Awaitable[object]]
@@ -53,6 +54,7 @@ class ControlChannel:
         recording: of the loop.
         token: that every request must bring.
         hosts: names and addresses, with port, that a request may call this machine.
+        files: that a set-up may name.
     """
 
     def __init__(
@@ -65,9 +67,10 @@ class ControlChannel:
         recording: LiveRecording,
         token: str,
         hosts: frozenset[str],
+        files: AllowedFiles,
     ) -> None:
         self._loop, self._cabinet, self._peers, self._ports = loop, cabinet, peers, ports
-        self._recording, self._token, self._hosts = recording, token, hosts
+        self._recording, self._token, self._hosts, self._files = recording, token, hosts, files
         get = {"state": self._state, "events": self._events, "connections": self._connections, "messages": self._messages}
         post: dict[str, Handler] = {
             "actions": self._act,
@@ -83,19 +86,26 @@ class ControlChannel:
         routes = [Route(f"/{name}", self._guarded(handler), methods=["GET"]) for name, handler in get.items()]
         routes += [Route(f"/{name}", self._guarded(handler), methods=["POST"]) for name, handler in post.items()]
         routes.append(Route("/field/{name}", self._guarded(self._field), methods=["GET"]))
-        self.app = Starlette(routes=routes, exception_handlers={404: _nothing, 405: _nothing})
+        self.app = Starlette(routes=routes, exception_handlers={HTTPException: _nothing})
 
     def _guarded(self, handler: Handler) -> Callable[[Request], Awaitable[Response]]:
-        async def answer(request: Request) -> Response:
-            refusal = self._why_not(request)
-            if refusal is not None:
-                return _json({"error": refusal[1]}, refusal[0])
+        async def answered(request: Request) -> Response:
+            why_not = self._why_not(request)
+            if why_not is not None:
+                return refusal(*why_not)
             try:
-                return _json(await handler(request))
+                return answer(await asyncio.wait_for(handler(request), LONGEST))
             except BadInput as error:
-                return _json({"error": str(error)}, HTTPStatus.BAD_REQUEST)
+                return refusal(HTTPStatus.BAD_REQUEST, str(error))
+            except ClientDisconnect:
+                return refusal(HTTPStatus.BAD_REQUEST, f"{WHERE}: the client left")
+            except TimeoutError:
+                return refusal(HTTPStatus.REQUEST_TIMEOUT, f"{WHERE}: a request that takes more than {LONGEST:g} s")
+            except Exception as error:  # noqa: BLE001 - of this request alone
+                self._loop.troubles.failed("a request of the control channel", error)
+                return refusal(HTTPStatus.INTERNAL_SERVER_ERROR, f"{WHERE}: {reason_of(error)}")
 
-        return answer
+        return answered
 
     def _why_not(self, request: Request) -> tuple[HTTPStatus, str] | None:
         """Why a request is turned away: what a page of somebody else sends, and what has no token."""
@@ -111,7 +121,7 @@ class ControlChannel:
         return None
 
     async def _state(self, _: Request) -> object:
-        state = self._cabinet.state
+        state, recording = self._cabinet.state, self._recording
         return {
             "tick": state.tick,
             "time": state.tick * TICK,
@@ -127,11 +137,13 @@ class ControlChannel:
             "question": "" if state.question is None else state.question.text,
             "refusal": state.refusal,
             "failure": self._loop.failure,
-            "recording": None if self._recording.path is None else str(self._recording.path),
+            "broken": self._loop.troubles.now(),
+            "recording": str(recording.path) if recording.on and recording.path is not None else None,
+            "recording_failure": recording.failure,
         }
 
     async def _events(self, request: Request) -> object:
-        after = _whole(request, "after")
+        after = whole(request, "after")
         return [
             {
                 "number": number,
@@ -158,26 +170,27 @@ class ControlChannel:
     async def _messages(self, request: Request) -> object:
         return [
             {"number": said.number, "interface": said.interface, "peer": said.peer, "text": said.text}
-            for said in self._peers.said(_whole(request, "after"))
+            for said in self._peers.said(whole(request, "after"))
         ]
 
     async def _field(self, request: Request) -> object:
         name = request.path_params["name"]
         if name not in OUTPUTS:
             raise BadInput(WHERE, "field", name, "an output field of RTDE, such as actual_q")
-        return self._cabinet.record.get(name)
+        (value,) = await self._in_time(self._cabinet.look(name))
+        return value
 
     async def _act(self, request: Request) -> object:
-        wanted = await _body(request, Timed)
+        wanted = await body(request, Timed)
         loop = self._loop
         check_actions(wanted.actions, Prepared(loop.simulation.arm, loop.scenario, loop.settings, None, WHERE))
         begun = self._cabinet.act(wanted.actions)
         if loop.paused or loop.failure:  # no tick comes before somebody asks for one
             return {"after": self._cabinet.state.tick}
-        return {"after": await asyncio.wrap_future(begun)}
+        return {"after": await self._in_time(begun)}
 
     async def _network(self, request: Request) -> object:
-        wanted = await _body(request, CableFault)
+        wanted = await body(request, CableFault)
         if wanted.interface != "all" and wanted.interface not in self._ports:
             raise BadInput(WHERE, "interface", wanted.interface, f"one of all, {', '.join(self._ports)}")
         for name, port in self._ports.items():
@@ -189,12 +202,12 @@ class ControlChannel:
         return {}
 
     async def _turn(self, request: Request) -> object:
-        wanted = await _body(request, ConveyorSpeed)
-        self._cabinet.state.conveyors[wanted.encoder] = wanted.ticks_per_second
+        wanted = await body(request, ConveyorSpeed)
+        await asyncio.wrap_future(self._cabinet.turn_conveyor(wanted.encoder, wanted.ticks_per_second))
         return {}
 
     async def _pace(self, request: Request) -> object:
-        wanted, loop = await _body(request, ClockPace), self._loop
+        wanted, loop = await body(request, ClockPace), self._loop
         if wanted.speed is not None:
             loop.speed = wanted.speed
         if wanted.paused is not None:
@@ -204,7 +217,7 @@ class ControlChannel:
         return {"speed": loop.speed, "paused": loop.paused}
 
     async def _begin(self, request: Request) -> object:
-        setup = await _body(request, Setup)
+        setup = located(await body(request, Setup), self._files, WHERE)
         prepared = await asyncio.to_thread(prepare, setup, WHERE)
         if prepared.arm.name != self._loop.simulation.arm.name:
             raise BadInput(
@@ -212,65 +225,47 @@ class ControlChannel:
             )
         simulation = await asyncio.to_thread(simulate, prepared)
         made = [simulation]
-        self._loop.begin(lambda: made.pop() if made else simulate(prepared))
-        return await self._begun(lambda: self._loop.scenario is prepared.scenario)
+        await self._in_time(self._loop.begin(lambda: made.pop() if made else simulate(prepared)))
+        return {"tick": self._cabinet.state.tick}
 
     async def _restart(self, _: Request) -> object:
-        before = self._loop.simulation
-        self._loop.reset()
-        return await self._begun(lambda: self._loop.simulation is not before)
+        await self._in_time(self._loop.reset())
+        return {"tick": self._cabinet.state.tick}
 
-    async def _begun(self, done: Callable[[], bool]) -> object:
-        for _ in range(ticks(PATIENCE) // 5):
-            if done() and self._cabinet.state.tick:
-                return {"tick": self._cabinet.state.tick}
-            await asyncio.sleep(5 * TICK)
-        raise BadInput(WHERE, "", ABSENT, "the simulation did not begin in time")
+    async def _in_time(self, asked: "Future[T]") -> T:
+        """What the loop gives. Raises BadInput: it fails, is given up, or does not come in time, and is withdrawn then."""
+        waiting = asyncio.wrap_future(asked)
+        done, _ = await asyncio.wait((waiting,), timeout=PATIENCE)
+        if not done or waiting.cancelled():
+            waiting.cancel()
+            why = "another start, or the end, came between" if done else f"the robot did not come to it in {PATIENCE:g} s"
+            raise BadInput(WHERE, "", ABSENT, why)
+        try:
+            return waiting.result()
+        except BadInput:
+            raise
+        except Exception as error:
+            raise BadInput(WHERE, "", ABSENT, f"it failed: {reason_of(error)}") from error
 
     async def _remote(self, request: Request) -> object:
-        wanted = await _body(request, Switched)
+        wanted = await body(request, Switched)
         self._cabinet.ask(Ask((Command.REMOTE if wanted.on else Command.TEACH,)))
         return {}
 
     async def _free_drive(self, request: Request) -> object:
-        wanted = await _body(request, Asked)
+        wanted = await body(request, Asked)
         self._cabinet.free_drive_until = self._cabinet.ticks + ticks(wanted.seconds) if wanted.seconds else 0
         return {}
 
     async def _record(self, request: Request) -> object:
-        wanted, recording = await _body(request, Switched), self._recording
+        wanted, recording = await body(request, Switched), self._recording
         if wanted.on:
-            recording.start()
+            await self._in_time(recording.start())
         else:
             await asyncio.to_thread(recording.close)
         return {"path": None if recording.path is None else str(recording.path), "failure": recording.failure}
 
 
-async def _nothing(_: Request, __: Exception) -> Response:
-    return _json({"error": f"{WHERE}: no such request; docs/reference/control-channel.md lists all"}, HTTPStatus.NOT_FOUND)
-
-
-def _json(value: object, status: HTTPStatus = HTTPStatus.OK) -> Response:
-    headers = {"Cache-Control": "no-store", "X-Content-Type-Options": "nosniff"}
-    return Response(msgspec.json.encode(value), status, headers, media_type="application/json")
-
-
-def _whole(request: Request, name: str) -> int:
-    text = request.query_params.get(name, "0")
-    if not (text.isascii() and text.isdigit() and len(text) < 10):
-        raise BadInput(WHERE, name, text, "a whole number, 0 or more")
-    return int(text)
-
-
-async def _body(request: Request, kind: type[T]) -> T:
-    """The request's body as `kind`. Raises BadInput: it is too long, no JSON, or does not fit."""
-    data = bytearray()
-    async for part in request.stream():
-        data += part
-        if len(data) > MOST_BYTES:
-            raise BadInput(WHERE, "", ABSENT, f"a request of more than {MOST_BYTES} bytes")
-    try:
-        raw = msgspec.json.decode(bytes(data) or b"{}")
-    except (msgspec.DecodeError, RecursionError, UnicodeDecodeError) as error:
-        raise BadInput(WHERE, "", ABSENT, f"expected JSON ({error})") from None
-    return convert(raw, kind, WHERE)
+async def _nothing(_: Request, error: Exception) -> Response:
+    status = error.status_code if isinstance(error, HTTPException) else HTTPStatus.NOT_FOUND
+    return refusal(HTTPStatus(status), f"{WHERE}: no such request; docs/reference/control-channel.md lists all")

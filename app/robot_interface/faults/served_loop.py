@@ -1,12 +1,14 @@
 """What the control channel needs of the loop, sim.run.loop.Loop."""
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Protocol
 
 from pendant.all_settings import Settings
 from pendant.events.event import Event
 from sim.arm.scenario import Scenario
-from sim.run.loop import Script
+from sim.run.beginnings import Script
+from sim.run.troubles import Troubles
 from sim.simulation import Simulation
 
 
@@ -16,6 +18,7 @@ class ServedLoop(Protocol):
     speed: float
     paused: bool
     failure: str  # why nothing is simulated; empty while something is
+    troubles: Troubles  # what around it does not work
 
     @property
     def simulation(self) -> Simulation:
@@ -40,10 +43,10 @@ class ServedLoop(Protocol):
         """While paused: one tick."""
         ...
 
-    def reset(self) -> None:
+    def reset(self) -> "Future[None]":
         """Back to the scenario's start."""
         ...
 
-    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> None:
+    def begin(self, make: Callable[[], Simulation], write: Callable[[], Script] | None = None) -> "Future[None]":
         """Go over to another simulation at the next tick."""
         ...

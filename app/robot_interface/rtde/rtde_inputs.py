@@ -5,7 +5,8 @@ import struct
 import threading
 from collections.abc import Sequence
 
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.field_record import VOLTS
 from app.robot_interface.controller.rtde_fields import INPUTS, OUTPUTS
 from app.robot_interface.controller.status_fields import set_analog_output, set_outputs

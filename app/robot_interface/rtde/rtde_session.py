@@ -2,8 +2,10 @@
 
 import struct
 from contextlib import suppress
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.robot_interface.controller.cabinet import Cabinet
 from app.robot_interface.controller.robot_words import VERSION
@@ -43,6 +45,14 @@ LATE_TOLD = 500
 """Packages that may be skipped before a reader is told so again."""
 
 
+class OutputRecipe(NamedTuple):
+    """What a client wants of each tick: a value, for the loop sends by it while the network's thread takes the next one."""
+
+    head: bytes  # of its packages
+    places: NDArray[np.int64]  # in the record
+    every: int  # ticks
+
+
 class RtdeSession:
     """See `app.robot_interface.transport.tcp_port.Conversation` and `app.robot_interface.controller.cabinet.Listener`.
 
@@ -63,10 +73,9 @@ class RtdeSession:
         self._reader = Reader()
         self._version = 1
         self._recipes: list[Recipe] = []
-        self._places = np.zeros(0, dtype=np.int64)
-        self._head = b""
-        self._every = 1  # ticks
+        self._output: OutputRecipe | None = None
         self._streams = False
+        self._package = b""  # that was sent last
         self._told_late = 0
 
     async def hear(self, data: bytes) -> None:
@@ -84,9 +93,10 @@ class RtdeSession:
 
     def tick(self, number: int) -> None:
         """Send this tick's package, if it is due."""
-        if not self._streams or number % self._every:
+        output = self._output
+        if not self._streams or output is None or number % output.every:
             return
-        if self._outbox.offer(self._head + self._cabinet.record.taken(self._places)):
+        if self._send(output):
             if self._told_late and not self._outbox.full:
                 self._tell(f"reader too slow: {self._outbox.skipped} packages were skipped", Level.WARNING)
                 self._told_late = 0
@@ -96,9 +106,20 @@ class RtdeSession:
             self._told_late = self._outbox.skipped
 
     def repeat(self) -> None:
-        """Send the last package again: while nothing is simulated, clients must not take the robot for dead."""
-        if self._streams:
-            self._outbox.offer(self._head + self._cabinet.record.taken(self._places))
+        """Send a package all the same: while nothing is simulated, clients must not take the robot for dead."""
+        output = self._output
+        if self._streams and output is not None:
+            self._send(output)
+
+    def again(self) -> None:
+        """Send the last package once more."""
+        if self._streams and self._package:
+            self._outbox.offer(self._package)
+
+    def _send(self, output: OutputRecipe) -> bool:
+        """False: the client does not read in time."""
+        self._package = output.head + self._cabinet.record.taken(output.places)
+        return self._outbox.offer(self._package)
 
     def told(self, event: Event) -> None:
         """Tell an event, if it is more than a note."""
@@ -148,13 +169,13 @@ class RtdeSession:
         kinds = [OUTPUTS.get(name, "NOT_FOUND") for name in wanted]
         good = "NOT_FOUND" not in kinds and bool(wanted) and SLOWEST <= rate <= TICK_RATE
         if good:
-            self._places = self._cabinet.record.where(wanted)
-            self._every = max(1, round(TICK_RATE / rate))
-            head = b"\1" if self._version == 2 else b""
-            self._head = struct.pack(">HB", 3 + len(head) + len(self._places), Package.DATA_PACKAGE) + head
-            self._peer.about = f"{len(wanted)} outputs at {TICK_RATE / self._every:g} Hz"
+            places, every = self._cabinet.record.where(wanted), max(1, round(TICK_RATE / rate))
+            ident = b"\1" if self._version == 2 else b""
+            head = struct.pack(">HB", 3 + len(ident) + len(places), Package.DATA_PACKAGE) + ident
+            self._output = OutputRecipe(head, places, every)
+            self._peer.about = f"{len(wanted)} outputs at {TICK_RATE / every:g} Hz"
         else:
-            self._head = b""
+            self._output = None
         ident = bytes([good]) if self._version == 2 else b""
         self._reply(Package.SETUP_OUTPUTS, ident + ",".join(kinds).encode())
 
@@ -169,7 +190,7 @@ class RtdeSession:
 
     def _start(self) -> None:
         """Stream; refused where there is no recipe, as a robot does."""
-        good = bool(self._head)
+        good = self._output is not None
         self._reply(Package.START, bytes([good]))
         if good:
             self._cabinet.forget(self)

@@ -9,6 +9,7 @@ from typing import Protocol
 
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
+from sim.run.troubles import Troubles, reason_of
 
 CHUNK = 4096
 """Bytes read at once."""
@@ -18,6 +19,9 @@ SHARE = 0.2
 
 MOST_CONNECTIONS = 16
 """To one port."""
+
+BREATH = 0.5
+"""After a connection that could not be taken, until the next one is [s]: files may be free again."""
 
 WEB = (b"GET ", b"POST ", b"PUT ", b"HEAD ", b"OPTIONS ", b"DELETE ", b"CONNECT ", b"PATCH ", b"TRACE ")
 """How a browser's request begins: a web page must not be able to speak to a robot."""
@@ -49,11 +53,12 @@ class TcpPort:
         name: of the interface.
         peers: who is connected, all in all.
         open_: begins the conversation of a new connection.
+        troubles: what does not work.
     """
 
-    def __init__(self, name: str, peers: Peers, open_: Opening) -> None:
+    def __init__(self, name: str, peers: Peers, open_: Opening, troubles: Troubles) -> None:
         self.name = name
-        self._peers, self._open = peers, open_
+        self._peers, self._open, self._troubles = peers, open_, troubles
         self._cut_until = 0.0  # no connection until then
         self.delay = 0.0  # of what is heard [s]
         self._tasks: set[asyncio.Task[None]] = set()
@@ -63,7 +68,12 @@ class TcpPort:
         loop = asyncio.get_running_loop()
         try:
             while True:
-                connection, address = await loop.sock_accept(listening)
+                try:
+                    connection, address = await loop.sock_accept(listening)
+                except OSError as error:  # too many files are open, for example
+                    self._troubles.failed(f"new connections to {self.name}", error)
+                    await asyncio.sleep(BREATH)
+                    continue
                 task = loop.create_task(self._converse(connection, f"{address[0]}:{address[1]}"))
                 self._tasks.add(task)
                 task.add_done_callback(self._tasks.discard)
@@ -98,6 +108,9 @@ class TcpPort:
             why = "the connection broke"
         except asyncio.CancelledError:
             why = "cut off"
+        except Exception as error:  # noqa: BLE001 - of this conversation alone
+            why = f"an error of the robot's own: {reason_of(error)}"
+            self._troubles.failed(f"a connection to {self.name}", error)
         finally:
             if conversation is not None:
                 conversation.over()

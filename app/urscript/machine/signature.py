@@ -88,6 +88,8 @@ def number(value: Value) -> float:
         return value
     if type(value) is int:
         return float(value)
+    if type(value) is float:
+        raise Misuse(f"expected a finite number, this is {'no number (NaN)' if math.isnan(value) else 'infinite'}")
     raise Misuse(f"expected a number, this is {kind(value)}")
 
 

@@ -51,6 +51,10 @@ class ScriptArm:
     """
 
     def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """The simulation starts over: nothing is wished, and nothing was."""
         self._count = 0  # motions so far, of all scripts
         self._wish = Scripted()
         self._wanted = False  # the script wants something of the arm

@@ -5,8 +5,9 @@ from collections.abc import Callable, Generator
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from app.robot_interface.controller.cabinet import Ask, Cabinet
-from app.robot_interface.controller.controller_state import Question
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
+from app.robot_interface.controller.question import Question
 from app.urscript.calculation.pose_algebra import to_rpy
 from app.urscript.language.trouble import Misuse
 from app.urscript.machine.limits import MOST_MESSAGES
@@ -83,21 +84,21 @@ class ScriptRobot:
 
     def popup(self, text: str, title: str, level: str, blocking: bool) -> None:
         """Show a message."""
-        self._cabinet.state.popup = printable(text)
+        self._cabinet.set(popup=printable(text))
         self._tell(Told(Telling.POPUP, printable(text), title=printable(title), level=level))
 
     def question(self, kind: str, text: str) -> Generator[None, None, Any]:
         """Ask people for a value, and wait for it."""
-        state = self._cabinet.state
-        asked = state.question = Question(kind, printable(text))
+        asked = Question(kind, printable(text))
+        self._cabinet.set(question=asked)
         self._tell(Told(Telling.QUESTION, asked.text, level=kind))
         try:
             while asked.answer is None:
                 yield
             return asked.answer
         finally:
-            if state.question is asked:
-                state.question = None
+            if self._cabinet.state.question is asked:
+                self._cabinet.set(question=None)
 
     @property
     def popup_shown(self) -> bool:

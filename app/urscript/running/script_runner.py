@@ -16,9 +16,10 @@ from app.urscript.outside.hosts import AllowedHosts
 from app.urscript.robot.robot_memory import RobotMemory
 from app.urscript.running.garbage import uncollected
 from app.urscript.running.input_watchdog import InputWatchdog
+from app.urscript.running.orders import NOTHING_ORDERED, Orders
 from app.urscript.running.script_arm import ScriptArm
 from app.urscript.running.script_robot import OfferedScript, ScriptRobot, joined
-from app.urscript.running.secondary_programs import MOST_SECONDARIES, SecondaryPrograms
+from app.urscript.running.secondary_programs import SecondaryPrograms
 from app.urscript.running.told import Telling, Told, printable
 from pendant.decision import Decision
 from pendant.inputs import NOTHING
@@ -37,28 +38,33 @@ BREATHLESS = (
 class ScriptRunner:
     """Beside the cabinet, in its ticks. `offer`, `stop`, `pause` and `resume` may be called from any thread.
 
+    What the loop's thread runs is its own; others read values that it replaces whole (docs/explanation/threads.md).
+
     Args:
         cabinet: the robot.
+
+    Attributes:
+        told: the last messages.
+        line: of the script that runs, 0: none does.
+        text: of the script that ran last.
+        trouble: of the one that ran last.
     """
 
     def __init__(self, cabinet: Cabinet) -> None:
         self.cabinet = cabinet
-        self._lock = threading.Lock()
-        self._next: OfferedScript | None = None
-        self._stop = False
-        self._waiting: list[OfferedScript] = []  # secondary programs
-        self._over: deque[OfferedScript] = deque()  # scripts that are used no more
+        self._lock = threading.Lock()  # of what is told, and to whom
+        self._orders = Orders()
         self._beside = SecondaryPrograms(self._close)
         self._running: OfferedScript | None = None
         self._listeners: tuple[Callable[[Told], None], ...] = ()
         self._history: deque[tuple[float, ...]] = deque(maxlen=HISTORY + 1)
         self._watchdog = InputWatchdog(cabinet)
         self._warned = False  # that the script that runs computes without end
-        self.told: deque[Told] = deque(maxlen=KEPT)
-        self.count = 0  # of messages so far
+        self.told: tuple[Told, ...] = ()
         self.paused = False
-        self.text = ""  # of the script that ran last
-        self.trouble: ScriptTrouble | None = None  # of the one that ran last
+        self.line = 0
+        self.text = ""
+        self.trouble: ScriptTrouble | None = None
         self.arm = ScriptArm()
         self.memory = RobotMemory(cabinet)
         cabinet.script = self
@@ -97,36 +103,27 @@ class ScriptRunner:
         return script.machine.script.name
 
     def _take(self, script: OfferedScript) -> None:
-        with self._lock:
-            if not script.machine.script.secondary:
-                self._drop_next()
-                self._next = script
-            elif len(self._waiting) + len(self._beside) < MOST_SECONDARIES:
-                self._waiting.append(script)
-            else:
-                raise ScriptTrouble(NOWHERE, f"more than {MOST_SECONDARIES} secondary programs at once")
+        if script.machine.script.secondary:
+            self._orders.run_beside(script, len(self._beside))
+        else:
+            self._orders.run(script)
 
     def stop(self) -> None:
         """End the script that runs, and the one that waits."""
-        with self._lock:
-            self._drop_next()
-            self._stop = True
+        self._orders.stop()
 
     def pause(self) -> None:
         """Let it wait; the arm comes to rest."""
-        if self._running is not None and not self.paused:
-            self.paused = True
-            self.arm.pause()
+        self._orders.halt(True)
 
     def resume(self) -> None:
         """Let it go on, as soon as the arm stands."""
-        self.paused = False
-        self.arm.resume()
+        self._orders.halt(False)
 
     def tell(self, told: Told) -> None:
         """Tell everybody."""
-        self.told.append(told)
-        self.count += 1
+        with self._lock:
+            self.told = (*self.told[1 - KEPT :], told)
         for listener in self._listeners:
             listener(told)
 
@@ -140,29 +137,25 @@ class ScriptRunner:
     @property
     def name(self) -> str:
         """Of the script that runs."""
-        return "" if self._running is None else self._running.machine.script.name
+        running = self._running
+        return "" if running is None else running.machine.script.name
 
     @property
     def reads(self) -> bool:
         """A script runs, which may read the robot's record."""
         return self._running is not None or bool(self._beside)
 
-    @property
-    def line(self) -> int:
-        """Of the script that runs; 0: none does."""
-        return 0 if self._running is None else self._running.machine.line
-
     def variables(self) -> dict[str, str]:
         """Of the script that runs."""
-        return {} if self._running is None else self._running.machine.variables()
+        running = self._running
+        return {} if running is None else running.machine.variables()
 
     def _made(self, text: str, hosts: frozenset[str]) -> OfferedScript:
         state = self.cabinet.state
         if state.robot_mode is not RobotMode.RUNNING or state.mode is Mode.STOP:
             raise ScriptTrouble(NOWHERE, "the robot does not run: power on and release the brakes, or reset it, first")
         robot = ScriptRobot(self.cabinet, self.arm, AllowedHosts(hosts), self.tell, memory=self.memory)
-        while self._over:
-            self._over.popleft().machine.let_go()
+        self._orders.let_go()
         with uncollected(len(text)):
             body = read_script(text)
             secondary = len(body) == 1 and getattr(body[0], "kind", "") == "sec"
@@ -171,11 +164,6 @@ class ScriptRunner:
             finally:
                 tree.let_go(body)
         return OfferedScript(machine, robot, text)
-
-    def _drop_next(self) -> None:
-        if self._next is not None:
-            self._over.append(self._next)
-        self._next = None
 
     # on the loop's thread
 
@@ -186,6 +174,7 @@ class ScriptRunner:
         running = self._running
         if running is not None and not (self.paused or self.arm.halted):
             over = running.machine.tick()
+            self.line = running.machine.line
             inputs = running.robot.taken()
             if over:
                 self._end(running.machine.trouble, whole=running.machine.trouble is None)
@@ -225,27 +214,37 @@ class ScriptRunner:
         """The simulation starts over: no script runs."""
         self._end(None)
         self.memory.end()
-        self.arm, self.memory = ScriptArm(), RobotMemory(self.cabinet)
+        self.memory = RobotMemory(self.cabinet)
+        self.arm.begin()  # the same one: a script that is being read has it already
 
     def _change(self) -> None:
         """Do what others asked for since the last tick."""
-        if self._next is None and not self._stop and not self._waiting:
+        ordered = self._orders.take()
+        if ordered is NOTHING_ORDERED:
             return
-        with self._lock:
-            next_, self._next = self._next, None
-            stop, self._stop = self._stop, False
-            waiting, self._waiting = self._waiting, []
-        if next_ is not None or waiting:
+        script = ordered.script
+        if script is not None or ordered.beside:
             self.cabinet.refresh()
-        if next_ is not None or stop:
+        if script is not None or ordered.stop:
             self._end(None)
-        if next_ is not None:
-            self._running, self.text, self.trouble, self.paused = next_, next_.text, None, False
+        if script is not None:
+            self._running, self.text, self.trouble, self.paused = script, script.text, None, False
             self._history.clear()
             self._watchdog, self._warned = InputWatchdog(self.cabinet), False
             self.memory.begin_program()
-            self.tell(Told(Telling.STARTED, "", next_.machine.script.name))
-        self._beside.add(waiting)
+            self.tell(Told(Telling.STARTED, "", script.machine.script.name))
+        if ordered.halt is not None:
+            self._halted(ordered.halt)
+        self._beside.add(ordered.beside)
+
+    def _halted(self, wait: bool) -> None:
+        """Have the script wait, or go on."""
+        if not wait:
+            self.paused = False
+            self.arm.resume()
+        elif self._running is not None and not self.paused:
+            self.paused = True
+            self.arm.pause()
 
     def _watch(self, robot: ScriptRobot) -> None:
         """End or pause a script whose client is silent for longer than it said."""
@@ -256,13 +255,13 @@ class ScriptRunner:
             if robot.watchdog[2] == "stop":
                 self._end(None)
             else:
-                self.pause()
+                self._halted(True)
 
     def _end(self, trouble: ScriptTrouble | None, *, whole: bool = False) -> None:
         running = self._running
         if running is None:
             return
-        self._running, self.trouble = None, trouble
+        self._running, self.trouble, self.line = None, trouble, 0
         running.machine.stop()
         self.arm.end(whole=whole)
         self.memory.end_program()
@@ -272,7 +271,7 @@ class ScriptRunner:
     def _close(self, script: OfferedScript, trouble: ScriptTrouble | None) -> None:
         script.machine.stop()
         script.robot.sockets.end()
-        self._over.append(script)
+        self._orders.used_up(script)
         if trouble is not None:
             outline = script.machine.script
             kind = Telling.ASIDE if outline.secondary else Telling.TROUBLE

@@ -7,9 +7,6 @@ from app.urscript.running.script_robot import OfferedScript, joined
 from pendant.decision import Decision
 from pendant.inputs import Inputs
 
-MOST_SECONDARIES = 8
-"""Secondary programs that wait or run."""
-
 SECONDARY_TICKS = 5
 """One that runs longer takes time, which it must not. What it waits for others, a server say, does not count."""
 

@@ -1,3 +1,3 @@
-"""Recordings on the page: made, replayed, downloaded, exported. Uses files/, learning/, log/, web/panel/, web/scene/,
-web/widgets/.
+"""Recordings on the page: made, replayed, downloaded, exported. Uses files/, learning/, log/, log_reading/, web/panel/,
+web/scene/, web/widgets/.
 """

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import viser
 
+from app.files.checked import BadInput
 from app.log.layout import WORDS as CODED
 from app.web.panel.state_words import WORDS
 from app.web.recordings.shelf import Shelf
@@ -86,7 +87,7 @@ class ReplayControls:
         if player is not None:
             player.advance(passed)
             label = "Pause" if player.playing else "Go on" if player.time < player.end else "Replay"
-            posture = player.log.state["q"][player.row].tolist()
+            posture = player.log.state.row(player.row)["q"].tolist()
             at = round(player.time, 2)
             if self.line.value != at:
                 self._set = at
@@ -126,7 +127,7 @@ class ReplayControls:
         if player is None:
             return ""
         log, row = player.log, player.row
-        mode, _ = WORDS[Mode(CODED["mode"][log.state["mode"][row]])]
+        mode, _ = WORDS[Mode(CODED["mode"][log.state.row(row)["mode"]])]
         told = next((event.headline for event in reversed(log.events) if event.t <= player.time), "")
         return svg.note("Replay: the violet arm", f"{mode}. {told}", Colour.BLUE)
 
@@ -174,8 +175,8 @@ class ReplayControls:
     async def _send(self, client: viser.ClientHandle, name: str) -> None:
         """Give the file to a browser; it is read beside the page's event loop."""
         try:
-            content = await asyncio.to_thread(self._shelf.path(name).read_bytes)
-        except OSError as error:
-            self._shelf.failure = f"{name}: cannot be read ({error.strerror})"
+            content = await asyncio.to_thread(self._shelf.content, name)
+        except BadInput as error:
+            self._shelf.failure = str(error)
             return
         client.send_file_download(name, content, save_immediately=True)

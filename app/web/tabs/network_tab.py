@@ -2,7 +2,7 @@
 
 import viser
 
-from app.robot_interface.controller.cabinet import Ask
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.transport.peers import Said
 from app.web.widgets import svg

@@ -109,12 +109,13 @@ class ScriptTab:
         problem = self._problem or ("" if trouble is None or state is not None else str(trouble))
         note = svg.note("Script", problem, Colour.RED) if problem else ""
         values = [(name, value[:LONGEST]) for name, value in list(scripts.variables().items())[:SHOWN]]
-        said = [(told.kind.value, told.text or told.name, COLOURS.get(told.kind, Colour.GREY)) for told in reversed(scripts.told)]
+        last = scripts.told[: -SHOWN - 1 : -1]
+        said = [(told.kind.value, told.text or told.name, COLOURS.get(told.kind, Colour.GREY)) for told in last]
         return any(
             [
                 self.message.show(note),
                 self.listing.show(svg.listing(rows, marked, "" if state is None else state.name.lower())),
                 self.variables.show(svg.facts(values)),
-                self.said.show(svg.table(said[:SHOWN])),
+                self.said.show(svg.table(said)),
             ]
         )

@@ -148,7 +148,7 @@ def test_files(tmp_path: Path) -> None:
         load(path, House)
     with pytest.raises(BadInput, match="expected an existing file"):
         load(tmp_path / "none.yaml", House)
-    with pytest.raises(BadInput, match="expected a readable file"):
+    with pytest.raises(BadInput, match="is a folder; expected a regular file"):
         load(tmp_path, House)
 
 

@@ -1,4 +1,6 @@
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -6,7 +8,7 @@ import pytest
 from app.files.bad_input import BadInput
 from app.learning.demonstrations import LEAST, demonstrations
 from app.log.layout import WORDS
-from app.log.reader import Log, read
+from app.log_reading.reader import Log, read
 
 
 @pytest.fixture(scope="module")
@@ -57,39 +59,37 @@ def test_who_only_stands_by_demonstrates_nothing(idle: Path) -> None:
     assert demonstrations(read(idle), 25) == []
 
 
+def changed(log: Log, ticks: Any = None, **state: Any) -> Any:
+    """The recording with another column, or with other ticks."""
+    ticks = log.ticks if ticks is None else ticks
+    return SimpleNamespace(path=log.path, events=log.events, settings=log.settings, ticks=ticks, state={**log.state, **state})
+
+
 def test_a_nudge_is_no_demonstration(log: Log) -> None:
-    guided = log.state["phase"].copy()
     first = demonstrations(log, 500)[0].ticks[0]
     begin = int(np.searchsorted(log.ticks, first))
-    short = read(log.path)
-    short.state["phase"] = guided.copy()
-    short.state["phase"][begin + LEAST - 1 :] = 0
-    assert demonstrations(short, 500) == []
-    short.state["phase"] = guided.copy()
-    short.state["phase"][begin + LEAST + 1 :] = 0
-    assert len(demonstrations(short, 500)) == 1
+    for length, found in ((LEAST - 1, 0), (LEAST + 1, 1)):
+        phase = log.state["phase"].copy()
+        phase[begin + length :] = 0
+        assert len(demonstrations(changed(log, phase=phase), 500)) == found
 
 
 def test_a_way_counts_while_the_button_is_held(log: Log) -> None:
     """The phase says then that the button is held, and not that somebody moves the arm."""
-    held = read(log.path)
-    way = demonstrations(held, 25)[0]
-    within = (held.ticks >= way.ticks[0] - 100) & (held.ticks <= way.ticks[-1] + 300)
-    phase = held.state["phase"].copy()
+    way = demonstrations(log, 25)[0]
+    within = (log.ticks >= way.ticks[0] - 100) & (log.ticks <= way.ticks[-1] + 300)
+    phase = log.state["phase"].copy()
     phase[within] = WORDS["phase"].index("HELD")
-    held.state["phase"] = phase
-    again = demonstrations(held, 25)[0]
+    again = demonstrations(changed(log, phase=phase), 25)[0]
     assert abs(int(again.ticks[0] - way.ticks[0])) < 60
     assert abs(int(again.ticks[-1] - way.ticks[-1])) < 150
 
 
 def test_ticks_that_are_missing_end_a_way(log: Log) -> None:
-    torn = read(log.path)
-    way = demonstrations(torn, 25)[0]
-    torn.ticks = torn.ticks.copy()
-    middle = int(np.searchsorted(torn.ticks, (way.ticks[0] + way.ticks[-1]) // 2))
-    torn.ticks[middle:] += 5
-    assert len(demonstrations(torn, 25)) == 3
+    way = demonstrations(log, 25)[0]
+    ticks = log.ticks
+    ticks[int(np.searchsorted(ticks, (way.ticks[0] + way.ticks[-1]) // 2)) :] += 5
+    assert len(demonstrations(changed(log, ticks=ticks), 25)) == 3
 
 
 @pytest.mark.parametrize("rate", [0, -5, 30, 501])

@@ -11,7 +11,7 @@ from app.api import run, session
 from app.files.bad_input import BadInput
 from app.learning.demonstrations import demonstrations
 from app.learning.exported import PIXELS, export, recordings
-from app.log.reader import read
+from app.log_reading.reader import read
 
 
 def test_the_numbers_of_a_recording_come_back(led: Path, tmp_path: Path) -> None:

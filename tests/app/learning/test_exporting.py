@@ -26,7 +26,7 @@ def test_what_cannot_be_exported_is_told(tmp_path: Path) -> None:
     exporting.start(tmp_path / "gone.mcap")
     until(lambda: not exporting.on, "it has ended", seconds=60.0)
     assert exporting.failed
-    assert exporting.told.endswith("gone.mcap: cannot be read (No such file or directory)")
+    assert exporting.told.endswith("gone.mcap: expected an existing file")
 
 
 def test_one_at_a_time_and_none_after_the_end(tmp_path: Path, monkeypatch) -> None:

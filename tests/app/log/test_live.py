@@ -3,25 +3,31 @@
 import re
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
 from app.files.checked import BadInput
 from app.files.library import load_arm
 from app.log import live
-from app.log.live import LiveRecording, must_be_writable
-from app.log.reader import read
+from app.log.live import LiveRecording
 from app.log.recorder import SLOW, Recorder
+from app.log_reading.reader import read
 from pendant.all_settings import Settings
 from pendant.decision import Decision
+from pendant.events.event import Event, Kind, Values
 from pendant.inputs import NOTHING
 from sim.arm.scenario import BoxObject, Load, Scenario
 from sim.exchange.desk import Wishes
+from sim.run.between_ticks import BetweenTicks
+from sim.run.event_log import EventLog
+from sim.run.troubles import Troubles
 from sim.simulation import Simulation
 from tests.app.web.raw_client import until
 
+T = TypeVar("T")
 ARM = load_arm("ur5e")
 IDLE = Wishes(NOTHING, (), ())
 
@@ -31,9 +37,19 @@ class SteppedLoop:
 
     def __init__(self) -> None:
         self.watch: Callable[[Simulation, Decision], None] | None = None
+        self.log = EventLog()
+        self._between = BetweenTicks()
+        self.troubles = Troubles(self.tell)
         self.simulation = Simulation(ARM, Scenario(), Settings())
 
+    def between_ticks(self, work: Callable[[], T]) -> "Future[T]":
+        return self._between.ask(work)
+
+    def tell(self, kind: Kind, values: Values) -> None:
+        self._between.ask(lambda: self.log.note(Event(kind, self.simulation.tick_count, values)))
+
     def tick(self, times: int) -> None:
+        self._between.do()
         for _ in range(times):
             decision = self.simulation.tick(IDLE)
             if self.watch is not None:
@@ -128,10 +144,8 @@ def test_a_folder_that_is_none_is_told(loop: SteppedLoop, tmp_path: Path) -> Non
     recording.start()
     until(lambda: not recording.on, "it ended")
     assert "cannot be written" in recording.failure
-    with pytest.raises(BadInput, match="--record"):
-        must_be_writable(tmp_path / "file")
-    must_be_writable(tmp_path / "made" / "here")
-    assert list((tmp_path / "made" / "here").iterdir()) == []
+    with pytest.raises(BadInput, match="cannot be written"):
+        recording.start().result(10.0)
 
 
 def test_a_tick_after_the_switch_was_thrown_is_let_go(loop: SteppedLoop, tmp_path: Path) -> None:
@@ -165,7 +179,7 @@ def test_another_scenario_that_cannot_be_written_ends_it(
     recording = LiveRecording(loop, tmp_path)
     start(recording, loop)
     loop.tick(5)
-    monkeypatch.setattr(recording, "_free_path", lambda: tmp_path)
+    monkeypatch.setattr(live, "free_path", lambda folder, *, parts: folder)
     loop.simulation = Simulation(ARM, Scenario(seed=5), Settings())
     loop.tick(2)
     assert not recording.on

@@ -3,7 +3,6 @@
 import importlib
 import math
 import random
-import re
 import threading
 import time
 from collections import Counter
@@ -15,22 +14,22 @@ import numpy as np
 import pytest
 from google.protobuf import json_format
 from mcap.reader import make_reader
-from mcap.writer import Writer
 from mcap_ros2.decoder import DecoderFactory
 
 from app.files.checked import BadInput, convert
 from app.log import foxglove
 from app.log.layout import LATER
-from app.log.playback import Player, snapshot_at
-from app.log.reader import Log, read
 from app.log.recorder import AHEAD, BLOCK, SLOW, Recorder
-from app.log.scan import repair
+from app.log_reading.playback import Player, snapshot_at
+from app.log_reading.reader import Log, read
+from app.mcap_file.mending import repair
 from app.runs.runner import record, simulate
 from app.session.prepare import prepare
 from app.session.session_file import Session
 from benchmarks import crash
 from pendant.inputs import NOTHING
 from sim.exchange.desk import Wishes
+from tests.app.log.older_recording import older
 
 IDLE = Wishes(NOTHING, (), ())
 SESSION: dict[str, Any] = {
@@ -77,7 +76,11 @@ def test_the_public_library_finds_every_channel_at_its_rate(recorded: Path) -> N
     assert counts["/settings"] == 2  # at the start, and as changed
     assert counts["/events"] == counts["/log"] >= 3
     assert times == [2_000_000 * tick for tick in range(1, 751)]
-    assert len(summary.chunk_indexes) == 7  # the first tick by itself, then quarters of a second
+    chunks = Counter(frozenset(channel for channel in each.message_index_offsets) for each in summary.chunk_indexes)
+    numbers = {channel.topic: number for number, channel in summary.channels.items()}
+    assert chunks[frozenset({numbers["/state"]})] == 7  # the first tick by itself, then quarters of a second
+    assert chunks[frozenset({numbers["/truth"]})] == 7
+    assert chunks[frozenset({numbers["/pendant"], numbers["/tf"], numbers["/scene"]})] == 7
 
 
 def test_a_ros_decoder_reads_the_same_numbers(recorded: Path, log: Log) -> None:
@@ -243,8 +246,8 @@ def test_a_killed_process_leaves_all_but_the_last_second(tmp_path: Path) -> None
         assert read(path).whole
 
 
-def test_a_file_cut_anywhere_in_its_last_chunk_counts_what_it_holds(tmp_path: Path) -> None:
-    """Also between the chunk and its index, where the messages are there and not counted."""
+def test_a_file_cut_anywhere_in_its_last_chunks_counts_what_it_holds(tmp_path: Path) -> None:
+    """Also between a chunk and its index, where the messages are there and not counted."""
     path, copy = tmp_path / "log.mcap", tmp_path / "copy.mcap"
     simulation = simulate(prepare(convert({**SESSION, "timeline": []}, Session, "s.yaml"), "s.yaml"))
     with Recorder(path, simulation, "t") as recorder:
@@ -254,22 +257,30 @@ def test_a_file_cut_anywhere_in_its_last_chunk_counts_what_it_holds(tmp_path: Pa
     with path.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
-    last = summary.chunk_indexes[-1]
-    end = last.chunk_start_offset + last.chunk_length
-    whole = end + last.message_index_length
-    counted: list[int] = []
-    for at in (last.chunk_start_offset, end - 1, end, end + 1, whole - 1, whole):
-        copy.write_bytes(data[:at])
-        ticks = len(read(copy).ticks)
-        assert repair(copy)
-        with copy.open("rb") as file:
-            told = make_reader(file).get_summary()
-        assert told is not None
-        assert told.statistics is not None
-        assert told.statistics.channel_message_counts[1] == ticks == len(read(copy).ticks)
-        counted.append(ticks)
-    assert counted[:-1] == [counted[0]] * 5
-    assert counted[-1] > counted[0]
+    numbers = {channel.topic: number for number, channel in summary.channels.items()}
+    seen: set[tuple[int, int]] = set()
+    for last in summary.chunk_indexes[-3:]:
+        end = last.chunk_start_offset + last.chunk_length
+        whole = end + last.message_index_length
+        for at in (last.chunk_start_offset, end - 1, end, end + 1, whole - 1, whole):
+            copy.write_bytes(data[:at])
+            ticks = len(read(copy).ticks)
+            assert repair(copy)
+            with copy.open("rb") as file:
+                told = make_reader(file).get_summary()
+            assert told is not None
+            assert told.statistics is not None
+            counts = told.statistics.channel_message_counts
+            state, truth = counts[numbers["/state"]], counts[numbers["/truth"]]
+            assert ticks == min(state, truth) == len(read(copy).ticks)
+            if state > truth:
+                assert f"{state - truth} of {state} ticks of /truth" in read(copy).missing
+            with copy.open("rb") as file:
+                there = Counter(channel.topic for _, channel, _ in make_reader(file).iter_messages())
+            assert (there["/state"], there["/truth"]) == (state, truth)
+            seen.add((state, truth))
+    before = 3 * BLOCK - (3 * BLOCK - 1) % BLOCK
+    assert seen == {(before, before), (3 * BLOCK, before), (3 * BLOCK, 3 * BLOCK)}
 
 
 def test_killed_at_once_it_holds_the_first_tick(tmp_path: Path) -> None:
@@ -332,44 +343,9 @@ def test_a_disk_that_fills_up_ends_the_recording_alone(tmp_path: Path, monkeypat
         recorder.close()
 
 
-def _older(path: Path, copy: Path, absent: set[str]) -> None:
-    """The recording as it was before these columns came."""
-    with path.open("rb") as source, copy.open("wb") as target:
-        reader, writer = make_reader(source), Writer(target)
-        writer.start()
-        channels: dict[int, int] = {}
-        summary = reader.get_summary()
-        assert summary is not None
-        kept: dict[int, list[slice]] = {}
-        for number, channel in summary.channels.items():
-            schema = summary.schemas[channel.schema_id]
-            text, at, parts = "", 12, []  # behind CDR's head and the tick
-            for line in schema.data.decode().splitlines(keepends=True):
-                found = re.match(r"float64(?:\[(\d+)\])? (\w+)", line)
-                size = 8 * int(found[1] or 1) if found else 0
-                if found is None or found[2] not in absent:
-                    text += line
-                    parts.append(slice(at, at + size))
-                at += size
-            if schema.encoding == "ros2msg":
-                kept[number] = [slice(0, 12), *parts, slice(at, None)]
-            known = writer.register_schema(schema.name, schema.encoding, text.encode())
-            channels[number] = writer.register_channel(channel.topic, channel.message_encoding, known)
-        for each in reader.iter_attachments():
-            writer.add_attachment(each.create_time, each.log_time, each.name, each.media_type, each.data)
-        for each in reader.iter_metadata():
-            writer.add_metadata(each.name, each.metadata)
-        for _, channel, message in reader.iter_messages():
-            data = message.data
-            parts = kept.get(channel.id, [slice(None)])
-            data = b"".join(data[part] for part in parts)
-            writer.add_message(channels[channel.id], message.log_time, data, message.publish_time, message.sequence)
-        writer.finish()
-
-
 def test_a_recording_from_before_a_column_came_is_read_and_one_that_lacks_another_is_not(recorded: Path, tmp_path: Path) -> None:
     old, copy, whole = tmp_path / "old.mcap", tmp_path / "other.mcap", read(recorded)
-    _older(recorded, old, set(LATER))
+    older(recorded, old, set(LATER))
     log = read(old)
     assert np.isnan(log.truth["touched"]).all()
     assert np.isnan(log.state["limit_motor_current"]).all()
@@ -377,6 +353,6 @@ def test_a_recording_from_before_a_column_came_is_read_and_one_that_lacks_anothe
         np.testing.assert_array_equal(log.state[name], whole.state[name])
     np.testing.assert_array_equal(log.truth["payload_mass"], whole.truth["payload_mass"])
     assert not snapshot_at(log, 0, 0).truth_touched
-    _older(recorded, copy, {"payload_mass"})
+    older(recorded, copy, {"payload_mass"})
     with pytest.raises(BadInput, match="/truth has other columns"):
         read(copy)

@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import replace
+from collections.abc import Sequence
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -14,18 +14,21 @@ import pytest
 from app.files.checked import BadInput, convert
 from app.log.events_file import EventLine
 from app.log.layout import PULL, WORDS
-from app.log.reader import Log, read
-from app.report.charts import COLUMNS, POINTS, PULL_CAPTION, charts, pulls, thinned
+from app.log_reading.reader import Log, read
+from app.report.charts import PULL_CAPTION, charts
 from app.report.files import write_report
+from app.report.gathering import COLUMNS, HELD, POINTS, Column, Gathered, HeldSeen, LineSeen, PeakSeen, Span, SpansSeen, thinned
 from app.report.page import page
 from app.report.pull_colours import PULL_COLOURS
 from app.report.regions import regions
-from app.report.summary import NOT_A_VALIDATION, Summary, spans, summarise
+from app.report.summary import NOT_A_VALIDATION, Summary
+from app.report.summary import summarise as summary_of
 from app.runs.runner import record
 from app.session.expectation_watch import Verdict
 from app.session.prepare import prepare
 from app.session.session_file import Session
 from pendant.guided.pull import SHARE_WORDS
+from tests.app.log.older_recording import older
 
 SESSION: dict[str, Any] = {
     "title": "A <report> & more",
@@ -49,6 +52,14 @@ def recorded(text: dict[str, Any], out: Path) -> Log:
 @pytest.fixture(scope="module")
 def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
     return recorded(SESSION, tmp_path_factory.mktemp("run"))
+
+
+def summarise(log: Log, verdicts: Sequence[Verdict] = ()) -> Summary:
+    return summary_of(Gathered(log), verdicts)
+
+
+def pulls(log: Log) -> list[Column]:
+    return Gathered(log).pulls.found
 
 
 RAMP = {"shape": "ramp", "rise": 0.1, "fall": 0.1}
@@ -104,7 +115,7 @@ def test_the_report_shows_what_pulls_and_when_the_payload_fell(dropped: Log) -> 
     assert columns[-1] in fell
     assert all(stop.t - 0.02 < column.end for column in fell)
     assert fell[-1].pull.words == "The payload fell: over 99.9 %"
-    (picture,) = [svg for caption, svg in charts(dropped, summarise(dropped)) if caption == PULL_CAPTION]
+    (picture,) = [svg for caption, svg in charts(Gathered(dropped), summarise(dropped)) if caption == PULL_CAPTION]
     areas = {name: painted(picture, colour) for name, colour in zip(SHARE_WORDS, PULL_COLOURS, strict=True)}
     assert areas["A hand"]
     assert areas["Payload changed"][-1][1] == max(end for each in areas.values() for _, end in each)
@@ -112,10 +123,11 @@ def test_the_report_shows_what_pulls_and_when_the_payload_fell(dropped: Log) -> 
     assert set(re.findall(r">([A-Z][a-z ]+)</text>", picture)) >= set(SHARE_WORDS)
 
 
-def test_without_free_drive_or_in_an_older_recording_there_is_no_bar(dropped: Log) -> None:
-    older = replace(dropped, state={**dropped.state, **{name: np.full(len(dropped.t), np.nan) for name in PULL}})
-    assert pulls(older) == []
-    assert PULL_CAPTION not in dict(charts(older, summarise(older)))
+def test_without_free_drive_or_in_an_older_recording_there_is_no_bar(dropped: Log, tmp_path: Path) -> None:
+    older(dropped.path, tmp_path / "older.mcap", set(PULL))
+    before = read(tmp_path / "older.mcap")
+    assert pulls(before) == []
+    assert PULL_CAPTION not in dict(charts(Gathered(before), summarise(before)))
 
 
 @pytest.fixture(scope="module")
@@ -225,10 +237,46 @@ def test_the_check_sum_is_of_the_limits_alone(log: Log, summary: Summary) -> Non
 
 
 def test_spans_are_runs_of_equal_codes() -> None:
-    t = np.arange(1, 7) * 0.5
-    found = spans(np.array([0, 0, 1, 1, 1, 0]), t, ("A", "B"))
-    assert [(span.name, span.begin, span.end) for span in found] == [("A", 0.5, 1.5), ("B", 1.5, 3.0), ("A", 3.0, 3.0)]
-    assert spans(np.array([], dtype=int), np.array([]), ("A",)) == []
+    t, codes = np.arange(1, 7) * 0.5, np.array([0, 0, 1, 1, 1, 0])
+    for cuts in ([], [3], [2, 5], [1, 2, 3, 4, 5]):
+        seen = SpansSeen(("A", "B"))
+        for part, times in zip(np.split(codes, cuts), np.split(t, cuts), strict=True):
+            seen.see(part, times)
+        assert seen.found == [Span("A", 0.5, 1.5), Span("B", 1.5, 3.0), Span("A", 3.0, 3.0)]
+    assert SpansSeen(("A",)).found == []
+
+
+def test_what_is_gathered_in_parts_is_what_is_gathered_at_once() -> None:
+    """Against the plain formulas on the whole, for cuts that lie anywhere."""
+    chance = np.random.default_rng(5)
+    for length in (1, HELD - 1, HELD, 3 * HELD + 7, 2 * POINTS + 3):
+        t, values = np.arange(1, length + 1) * 0.002, chance.normal(size=length)
+        values[chance.integers(0, length, 3)] = np.nan
+        peak, held, line = PeakSeen(), HeldSeen(), LineSeen(length)
+        for part in np.split(np.arange(length), np.sort(chance.integers(0, length, 4))):
+            for seen in (peak, held, line):
+                seen.see(values[part], t[part])
+        k = int(np.argmax(np.nan_to_num(values, nan=-np.inf)))
+        np.testing.assert_equal((peak.found.value, peak.found.t), (values[k], t[k]))
+        windows = [values[k : k + HELD].min() for k in range(length - HELD + 1)]
+        best = int(np.argmax(np.nan_to_num(windows, nan=-np.inf))) if windows else 0
+        np.testing.assert_equal((held.found.value, held.found.t), (windows[best], t[best]) if windows else (0.0, 0.0))
+        np.testing.assert_array_equal(line.found, thinned(t, values))
+
+
+def test_a_report_of_parts_is_that_of_the_whole(dropped: Log, log: Log, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A recording of a day is gone through in parts: its figures are the same as if it were looked at as a whole."""
+    for each in (dropped, log):
+        whole, drawn = summarise(each), charts(Gathered(each), summarise(each))
+        for seconds in (0.06, 0.34, 1.0):
+            monkeypatch.setattr("app.report.gathering.STRETCH", seconds)
+            parts = summarise(each)
+            for name in Summary.__struct_fields__:
+                if name != "stops":
+                    assert getattr(parts, name) == getattr(whole, name), name
+            assert [stop.time for stop in parts.stops] == [stop.time for stop in whole.stops]
+            assert charts(Gathered(each), parts) == drawn
+        monkeypatch.undo()
 
 
 def test_thinning_keeps_every_peak() -> None:
@@ -269,7 +317,7 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
         guidance="",
         values={"rule": "rise", "steps": 4, "action": "none"},
     )
-    text = page(msgspec.structs.replace(summary, contacts=[contact], onset_delays=[0.004]), charts(log, summary))
+    text = page(msgspec.structs.replace(summary, contacts=[contact], onset_delays=[0.004]), charts(Gathered(log), summary))
     parser = Page()
     parser.feed(text)
     assert parser.open == []
@@ -288,9 +336,8 @@ def test_the_page_stands_alone_and_says_what_it_is(log: Log, summary: Summary, t
 
 
 def test_an_empty_log_gives_a_report_too(log: Log, tmp_path: Path) -> None:
-    none = {name: values[:0] for name, values in log.state.items()}
-    truth = {name: values[:0] for name, values in log.truth.items()}
-    empty = Log(log.path, False, "", log.run, log.arm, log.scenario, log.ticks[:0], none, truth, [], [], [], [])
+    empty = log.between(100.0, 200.0)
+    assert len(empty) == 0
     assert write_report(empty, tmp_path / "new").duration == 0.0
     assert "No expectations were given" in (tmp_path / "new" / "report.html").read_text()
     (tmp_path / "file").write_text("")

@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from app.robot_interface.controller.cabinet import Ask, Cabinet
+from app.robot_interface.controller.cabinet import Cabinet
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.program_folder import ProgramFolder
 from pendant.all_settings import Settings, apply
 from pendant.decision import Decision
@@ -33,6 +34,9 @@ class Watcher:
     def repeat(self) -> None:
         self.ticks.append(-1)
 
+    def again(self) -> None:
+        self.ticks.append(-2)
+
 
 class RobotBench:
     """Ticks as the loop does."""
@@ -56,6 +60,7 @@ class RobotBench:
 
     def begin(self) -> None:
         """Start over."""
+        self.events: list[Event] = []
         self.simulation = Simulation(UR5E, self.scenario, self.settings)
 
     def pull(self, force: tuple[float, float, float], count: int) -> Decision:
@@ -76,6 +81,7 @@ class RobotBench:
             wishes = Wishes(inputs, touches, changes).joined(self.cabinet.wishes(tick, self.simulation.snapshot))
             decision = self.simulation.tick(wishes)
             self.cabinet.see(tick, decision)
+            self.events += decision.events
             inputs, changes = NOTHING, ()
         assert decision is not None
         return decision
@@ -92,4 +98,4 @@ class RobotBench:
 
     def kinds(self) -> list[Kind]:
         """Of all events since the simulation began."""
-        return [event.kind for event in self.cabinet.events]
+        return [event.kind for event in self.events]

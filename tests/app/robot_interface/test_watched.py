@@ -9,7 +9,7 @@ import dashboard_client
 import pytest
 import rtde_receive
 
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.testing import ServedRobot
 
 IN_FREE_DRIVE, REFUSED = 64, 66

@@ -54,6 +54,35 @@ def test_a_job_that_cannot_be_used_is_told(tmp_path: Path) -> None:
         dict(run_all(jobs))
 
 
+def test_a_bad_file_of_a_folder_ends_no_other_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
+    files(
+        tmp_path, good={}, wrong={"robot": "ur6"}, deep={"world": [{"kind": "plane", "name": "roof", "position": [0, 0, 20.0]}]}
+    )
+    (tmp_path / "torn.yaml").write_text("{")
+    out, report = tmp_path / "out", tmp_path / "report.xml"
+    assert pendant(monkeypatch, "run", str(tmp_path), "--out", str(out), "--junit", str(report)) == 2
+    said = capsys.readouterr()
+    assert "1 sessions passed, 0 not" in said.out
+    lines = said.err.splitlines()[-3:]
+    assert [line.split(":")[1].strip() for line in lines] == ["torn.yaml", "wrong.yaml", "deep.yaml"], "as it begins: the last"
+    assert (out / "good" / "events.jsonl").exists()
+    document = ElementTree.parse(report).getroot()
+    assert (document.get("errors"), len(document.findall(".//error"))) == ("3", 3)
+
+
+def test_a_folder_of_bad_files_says_each(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    files(tmp_path, wrong={"robot": "ur6"}, worse={"robot": "ur7"})
+    assert pendant(monkeypatch, "run", str(tmp_path)) == 2
+    said = capsys.readouterr().err
+    assert "ur6" in said
+    assert "ur7" in said
+
+
 def test_a_folder_runs_as_a_whole(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     monkeypatch.setenv("COLUMNS", "160")
     files(tmp_path, good={}, bad={"expectations": [{"expect": "state", "mode": "RUN", "at": 0.05}]})

@@ -1,6 +1,7 @@
 """Whole sweeps in this process: what is done stays, what is not is done, what changed is refused."""
 
 import fcntl
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -112,6 +113,20 @@ def test_a_changed_study_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         sweep(study(), base(duration=0.2), tmp_path, where="s", workers=ONE)
     monkeypatch.setattr("app.studies.plan.source_digest", lambda: "c0ffee")
     with pytest.raises(BadInput, match="made by another source"):
+        swept(tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"{", b"", b"[]", b"\xff", b"3"])
+def test_a_description_that_is_none_is_refused(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "study.json").write_bytes(content)
+    with pytest.raises(BadInput, match=r"study\.json: describes no study") as refused:
+        swept(tmp_path)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_description_that_cannot_be_opened_is_refused(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "study.json")
+    with pytest.raises(BadInput, match="is a pipe; expected a regular file"):
         swept(tmp_path)
 
 

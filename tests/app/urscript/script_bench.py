@@ -3,7 +3,7 @@
 from app.robot_interface.controller.robot_words import RuntimeState
 from app.urscript.language.trouble import ScriptTrouble
 from app.urscript.running.script_runner import ScriptRunner
-from app.urscript.running.told import Telling
+from app.urscript.running.told import Telling, Told
 from tests.app.robot_interface.robot_bench import RobotBench
 
 SETTLED = 150
@@ -20,7 +20,8 @@ class ScriptBench:
 
     def run(self, text: str, ticks: int = 1500) -> tuple[list[str], str]:
         """What a script tells with textmsg, and the error that ends it; one that still runs after `ticks` is ended."""
-        before = self.runner.count
+        new: list[Told] = []
+        self.runner.listen(new.append)
         try:
             self.runner.offer(text)
         except ScriptTrouble as trouble:
@@ -31,7 +32,7 @@ class ScriptBench:
                 break
         self.runner.stop()
         self.robot.step()
-        new = list(self.runner.told)[len(self.runner.told) - (self.runner.count - before) :]
+        self.runner.forget(new.append)
         trouble = self.runner.trouble
         return [each.text for each in new if each.kind is Telling.TEXT], "" if trouble is None else str(trouble)
 

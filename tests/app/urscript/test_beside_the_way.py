@@ -124,7 +124,7 @@ def test_a_paused_arm_goes_on_with_the_conveyor_where_it_stood(bench: ScriptBenc
     runner.offer(
         "def p():\n  encoder_enable_pulse_decode(0, 1, 0, 1)\n  track_conveyor_linear(p[0,1,0,0,0,0], 5000)\n  sleep(60)\nend"
     )
-    robot.cabinet.state.conveyors[0] = 500.0
+    robot.cabinet.turn_conveyor(0, 500.0).result()
     place = lambda: list(robot.cabinet.record.get("target_TCP_pose"))  # pyright: ignore
     robot.step(500)
     assert robot.cabinet.record.get("encoder0_raw") == pytest.approx(500, abs=5)
@@ -136,7 +136,7 @@ def test_a_paused_arm_goes_on_with_the_conveyor_where_it_stood(bench: ScriptBenc
     assert max(abs(a - b) for a, b in zip(place(), stood, strict=True)) < 0.012
     robot.step(450)
     assert place()[1] - stood[1] == pytest.approx(0.1, abs=0.012)
-    robot.cabinet.state.conveyors[0] = 20_000.0
+    robot.cabinet.turn_conveyor(0, 20_000.0).result()
     robot.step(1000)
     assert "singular" in str(runner.trouble)
     assert [each.kind for each in runner.told][-1] is Telling.ENDED
@@ -162,7 +162,7 @@ WRONG = {
 
 @pytest.mark.parametrize(("text", "why"), WRONG.items(), ids=[text[-50:] for text in WRONG])
 def test_what_cannot_be_done_ends_the_program_with_a_reason(bench: ScriptBench, text: str, why: str) -> None:
-    bench.robot.cabinet.state.conveyors[0] = 0.0
+    bench.robot.cabinet.turn_conveyor(0, 0.0).result()
     lines, trouble = bench.run(f"def p():\n  {text}\n  sleep(5)\nend", 300)
     assert lines == []
     assert why in trouble

@@ -32,7 +32,7 @@ def shared() -> ScriptBench:
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['of']}: {row['run'].strip()[:40]}".replace("\n", "|"))
 def test_a_program_does_what_a_robot_does_with_it(shared: ScriptBench, row: dict) -> None:
     bench = ScriptBench(RobotBench(scenario=Scenario(seed=8))) if row.get("fresh") else shared
-    before = len(bench.robot.cabinet.events)
+    before = len(bench.robot.watcher.events)
     told, error = bench.run(row["run"], LONG)
     wanted, expected = row.get("error", ""), row.get("tells", [])
     assert error.startswith(wanted[:-3]) if wanted.endswith("...") else error == wanted
@@ -40,7 +40,7 @@ def test_a_program_does_what_a_robot_does_with_it(shared: ScriptBench, row: dict
     numbers = [float(n) for text in told for n in NUMBER.findall(text)]
     assert numbers == pytest.approx([float(n) for text in expected for n in NUMBER.findall(text)], abs=row.get("within", 1e-6))
     if not wanted:
-        assert not ERRORS & {event.kind for event in bench.robot.cabinet.events[before:]}
+        assert not ERRORS & {event.kind for event in bench.robot.watcher.events[before:]}
 
 
 def test_a_tcp_in_a_line_that_is_blended_does_not_disturb_that_line() -> None:
@@ -232,4 +232,4 @@ def test_a_program_that_asks_for_free_drive_without_end_is_guided_and_its_end_is
     bench.runner.stop()
     assert bench.robot.step(400).mode is not Mode.FREE_DRIVE
     assert bench.runner.trouble is None
-    assert not ERRORS & {event.kind for event in bench.robot.cabinet.events}
+    assert not ERRORS & {event.kind for event in bench.robot.watcher.events}

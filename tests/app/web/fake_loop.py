@@ -1,15 +1,18 @@
 """A loop without physics: joints that circle on command, phases that can be set, and the calls of sim.run.loop.Loop."""
 
-from typing import Any
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.files.library import load_arm
+from app.robot_interface.controller.callers import at_once
 from pendant.all_settings import Settings
 from pendant.decision import Decision
 from pendant.equipment.tools import Tool
-from pendant.events.event import Event, Kind
+from pendant.events.event import Event, Kind, Values
 from pendant.freedrive.periods import Remaining
 from pendant.guided.force_covariance import UncertainForce
 from pendant.guided.pull import PullCauses
@@ -28,7 +31,12 @@ from sim.arm.frames import joint_frames, quaternion_from_matrix
 from sim.arm.scenario import Scenario, table
 from sim.exchange.desk import Desk
 from sim.exchange.snapshot import Snapshot
+from sim.run.between_ticks import BetweenTicks
+from sim.run.event_log import EventLog
+from sim.run.troubles import Troubles
 from sim.simulation import Simulation
+
+T = TypeVar("T")
 
 ARM = load_arm("ur5e")
 HOME = np.array(ARM.chain.home)
@@ -74,7 +82,6 @@ class FakeLoop:
     def __init__(self) -> None:
         self.desk = Desk()
         self.watch: Any = None
-        self.ended: Any = None
         self.failure = ""
         self.speed = 1.0
         self.paused = False
@@ -109,7 +116,9 @@ class FakeLoop:
         self.touches: tuple[Any, ...] = ()
         self.pull: PullCauses | None = None
         self.user: UncertainForce | None = None
-        self.log: list[Event] = []
+        self.log = EventLog()
+        self.between = BetweenTicks()
+        self.troubles = Troubles(self.tell)
         self.wishes: list[Any] = []
         self.resets = 0
         self.steps = 0
@@ -131,12 +140,13 @@ class FakeLoop:
 
     def advance(self, seconds: float = 0.002) -> None:
         """Let simulated time pass and read the desk once."""
+        self.between.do()
         self.tick += max(1, round(seconds * TICK_RATE))
         self.wishes.append(self.desk.take())
 
     def note(self, kind: Kind, **values: float | int | str | bool) -> None:
         """Log an event."""
-        self.log.append(Event(kind, self.tick, dict(values)))
+        self.log.extend([Event(kind, self.tick, dict(values))])
 
     def refuse(self) -> None:
         """Refuse a changed setting."""
@@ -187,7 +197,15 @@ class FakeLoop:
 
     def events(self, since: int) -> list[Event]:
         """Events from index `since` on."""
-        return self.log[since:]
+        return self.log.since(since)
+
+    def between_ticks(self, work: Callable[[], T]) -> "Future[T]":
+        """Keep it until `advance`."""
+        return self.between.ask(work)
+
+    def tell(self, kind: Kind, values: Values) -> None:
+        """Log an event that no tick decides."""
+        self.log.extend([Event(kind, self.tick, values)])
 
     def start(self) -> None:
         """Nothing runs."""
@@ -199,10 +217,12 @@ class FakeLoop:
         """Count the steps asked for."""
         self.steps += 1
 
-    def reset(self) -> None:
+    def reset(self) -> "Future[None]":
         """Count the resets asked for."""
         self.resets += 1
+        return at_once(lambda: None)
 
-    def begin(self, make: Any, write: Any = None) -> None:
+    def begin(self, make: Any, write: Any = None) -> "Future[None]":
         """Keep what was to begin."""
         self.begun.append((make, write))
+        return at_once(lambda: None)

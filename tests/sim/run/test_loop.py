@@ -22,7 +22,8 @@ from pendant.walls.definitions import Area
 from pendant.walls.shapes import Sphere
 from sim.arm.scenario import Scenario
 from sim.exchange.desk import Wishes
-from sim.run.loop import DEBT, LONGEST_REASON, SNAPSHOT_TICKS, Loop
+from sim.run.loop import DEBT, SNAPSHOT_TICKS, Loop
+from sim.run.troubles import LONGEST_REASON
 from sim.simulation import Simulation
 from tests.sim.arms import UR5E
 from tests.sim.bench import push
@@ -94,8 +95,8 @@ def running() -> Iterator[Callable[..., Loop]]:
     """Starts loops and ends them after the test."""
     loops: list[Loop] = []
 
-    def start(make: Callable[[], object] = Ticker, **values: object) -> Loop:
-        loop = Loop(make)
+    def start(make: Callable[[], object] | Loop = Ticker, **values: object) -> Loop:
+        loop = make if isinstance(make, Loop) else Loop(make)
         for name, value in values.items():
             setattr(loop, name, value)
         loops.append(loop)
@@ -372,7 +373,9 @@ def test_an_error_in_a_tick_is_told_and_nothing_more_is_simulated(
     running: Callable[..., Loop], caplog: pytest.LogCaptureFixture
 ) -> None:
     told: list[Event] = []
-    loop = running(breaking(30), ended=told.append)
+    made = Loop(breaking(30))
+    made.log.listen(told.append)
+    loop = running(made)
     until(lambda: bool(told))
     reason = "FloatingPointError: speed is not finite"
     assert loop.failure == reason

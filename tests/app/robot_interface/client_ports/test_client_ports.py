@@ -94,7 +94,8 @@ def say(session: StreamSession, text: str | bytes) -> None:
 
 def test_a_client_is_told_version_and_state_first(cell: Cell) -> None:
     _, theirs = cell.open("primary")
-    version, state = packages(theirs)
+    cell.robot.step()
+    version, state, _ = packages(theirs)
     assert (version[0], version[9:11]) == (20, struct.pack(">bB", -2, 3))
     assert version[11:21] == b"\x09URControl"
     assert struct.unpack_from(">BBii", version, 21) == (5, 26, 0, 140462)
@@ -111,6 +112,7 @@ def test_the_secondary_interface_has_the_state_without_messages(cell: Cell) -> N
 
 def test_ten_states_a_second(cell: Cell) -> None:
     _, theirs = cell.open("primary")
+    cell.robot.step()
     packages(theirs)
     cell.robot.step(500)
     assert sum(each[0] == 16 for each in packages(theirs)) == 10
@@ -172,7 +174,6 @@ def test_a_program_is_told_by_the_keys_that_clients_wait_for(cell: Cell) -> None
     for command in ("load wave.urp", "play"):
         answer = cell.commands.answer(command, True)
         assert not isinstance(answer, str)
-        cell.robot.cabinet.ask(answer.ask)
         cell.robot.step()
     (key,) = [each for each in packages(theirs) if each[0] == 20 and each[10] == messages.MessageType.KEY]
     assert key[11:] == struct.pack(">iiB", 0, 0, 19) + b"PROGRAM_XXX_STARTEDwave"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.robot_interface.controller.cabinet import Ask
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.robot_words import RobotMode, SafetyMode
 from app.robot_interface.controller.status_fields import (
     FREE_DRIVE,
@@ -16,7 +16,7 @@ from app.robot_interface.controller.status_fields import (
     set_outputs,
 )
 from app.session.actions import DigitalInput, Laboratory, Press, Pushing, Release, Tap
-from pendant.events.event import Kind
+from pendant.events.event import Event, Kind
 from pendant.inputs import Command
 from pendant.program.steps import JointMove, Program, SetOutput
 from pendant.tick.modes import TICK, Law, Mode, Phase, Safety
@@ -109,7 +109,7 @@ def test_faults_act_in_the_very_tick_that_was_asked_for() -> None:
     assert not begun.done()
     bench.step(100)
     assert begun.result() == 137
-    ticks = {event.kind: event.tick for event in bench.cabinet.events}
+    ticks = {event.kind: event.tick for event in bench.events}
     assert (ticks[Kind.SAFEGUARD_STOP], ticks[Kind.EMERGENCY_STOP]) == (138, 137 + 50)
 
 
@@ -187,7 +187,9 @@ def test_power_off_brakes_and_brake_release_are_told_as_a_controller_does() -> N
 def test_nothing_simulated_is_a_fault_that_is_still_told() -> None:
     bench = RobotBench()
     bench.step(10)
-    bench.cabinet.state.failure = "it broke"
+    bench.cabinet.note(Event(Kind.BROKEN_DOWN, 10, {"reason": "it broke"}))
+    assert bench.watcher.events[-1].kind is Kind.BROKEN_DOWN
+    assert bench.cabinet.state.failure == "it broke"
     bench.cabinet.repeat()
     assert bench.cabinet.record.get("safety_mode") == SafetyMode.FAULT
     assert bench.watcher.ticks[-1] == -1

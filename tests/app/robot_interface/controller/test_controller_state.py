@@ -1,9 +1,8 @@
 """The controller's words for what the pendant decides: every mode with every safety mode and law."""
 
-from dataclasses import replace
-
 import pytest
 
+from app.robot_interface.controller.callers import Ask
 from app.robot_interface.controller.controller_state import RUNTIME, SAFETY, UNLOCK_AFTER, ControllerState
 from app.robot_interface.controller.robot_words import (
     SAFETY_BITS,
@@ -71,7 +70,8 @@ def test_who_has_control_follows_the_pendants_mode_and_stays_where_it_says_nothi
         (Mode.STOP, True), (Mode.RUN, True), (Mode.FREE_DRIVE, True), (Mode.NORMAL, False), (Mode.RUN, False),
         (Mode.STOP, False), (Mode.REMOTE, True), (Mode.TEACH, False),
     ):  # fmt: skip
-        state.see(1, type(decision)(**{**{n: getattr(decision, n) for n in decision.__struct_fields__}, "mode": mode}))
+        whole = {name: getattr(decision, name) for name in decision.__struct_fields__}
+        state = state.after(1, type(decision)(**{**whole, "mode": mode}))
         assert state.remote is remote
 
 
@@ -82,9 +82,9 @@ def test_a_protective_stop_is_locked_for_five_seconds_from_its_beginning() -> No
     whole = {name: getattr(decision, name) for name in decision.__struct_fields__}
     stopped = type(decision)(**{**whole, "safety": Safety.PROTECTIVE_STOP, "mode": Mode.STOP})
     for tick in range(100, 100 + int(UNLOCK_AFTER * TICK_RATE)):
-        state.see(tick, stopped)
+        state = state.after(tick, stopped)
         assert state.locked_for > 0.0
-    state.see(100 + int(UNLOCK_AFTER * TICK_RATE), stopped)
+    state = state.after(100 + int(UNLOCK_AFTER * TICK_RATE), stopped)
     assert state.locked_for == 0.0
     assert UNLOCK_AFTER == 5.0
 
@@ -93,14 +93,13 @@ def test_idle_ends_when_the_drives_work_again() -> None:
     bench = RobotBench()
     bench.step(60)
     bench.ask(Command.POWER_OFF)
-    state = bench.cabinet.state
-    state.idle = True
+    bench.cabinet.ask(Ask(idle=True))
     bench.step()
-    assert replace(state).robot_mode is RobotMode.IDLE
+    assert bench.cabinet.state.robot_mode is RobotMode.IDLE
     bench.ask(Command.RESET)
     bench.step()
-    assert not state.idle
-    assert state.robot_mode is RobotMode.RUNNING
+    assert not bench.cabinet.state.idle
+    assert bench.cabinet.state.robot_mode is RobotMode.RUNNING
 
 
 @pytest.mark.parametrize("safety", list(Safety))

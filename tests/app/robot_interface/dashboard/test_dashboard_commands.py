@@ -26,9 +26,9 @@ class Panel(RobotBench):
     def say(self, line: str, remote: bool = True) -> str:
         answer = self.commands.answer(line, remote)
         if isinstance(answer, Pending):
-            done = self.cabinet.ask(answer.ask)
-            self.step()
-            answer = answer.answer(done.result(0.0))
+            if not answer.asked.done():
+                self.step()
+            answer = answer.answer(answer.asked.result(0.0))
         return answer
 
 

@@ -11,6 +11,7 @@ from app.robot_interface.transport import tcp_port as module
 from app.robot_interface.transport.outbox import Outbox
 from app.robot_interface.transport.peers import Peer, Peers
 from app.robot_interface.transport.tcp_port import MOST_CONNECTIONS, WEB, Farewell, TcpPort
+from sim.run.troubles import Troubles
 
 
 class Echo:
@@ -42,7 +43,7 @@ def served(talk: Talk) -> None:
         listening = socket.create_server(("127.0.0.1", 0))
         listening.setblocking(False)
         where, peers = listening.getsockname(), Peers()
-        port = TcpPort("echo", peers, Echo)
+        port = TcpPort("echo", peers, Echo, Troubles(lambda kind, values: None))
         task = asyncio.create_task(port.listen(listening))
         try:
             await talk(port, where, peers)

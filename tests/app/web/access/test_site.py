@@ -9,27 +9,29 @@ import pytest
 from app.web.access.listening import HERE
 from app.web.access.site import Site
 from app.web.server import Served
+from pendant.events.event import Kind, Values
 from pendant.inputs import Command
+from pendant.tick.modes import Mode
+from sim.run.troubles import Troubles
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until
 
 
 class Sketch(Site):
-    """A page that notes who draws it, `most` times; then drawing fails, or ends."""
+    """A page that notes who draws it, `most` times; then drawing ends. Each picture fails with `failure`, if there is one."""
 
     def __init__(self, most: int, failure: Exception | None = None) -> None:
-        super().__init__(HERE, 0)
+        self.told: list[Values] = []
+        super().__init__(HERE, 0, Troubles(lambda kind, values: self.told.append(values)))
         self.painters: list[int | None] = []
         self._most, self._failure = most, failure
         self.start_drawing()
 
     def draw(self) -> bool:
         self.painters.append(threading.current_thread().ident)
-        if len(self.painters) < self._most:
-            return True
         if self._failure is not None:
             raise self._failure
-        return False
+        return len(self.painters) < self._most
 
 
 def test_all_pictures_are_drawn_by_the_thread_that_serves() -> None:
@@ -50,13 +52,32 @@ def test_drawing_ends_when_there_is_nothing_new_any_more() -> None:
     assert len(site.painters) == 3
 
 
-def test_a_failure_is_told_at_once_and_again_at_the_end(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_picture_that_fails_is_told_once_and_the_next_one_follows(caplog: pytest.LogCaptureFixture) -> None:
+    """One failure ended drawing for good; the end of the page then raised it again, and left the recording unfinished."""
     with caplog.at_level(logging.ERROR):
         site = Sketch(2, ValueError("no such colour"))
-        until(lambda: "the page is no longer drawn" in caplog.text, "it is told")
-    assert "no such colour" in caplog.text
-    with pytest.raises(ValueError, match="no such colour"):
+        until(lambda: len(site.painters) > 5, "pictures follow")
+        assert site.drawing
+        assert site.troubles.now() == {"the page": "ValueError: no such colour"}
         site.close()
+    assert not site.drawing
+    assert caplog.text.count("does not work: the page") == 1
+    assert site.told == [{"part": "the page", "reason": "ValueError: no such colour"}]
+
+
+def test_what_a_control_does_wrong_is_told(served: Served, loop: FakeLoop, join: Callable[[], RawClient]) -> None:
+    client = join()
+
+    @served.panel.reset.on_click
+    async def _(_: object) -> None:
+        raise LookupError("nobody is there")
+
+    loop.mode = Mode.STOP
+    until(lambda: not served.panel.reset.disabled, "it can be pressed")
+    client.set(served.panel.reset._impl.uuid, value=True)
+    until(lambda: "a control of the page" in loop.troubles.now(), "it is told")
+    until(lambda: [event.kind for event in loop.events(0)] == [Kind.PART_BROKEN], "it is an event")
+    assert "nobody is there" in str(loop.events(0)[0].values["reason"])
 
 
 def test_a_page_that_is_not_drawn_still_listens(served: Served, loop: FakeLoop, join: Callable[[], RawClient]) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.log.reader import read
+from app.log_reading.reader import read
 from app.web.server import Served
 from tests.app.web.fake_loop import FakeLoop
 from tests.app.web.raw_client import RawClient, until

@@ -1,12 +1,14 @@
 """The recordings of a folder."""
 
 import os
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
-from app.files.checked import convert
+from app.files.checked import BadInput, convert
+from app.log_reading.reader import read
 from app.runs.runner import record
 from app.session.prepare import prepare
 from app.session.session_file import Session
@@ -44,11 +46,8 @@ def test_the_newest_comes_first_and_only_recordings(tmp_path: Path) -> None:
 def test_a_recording_is_opened_and_plays(tmp_path: Path) -> None:
     path = recorded(tmp_path)
     shelf = Shelf(tmp_path, "ur5e")
-    shelf.opening = "another.mcap"  # one at a time
     shelf.open(path.name)
-    assert shelf.player is None
-    shelf.opening = ""
-    shelf.open(path.name)
+    shelf.open("another.mcap")  # one at a time
     wait(shelf)
     assert (shelf.failure, shelf.opening) == ("", "")
     assert shelf.player is not None
@@ -61,7 +60,7 @@ def test_what_is_not_opened_is_one_line(tmp_path: Path, monkeypatch: pytest.Monk
     path = recorded(tmp_path)
     (tmp_path / "broken.mcap").write_bytes(b"nothing")
     for shelf, name, said in (
-        (Shelf(tmp_path, "ur5e"), "gone.mcap", "cannot be read"),
+        (Shelf(tmp_path, "ur5e"), "gone.mcap", "existing file"),
         (Shelf(tmp_path, "ur5e"), "broken.mcap", "broken.mcap"),
         (Shelf(tmp_path, "ur10e"), path.name, "arm"),
     ):
@@ -70,11 +69,41 @@ def test_what_is_not_opened_is_one_line(tmp_path: Path, monkeypatch: pytest.Monk
         assert shelf.player is None
         assert said in shelf.failure
         assert "\n" not in shelf.failure
-    monkeypatch.setattr(module, "LARGEST", 10)
+    monkeypatch.setattr(module, "read", lambda path: 1 // 0)
     shelf = Shelf(tmp_path, "ur5e")
     shelf.open(path.name)
     wait(shelf)
-    assert "use pendant replay" in shelf.failure
+    assert "ZeroDivisionError" in shelf.failure
+
+
+def test_what_is_closed_while_it_is_opened_stays_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page stood still until the file was read."""
+    path, gate = recorded(tmp_path), threading.Event()
+    monkeypatch.setattr(module, "read", lambda where: gate.wait() and read(where))
+    shelf = Shelf(tmp_path, "ur5e")
+    shelf.open(path.name)
+    shelf.close()
+    shelf.open(path.name)
+    shelf.close()
+    gate.set()
+    time.sleep(0.3)
+    assert (shelf.player, shelf.opening, shelf.failure) == (None, "", "")
+
+
+def test_what_is_given_to_a_browser_is_a_file_that_is_not_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = recorded(tmp_path)
+    shelf = Shelf(tmp_path, "ur5e")
+    assert shelf.content(path.name) == path.read_bytes()
+    (tmp_path / "parts").mkdir()
+    path.rename(tmp_path / "parts" / "001.mcap")
+    assert shelf.names() == ("parts",)
+    for name, said in (("parts", "in parts"), ("gone.mcap", "cannot be read")):
+        with pytest.raises(BadInput, match=said):
+            shelf.content(name)
+    (tmp_path / "x.mcap").write_bytes(b"12345678901")
+    monkeypatch.setattr(module, "LARGEST_DOWNLOAD", 10)
+    with pytest.raises(BadInput, match="at most"):
+        shelf.content("x.mcap")
 
 
 def test_a_name_leads_to_no_other_folder(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 import viser
 
-from app.robot_interface.controller.controller_state import Question
+from app.robot_interface.controller.question import Question
 from app.robot_interface.interfaces import RobotInterfaces
 from app.robot_interface.transport.outbox import Outbox
 from app.web.tabs.network_tab import LENGTH, NetworkTab
@@ -56,11 +56,11 @@ def test_it_tells_who_is_there_and_what_was_said(server: viser.ViserServer, inte
 
 
 def test_it_tells_state_and_popup(server: viser.ViserServer, interfaces: RobotInterfaces) -> None:
-    tab, state = NetworkTab(server.gui, interfaces), interfaces.cabinet.state
+    tab = NetworkTab(server.gui, interfaces)
     tab.show()
     assert "remote" in tab.status.shown
-    state.remote, state.popup, state.loaded = False, "hello <b>", script_program("wave")
-    state.question = Question("integer", "how many <i>")
+    question = Question("integer", "how many <i>")
+    interfaces.cabinet.set(remote=False, popup="hello <b>", loaded=script_program("wave"), question=question)
     assert tab.show()
     assert "local" in tab.status.shown
     assert "hello &lt;b&gt;" in tab.status.shown

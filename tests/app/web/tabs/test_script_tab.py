@@ -1,10 +1,14 @@
 """The tab Script: what its controls do to a robot without a network, and what it shows."""
 
+import sys
+import threading
+import time
 from collections.abc import Iterator
 
 import pytest
 import viser
 
+from app.urscript.running.told import Telling, Told
 from app.web.tabs.script_tab import EXAMPLE, MOST, ScriptTab
 from pendant.tick.modes import Mode
 from tests.app.urscript.script_bench import ScriptBench
@@ -15,7 +19,7 @@ class Stage:
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self.bench = ScriptBench()
-        self.bench.robot.cabinet.state.remote = False
+        self.bench.robot.cabinet.set(remote=False)
         self.tab = ScriptTab(gui, self.bench.runner)
 
     def begin(self, text: str) -> None:
@@ -76,7 +80,7 @@ def test_where_it_went_wrong_is_marked(stage: Stage) -> None:
 
 
 def test_in_remote_control_the_page_runs_nothing(stage: Stage) -> None:
-    stage.bench.robot.cabinet.state.remote = True
+    stage.bench.robot.cabinet.set(remote=True)
     stage.begin(EXAMPLE)
     assert "remote control" in stage.after(5)
     assert stage.bench.state is None
@@ -97,3 +101,39 @@ def test_files_are_read_or_refused(stage: Stage) -> None:
         stage.tab.read(content)
         assert told in stage.after(1)
         assert stage.tab.text.value == "def mine():\nend\n"
+
+
+def test_it_is_drawn_while_scripts_talk_begin_and_end(stage: Stage) -> None:
+    """A list of messages that grew while the page went through it ended the page for good; so did a script that ended."""
+    runner, over, failed = stage.bench.runner, threading.Event(), list[Exception]()
+
+    def talk() -> None:
+        while not over.is_set():
+            runner.tell(Told(Telling.TEXT, "x"))
+
+    def run() -> None:
+        try:
+            while not over.is_set():
+                runner.offer("def on():\n  global a = [1, 2, 3]\n  textmsg(a)\n  sync()\nend")
+                stage.bench.robot.step(4)
+        except Exception as error:  # noqa: BLE001
+            failed.append(error)
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(2e-5)
+    threads = [threading.Thread(target=work) for work in (talk, run)]
+    try:
+        for thread in threads:
+            thread.start()
+        end = time.monotonic() + 3.0
+        while time.monotonic() < end and not failed:
+            stage.tab.show()
+            runner.pause()
+            runner.resume()
+            assert (runner.state, runner.name, runner.line, runner.variables()) is not None
+    finally:
+        over.set()
+        for thread in threads:
+            thread.join()
+        sys.setswitchinterval(interval)
+    assert failed == []

@@ -1,15 +1,16 @@
 """Moving through a recording: a place in time that can run, and the snapshot that belongs to it. No physics."""
 
-import bisect
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from app.files.checked import ABSENT, BadInput
 from app.log.layout import PULL, WORDS
-from app.log.reader import Log
 from app.log.recorded_messages import PendantMessage
+from app.log_reading.reader import Log
 from pendant.decision import Decision
 from pendant.freedrive.periods import Remaining
 from pendant.guided.force_covariance import UncertainForce
@@ -34,13 +35,13 @@ class Player:
 
     def __post_init__(self) -> None:
         """Check that there is something to play."""
-        if not self.log.pictures or not len(self.log.ticks):
+        if not len(self.log.picture_ticks) or not len(self.log):
             raise BadInput(self.log.path.name, "", ABSENT, "holds no tick to show")
 
     @property
     def end(self) -> float:
         """The last time."""
-        return float(self.log.ticks[-1]) * TICK
+        return self.log.last_tick * TICK
 
     def advance(self, seconds: float) -> None:
         """Let `seconds` of the clock pass; at the end it pauses."""
@@ -55,18 +56,18 @@ class Player:
     @property
     def row(self) -> int:
         """The tick that is shown, as row of the log's arrays."""
-        return min(max(int(np.searchsorted(self.log.ticks, round(self.time * TICK_RATE))), 0), len(self.log.ticks) - 1)
+        return min(self.log.row_of(round(self.time * TICK_RATE)), len(self.log) - 1)
 
     @property
     def picture(self) -> int:
         """The picture that is shown: the last one that is not after the time."""
         tick = round(self.time * TICK_RATE)
-        return max(bisect.bisect_right(self.log.pictures, tick, key=lambda each: each.tick) - 1, 0)
+        return max(int(np.searchsorted(self.log.picture_ticks, tick, side="right")) - 1, 0)
 
 
-def pull_at(log: Log, row: int) -> PullCauses | None:
-    """What pulled at the free arm; None where it was not free, and of recordings that were made before this was recorded."""
-    felt, lost, share, stepped = (float(log.state[name][row]) for name in PULL)
+def pull_of(state: Mapping[str, Any]) -> PullCauses | None:
+    """What pulled at the free arm, of a row of /state; None: it was not free, or the recording is from before this came."""
+    felt, lost, share, stepped = (float(state[name]) for name in PULL)
     if math.isnan(felt):
         return None
     told = [NOT_TOLD if math.isnan(odds) else odds for odds in (lost, stepped)]
@@ -84,42 +85,42 @@ def user_at(said: PendantMessage) -> UncertainForce | None:
 
 def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
     """What was recorded, as the simulation would show it: poses of a picture, numbers of a tick."""
-    said, frames, state = log.pictures[picture], log.frames[picture], log.state
+    said, frames, state, truth = log.pictures[picture], log.frames[picture], log.state.row(row), log.truth.row(row)
     names = ["foot", *log.arm.chain.joints, "flange"]
     payload = frames.get("payload")
     objects = [frames[f"object {thing.name}"] for thing in log.scenario.world]
     touches = tuple((t.part, tuple(t.point), tuple(t.force), tuple(t.torque)) for t in said.touches)
-    valid = int(state["valid"][row])
-    pull = pull_at(log, row)
+    valid = int(state["valid"])
+    pull = pull_of(state)
     decision = Decision(
-        mode=Mode(WORDS["mode"][state["mode"][row]]),
-        safety=Safety[WORDS["safety"][state["safety"][row]]],
-        phase=Phase(WORDS["phase"][state["phase"][row]]),
+        mode=Mode(WORDS["mode"][state["mode"]]),
+        safety=Safety[WORDS["safety"][state["safety"]]],
+        phase=Phase(WORDS["phase"][state["phase"]]),
         law=Law.HOLD,
         move=None,
-        gain=float(state["gain"][row]),
+        gain=float(state["gain"]),
         force_cap=0.0,
         baseline=(0.0,) * 6,
         periods=tuple(Remaining(each.name, each.ticks, each.total) for each in said.periods),
         events=(),
-        step=int(state["step"][row]),
+        step=int(state["step"]),
         pull=pull,
     )
-    arrays = [state[name][row] for name in ("q", "qd", "qdd", "theta", "theta_d", "tau_m", "tau_J", "tau_ext")]
-    wrenches = [state[name][row] for name in ("w_sensor", "F_user", "a_F", "p_BF")]
+    arrays = [state[name] for name in ("q", "qd", "qdd", "theta", "theta_d", "tau_m", "tau_J", "tau_ext")]
+    wrenches = [state[name] for name in ("w_sensor", "F_user", "a_F", "p_BF")]
     estimate = Estimate(
-        int(log.ticks[row]),
+        int(state["tick"]),
         bool(valid & 1),
         bool(valid & 2),
         bool(valid & 4),
         *arrays,
         *wrenches,
         R_BF=np.eye(3),  # not recorded: pictures have the flange's pose
-        v_F=state["v_F"][row],
-        v_tcp=float(state["v_tcp"][row]),
-        v_elbow=float(state["v_elbow"][row]),
+        v_F=state["v_F"],
+        v_tcp=float(state["v_tcp"]),
+        v_elbow=float(state["v_elbow"]),
         move_done=0,
-        friction=state["friction"][row],
+        friction=state["friction"],
     )
     return Snapshot(
         said.tick,
@@ -128,10 +129,10 @@ def snapshot_at(log: Log, picture: int, row: int) -> Snapshot:
         np.array([frames[name] for name in names]),
         np.array(objects).reshape(-1, 7),
         None if payload is None else np.array(payload),
-        float(log.truth["payload_mass"][row]),
-        float(state["configured_mass"][row]),
+        float(truth["payload_mass"]),
+        float(state["configured_mass"]),
         touches,
-        truth_touched=bool(log.truth["touched"][row] > 0.0),
+        truth_touched=bool(truth["touched"] > 0.0),
         pull=pull,
         user=user_at(said),
     )

@@ -4,7 +4,7 @@ import tracemalloc
 
 from mcap.records import Chunk
 
-from app.log.container import FileSummary, index_of
+from app.mcap_file.file_summary import FileSummary, index_of
 
 HOUR = 14_400
 """Chunks of an hour."""
