@@ -58,7 +58,7 @@ def test_ci_runs_make_test() -> None:
 def test_the_wheel_takes_all_rooms_and_installs_the_command() -> None:
     wheel = PROJECT["tool"]["hatch"]["build"]["targets"]["wheel"]
     assert set(wheel["packages"]) == {"app", "sim", "pendant", "assets"}
-    assert PROJECT["project"]["scripts"] == {"pendant": "app.cli:main"}
+    assert PROJECT["project"]["scripts"] == {"pendant": "app.start:main"}
 
 
 def test_the_licence_is_mit() -> None:

@@ -71,11 +71,11 @@ def test_the_worst_base_stands_for_all_and_its_cases_are_counted_together(tmp_pa
     ]
     page = results.page(results.read(tmp_path), NEW)
     assert f"Code `{NEW}`, commit c0ffee1, settings " in page
-    assert f"Of {len(BENCHES) + 1} benches 2 were measured. Of 3 bars: 2 held at every base, 1 missed." in page
+    assert f"Of {len(BENCHES) + 2} benches 2 were measured. Of 3 bars: 2 held at every base, 1 missed." in page
     assert "## contact, quick size\n\nSeed bases 1000.\n" in page
     assert "## hold, full size\n\nSeed bases 1000, 2000.\n" in page
     missing = page.rpartition("## Not measured with this code\n\n")[2]
-    assert missing.strip(".\n").split(", ") == sorted({*BENCHES, "soak"} - {"hold", "contact"})
+    assert missing.strip(".\n").split(", ") == sorted({*BENCHES, "races", "soak"} - {"hold", "contact"})
     assert str(tmp_path) not in page
 
 
@@ -169,7 +169,7 @@ def test_with_no_results_every_bench_is_listed_as_not_measured(tmp_path: Path) -
     assert make(tmp_path / "none", tmp_path) == 0
     page = (tmp_path / "README.md").read_text()
     assert f"Code `{code_digest()}`.\nAll misses" in page
-    assert page.rpartition("\n\n")[2] == ", ".join(sorted([*BENCHES, "soak"])) + ".\n"
+    assert page.rpartition("\n\n")[2] == ", ".join(sorted([*BENCHES, "races", "soak"])) + ".\n"
     assert "|" not in page
 
 

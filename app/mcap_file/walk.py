@@ -42,10 +42,13 @@ class Walk:
         # With a message index that is cut goes its chunk, or messages would be there that are not counted.
         last = self._chunk
         table.end = at
-        if last is not None and not ended and channels_of(self._body(last)) - last.message_index_offsets.keys():
-            table.end = last.chunk_start_offset
-            self._chunk = None
-        self._finish(done)
+        try:
+            if last is not None and not ended and channels_of(self._body(last)) - last.message_index_offsets.keys():
+                table.end = last.chunk_start_offset
+                self._chunk = None
+            self._finish(done)
+        except UNREADABLE as error:
+            raise damaged(table.path, at, error) from None
         table.lost = -1 if ended else table.size - table.end
         self.summary.schemas, self.summary.channels = dict(table.schemas), dict(table.channels)
         self.summary.counts = {channel: self.summary.counts.get(channel, 0) for channel in table.channels}

@@ -66,7 +66,7 @@ class SafetyInputs:
             estimate: of this tick.
             settings: as they are now.
             events: of this tick; more are added.
-            asked: a program asked for contact, or what the tool carries is being changed.
+            asked: a program asked for contact.
         """
         unseen = [joint for sensor, joint in estimate.lost if sensor == "motor_encoder"] if estimate.lost else []
         self._blind = self._blind + 1 if unseen else 0

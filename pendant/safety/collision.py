@@ -50,7 +50,7 @@ class Collisions:
         least = settings.force if moves else settings.clamping
         for k, force in enumerate((tool, on_link)):
             limit = self._allowed[k] = max(least, min(self._allowed[k], force + MORE))
-            if not force <= limit:
+            if not force <= limit < inf:
                 part = "tool" if k == 0 else self._part(link.joint, sensed=estimate.wrench_valid)
                 values = {"part": part, "force": force, "limit": limit, "speed": 1e3 * estimate.v_tcp}
                 return Event(Kind.COLLISION, estimate.tick, {**values})

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from app import cli
+from app.command_options import setting
 from app.files.checked import BadInput
 
 
@@ -135,9 +136,9 @@ def test_run_ends_with_0_or_1_and_shows_why(
 def test_a_setting_is_a_name_and_a_value(text: str, value: object) -> None:
     if value is None:
         with pytest.raises(BadInput):
-            cli.setting(text)
+            setting(text)
     else:
-        assert cli.setting(text) == (text.partition("=")[0], value)
+        assert setting(text) == (text.partition("=")[0], value)
 
 
 def test_claims_says_what_is_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -32,7 +32,7 @@ def test_a_led_arm_becomes_a_data_set(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["gone.mcap"], "gone.mcap: cannot be read"),
+        (["gone.mcap"], "gone.mcap: expected an existing file"),
         ([], "Missing argument 'RECORDING...'"),
         (["x.mcap", "--rate", "a"], "--rate"),
     ],

@@ -47,6 +47,7 @@ class Cabinet:
         state: the controller as of the last tick, replaced whole; the loop's thread writes it.
         ticks: done so far, through resets too.
         free_drive_until: tick up to which the remote controller asks for free-drive: its signal, kept alive.
+        free_drive_by_input: the same of digital inputs that ask for it; the loop's thread writes it.
         writes: how often each input of RTDE was written; by the network's thread.
     """
 
@@ -75,7 +76,7 @@ class Cabinet:
         self._seen: Decision | None = None  # of the last tick
         self.ticks = 0
         self._settled = False  # the robot has been brought into remote control
-        self.free_drive_until = 0
+        self.free_drive_until = self.free_drive_by_input = 0
         self._wanted = False  # in the last tick
         self.script: Scripts | None = None  # runs scripts
         self.writes: dict[str, int] = {}
@@ -171,7 +172,7 @@ class Cabinet:
             commands.append(Command.REMOTE)
         self._settled = True
         scripted = None if self.script is None else self.script.wishes(tick)
-        wanted = self.ticks < self.free_drive_until
+        wanted = self.ticks < max(self.free_drive_until, self.free_drive_by_input)
         if self._wanted and not wanted:
             commands.append(Command.LEAVE_FREE_DRIVE)
         self._wanted = wanted
@@ -237,7 +238,8 @@ class Cabinet:
         self.state = ControllerState(remote=self.state.remote, operational=self.state.operational)
         self._settled = self._static = False
         self._seen = None
-        self.free_drive_until, self._wanted = 0, False
+        self.free_drive_until = self.free_drive_by_input = 0
+        self._wanted = False
         if self.script is not None:
             self.script.begin()
 
@@ -254,7 +256,9 @@ class Cabinet:
             elif event.kind is Kind.PROGRAM_LOADED:
                 program = self._simulation().supervisor.program
                 if program is not None and not is_script(program):  # what a client sends as a script is never loaded
-                    self.set(loaded=program)
+                    self.set(loaded=program, ready=True)
+                else:
+                    self.set(ready=False)
             elif event.kind is Kind.POWERED_OFF:
                 self.set(popup="")
             elif TABLE[event.kind].effect is Effect.NO_ENTRY:

@@ -49,6 +49,7 @@ class ControllerState(msgspec.Struct, frozen=True, gc=False):
     law: Law = Law.HOLD
     program_state: ProgramState = ProgramState.NONE
     loaded: Program | None = None  # that `play` starts
+    ready: bool = True  # the robot has it, and no script of a client in its place
     forcing: bool = False  # a step pushes with a force
     torques: bool = False  # a script commands the joints' torques
     stopped_at: int = 0  # tick in which the protective stop began
@@ -91,6 +92,7 @@ class ControllerState(msgspec.Struct, frozen=True, gc=False):
             decision.law,
             decision.program,
             self.loaded,
+            self.ready,
             isinstance(move, ApplyForce),
             isinstance(move, DirectTorque),
             tick if stopped and not self.stopped else self.stopped_at,

@@ -67,11 +67,12 @@ class StatusFields:
             bool(decision.periods),
         )
         if told != self._told:
-            self._told = told
             self.tell(state, bool(decision.periods))
+            self._told = told
 
     def tell(self, state: ControllerState, ending: bool) -> None:
         """Write the controller's state; `ending`: a period runs that ends what is."""
+        self._told = ()  # a tick may be as the one before this
         put = self._record.put
         put("robot_mode", state.robot_mode)
         put("joint_mode", (state.joint_mode,) * 6)

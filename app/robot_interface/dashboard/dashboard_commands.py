@@ -161,7 +161,7 @@ class DashboardCommands:
             return "Starting program"
         if state.loaded is None and not paused:
             return "Failed to execute: play"
-        program = state.loaded if self._cabinet.simulation.supervisor.program is not state.loaded and not paused else None
+        program = None if state.ready or paused else state.loaded
         ask = Ask((command,), program=program, standing=True)
         return self._when(ask, kind, "Starting program", "Failed to execute: play")
 

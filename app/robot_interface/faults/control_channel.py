@@ -203,7 +203,7 @@ class ControlChannel:
 
     async def _turn(self, request: Request) -> object:
         wanted = await body(request, ConveyorSpeed)
-        await asyncio.wrap_future(self._cabinet.turn_conveyor(wanted.encoder, wanted.ticks_per_second))
+        await self._in_time(self._cabinet.turn_conveyor(wanted.encoder, wanted.ticks_per_second))
         return {}
 
     async def _pace(self, request: Request) -> object:

@@ -64,8 +64,7 @@ class InstalledSignals:
     def step(self) -> None:
         """One tick: inputs that ask for free-drive are looked at."""
         if self._inputs and any(self._high(kind, number) for kind, number in self._inputs):
-            cabinet = self._cabinet
-            cabinet.free_drive_until = max(cabinet.free_drive_until, cabinet.ticks + KEPT)
+            self._cabinet.free_drive_by_input = self._cabinet.ticks + KEPT
 
     def _follow(self, choice: int, *, on: bool) -> None:
         for (kind, number), state in self._states.items():

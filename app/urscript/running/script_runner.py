@@ -213,6 +213,7 @@ class ScriptRunner:
     def begin(self) -> None:
         """The simulation starts over: no script runs."""
         self._end(None)
+        self._beside.end()
         self.memory.end()
         self.memory = RobotMemory(self.cabinet)
         self.arm.begin()  # the same one: a script that is being read has it already
@@ -222,8 +223,10 @@ class ScriptRunner:
         ordered = self._orders.take()
         if ordered is NOTHING_ORDERED:
             return
-        script = ordered.script
-        if script is not None or ordered.beside:
+        script, beside = ordered.script, [each for each in ordered.beside if not self._outdated(each)]
+        if script is not None and self._outdated(script):
+            script = None
+        if script is not None or beside:
             self.cabinet.refresh()
         if script is not None or ordered.stop:
             self._end(None)
@@ -235,7 +238,14 @@ class ScriptRunner:
             self.tell(Told(Telling.STARTED, "", script.machine.script.name))
         if ordered.halt is not None:
             self._halted(ordered.halt)
-        self._beside.add(ordered.beside)
+        self._beside.add(beside)
+
+    def _outdated(self, script: OfferedScript) -> bool:
+        """Whether a script was read for the robot before a restart, which is no more; it is told and closed then."""
+        if script.robot.memory is self.memory:
+            return False
+        self._close(script, ScriptTrouble(NOWHERE, "the simulation has started over"))
+        return True
 
     def _halted(self, wait: bool) -> None:
         """Have the script wait, or go on."""

@@ -46,6 +46,12 @@ class SecondaryPrograms:
         self._running = left
         return inputs
 
+    def end(self) -> None:
+        """The simulation starts over: none runs any more."""
+        for script, _ in self._running:
+            self._close(script, None)
+        self._running = []
+
     def see(self, decision: Decision) -> None:
         """Take in what the robot decided."""
         for script, _ in self._running:

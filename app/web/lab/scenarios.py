@@ -44,7 +44,7 @@ TOPICS = {
     ),
     "Limits, walls, locked axes": (
         *("soft-limits", "dynamic-limits", "joint-limits", "vertical-speed", "wall-walked-down", "wall-made", "wall-pushes-back"),
-        *("wall-ends-free-drive", "axis-locks", "only-the-elbow"),
+        *("wall-ends-free-drive", "wall-stops-a-program", "axis-locks", "only-the-elbow"),
     ),
     "Payload, tool, sensor": ("payload-wizard", "payload-by-itself", "half-a-kilogram", "zeroed", "hanging", "friction-warm-up"),
     "Programs and contact": (

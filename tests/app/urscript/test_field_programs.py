@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from app.robot_interface.dashboard.dashboard_commands import DashboardCommands, Pending
-from app.urscript.running.told import Telling
+from app.urscript.running.told import Telling, Told
 from pendant.events.event import Kind
 from pendant.tick.modes import Mode
 from sim.arm.scenario import Scenario
@@ -145,7 +145,7 @@ class Panel:
         answer = self.commands.answer(line, remote=True)
         if not isinstance(answer, Pending):
             return answer
-        done = self.bench.robot.cabinet.ask(answer.ask)
+        done = answer.asked
         while not done.done():
             self.bench.robot.step()
         return answer.answer(done.result(0.0))
@@ -233,3 +233,16 @@ def test_a_program_that_asks_for_free_drive_without_end_is_guided_and_its_end_is
     assert bench.robot.step(400).mode is not Mode.FREE_DRIVE
     assert bench.runner.trouble is None
     assert not ERRORS & {event.kind for event in bench.robot.watcher.events}
+
+
+@pytest.mark.parametrize("head", ["def", "sec"])
+def test_a_script_that_was_read_before_a_restart_is_not_run_after_it(head: str) -> None:
+    bench = ScriptBench()
+    told: list[Told] = []
+    bench.runner.listen(told.append)
+    bench.runner.offer(f'{head} old():\n  textmsg("runs")\nend\n')
+    bench.robot.begin()
+    bench.robot.step(3)
+    assert [each.text for each in told if each.kind in (Telling.TROUBLE, Telling.ASIDE)] == ["the simulation has started over"]
+    assert "runs" not in [each.text for each in told]
+    assert bench.state is None

@@ -48,6 +48,7 @@ def test_either_force_has_its_limit(moves: bool, limit: float, part: str) -> Non
 def test_what_is_not_a_number_is_a_collision() -> None:
     assert hit(touched(tool=math.nan)) is Kind.COLLISION
     assert hit(touched(link=math.nan)) is Kind.COLLISION
+    assert Collisions(ELBOW).step(touched(tool=math.inf), USE, moves=True) is not None
 
 
 def test_a_flange_sensor_that_is_out_tells_nothing() -> None:

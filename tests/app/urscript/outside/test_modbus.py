@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from app.urscript.outside import modbus_functions, modbus_units
-from app.urscript.running.told import Telling
+from app.urscript.running.told import Telling, Told
 from pendant.tick.modes import Mode
 from tests.app.urscript.outside.servers import Modbus, free_port, raw_server
 from tests.app.urscript.script_bench import ScriptBench
@@ -34,7 +34,8 @@ def shared() -> ScriptBench:
 
 def paced(bench: ScriptBench, text: str, seconds: float = 6.0) -> tuple[list[str], str]:
     """As `ScriptBench.run`, at the clock's pace: what answers lives by the clock."""
-    before = bench.runner.count
+    new: list[Told] = []
+    bench.runner.listen(new.append)
     bench.runner.offer(text)
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -44,7 +45,7 @@ def paced(bench: ScriptBench, text: str, seconds: float = 6.0) -> tuple[list[str
             break
     bench.runner.stop()
     bench.robot.step()
-    new = list(bench.runner.told)[len(bench.runner.told) - (bench.runner.count - before) :]
+    bench.runner.forget(new.append)
     trouble = bench.runner.trouble
     return [each.text for each in new if each.kind is Telling.TEXT], "" if trouble is None else str(trouble)
 
@@ -158,13 +159,14 @@ def test_a_unit_that_comes_back_is_connected_again(bench: ScriptBench) -> None:
     )
     bench.runner.offer(text)
     bench.robot.step()
-    before, second = bench.runner.count, first
+    second = first
+    new: list[Told] = []
+    bench.runner.listen(new.append)
     told: list[str] = []
     end = time.monotonic() + 20.0
     while time.monotonic() < end and bench.state is not None:
         bench.robot.step()
         time.sleep(0.001)
-        new = list(bench.runner.told)[len(bench.runner.told) - (bench.runner.count - before) :]
         now = [each.text for each in new if each.kind is Telling.TEXT]
         if len(now) > len(told):
             told = now
