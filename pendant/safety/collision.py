@@ -2,13 +2,16 @@
 
 from math import hypot, inf
 
-from pendant.events.event import Event, Kind
+from pendant.events.event import Event, Kind, Values
 from pendant.safety.settings import CollisionSettings
 from pendant.tick.estimate import Estimate
 
 MORE = 20.0
 """Force beyond that of a contact which was there already that the arm may meet when it moves away [N]: turning at a place costs
 it as much."""
+
+MOST = 9999.0
+"""That is told of a force, be it larger or no number [N]."""
 
 
 class Collisions:
@@ -52,8 +55,9 @@ class Collisions:
             limit = self._allowed[k] = max(least, min(self._allowed[k], force + MORE))
             if not force <= limit < inf:
                 part = "tool" if k == 0 else self._part(link.joint, sensed=estimate.wrench_valid)
-                values = {"part": part, "force": force, "limit": limit, "speed": 1e3 * estimate.v_tcp}
-                return Event(Kind.COLLISION, estimate.tick, {**values})
+                told = force if force < MOST else MOST
+                values: Values = {"part": part, "force": told, "limit": limit, "speed": 1e3 * estimate.v_tcp}
+                return Event(Kind.COLLISION, estimate.tick, values)
         return None
 
     def _part(self, joint: int, *, sensed: bool) -> str:

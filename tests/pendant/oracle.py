@@ -449,7 +449,7 @@ def _programs(w: World, t: int, i: Step, s: Settings, static: bool, present: boo
         kinds.append(Kind.RUN_SENSORS_LOST)
         if w.phase is not Phase.OFF:
             _end(w, t, present, cool=True)
-        _stop(w, t, Safety.PROTECTIVE_STOP, static, 1)
+        _stop(w, t, Safety.PROTECTIVE_STOP, static, 0)
     elif i.cannot:
         kinds.append(Kind.PROGRAM_FAILED)
         w.mode, w.program, w.brake = w.origin, ProgramState.STOPPED, True

@@ -37,6 +37,7 @@ EXAMPLE: Values = {
     "torque": 1.23,
     "joint": "shoulder",
     "joint_speed": 1.0,
+    "speed": 250.0,
     "joints": "shoulder +12.3°, base -10.4°, wrist_1 +3.2°, wrist_2 +1.1°",
     "late": 123.4,
     "lost": 12.3,

@@ -116,6 +116,7 @@ def test_only_what_is_known_is_left_out() -> None:
         "ContactMonitor": buffers,
         "OperatingSensitivity": ["_given"],
         "Equipping": ["_shape", "_room"],
-        "Barrier": ["_field"],
+        "Barrier": ["_shape"],
+        "Containment": ["_workspace"],
         "Anchor": ["_decide"],
     }

@@ -306,7 +306,7 @@ def test_an_emergency_stop_in_a_move_comes_to_rest_on_its_way(fraction: float) -
 def test_what_stops_a_motion_is_not_pushed_on() -> None:
     """A block of 2e5 N/m met at 250 mm/s with 5 kg in hand: the integral, had it gone on, would press with 186 N for seconds."""
     force = np.array(approach(Approach(2e5, 0.25, 0, 5.0, 4, "stop")).force)
-    assert force.max() > 200.0
+    assert force.max() > 150.0
     assert force[-250:].mean() < 60.0
 
 
