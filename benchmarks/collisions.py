@@ -340,9 +340,8 @@ def _quiet(report: Report, base: int) -> None:
 
 
 def _right(r: Result) -> bool:
-    """The stop names the part that touched."""
-    told = "tool" if r.strike.part == "tool" else r.strike.part
-    return r.seen.stopped == told
+    """The stop names the part that touched, which is the tool where that was there before the part that was to."""
+    return r.seen.stopped == ("tool" if r.seen.shape == "shape/tool" else r.strike.part)
 
 
 if __name__ == "__main__":
