@@ -17,6 +17,7 @@ from app.runs.network_run import NetworkRun
 from app.session.actions import DashboardLine, SendScript
 from app.session.session_file import Session
 from benchmarks.blocking.motions import Case, Moves, Obstacle, Stop, Wanted, stops
+from benchmarks.blocking.places import box_across, tip
 from benchmarks.common import Report, main, spread
 from benchmarks.hold import ARMS
 from benchmarks.postures import posture
@@ -25,7 +26,6 @@ from pendant.decision import Decision
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
 from pendant.tick.modes import TICK, Law
-from sim.arm.frames import rpy_from_matrix
 from sim.arm.scenario import BoxObject, Scenario, ToolModel
 from sim.exchange.desk import Wishes
 from sim.motion.jog import MANUAL
@@ -140,16 +140,9 @@ class Trial:
     def _box(self, kind: str) -> BoxObject:
         """What the tool meets, across its way."""
         p, R, _ = self.probe.dynamics.places(self.q)
-        x = self.direction
-        y = np.cross(x, [0.0, 0.0, 1.0] if abs(x[2]) < 0.9 else [1.0, 0.0, 0.0])
-        y /= np.linalg.norm(y)
-        turn = np.column_stack([x, y, np.cross(x, y)])
-        size = THICK[kind]
         gap = 0.02 + 0.003 + float(self.rng.uniform(0.0, self.near))  # the tool's radius first
-        centre = p + R @ self.probe.tcp + x * (gap + 0.5 * size[0])
-        return BoxObject(
-            name=kind, position=centre.tolist(), rpy=list(rpy_from_matrix(turn)), size=list(size), stiffness=self.case.stiffness
-        )
+        surface = p + R @ self.probe.tcp + gap * self.direction
+        return box_across(kind, surface, self.direction, THICK[kind], stiffness=self.case.stiffness)
 
     def _hand(self) -> Push | None:
         """What pushes at the tool against its motion."""
@@ -167,7 +160,7 @@ class Trial:
         """Let it move, press, stop; then watch."""
         case, device = self.case, self.device
         ticks, blocked_at = 0, None
-        place = self._tip()
+        place = tip(device)
         stop_tick, stopped_by = None, ""
         before = start = allowed = 0.0
         faster = further = misread = 0.0
@@ -179,7 +172,7 @@ class Trial:
             ticks += 1
             if self.network is not None:
                 self.network.see(ticks, decision)
-            now = self._tip()
+            now = tip(device)
             speed = float(np.linalg.norm(now - place)) / TICK
             place = now
             moving = moving or decision.law is Law.FOLLOW
@@ -215,12 +208,6 @@ class Trial:
     def _touched(self) -> bool:
         """What stands in the way is touched, or the hand is there with all its force."""
         return self.device.plant.touched if self.hand is None else self.device.tick_count > HAND_COMES + HAND_RISES
-
-    def _tip(self) -> np.ndarray:
-        plant = self.device.plant
-        body = plant.model.body("flange").id
-        turn = plant.data.xmat[body].reshape(3, 3)
-        return plant.data.xpos[body] + turn @ self.device.tcp
 
     def _wishes(self, tick: int, moving: bool, *, ending: bool, ended: bool) -> Wishes:
         """What is asked of this tick; `ending`: the stop comes now, `ended`: it has come."""

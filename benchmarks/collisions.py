@@ -7,7 +7,6 @@ where it should be. Truth is read for scoring alone. The second part is motion w
 
 from typing import Literal, NamedTuple, get_args
 
-import mujoco
 import numpy as np
 from msgspec.structs import replace as changed
 
@@ -16,16 +15,17 @@ from app.runs.network_run import NetworkRun
 from app.session.actions import SendScript
 from app.session.session_file import Session
 from benchmarks.blocking.motions import Case, Moves, Wanted
+from benchmarks.blocking.places import box_across, tip
 from benchmarks.common import Report, main, spread
 from benchmarks.contacts.motion import IDLE, START, TOOL, program
+from benchmarks.contacts.recording import contact_force, touching
 from benchmarks.hold import ARMS
 from benchmarks.postures import posture
 from pendant.all_settings import Settings, apply
 from pendant.events.event import Kind
 from pendant.inputs import Command, Inputs
 from pendant.tick.modes import TICK
-from sim.arm.frames import rpy_from_matrix
-from sim.arm.scenario import BoxObject, Load, Scenario, ToolModel
+from sim.arm.scenario import Load, Scenario, ToolModel
 from sim.exchange.desk import Wishes
 from sim.motion.jog import MANUAL
 from sim.plant.changes import FrictionChange, Temperature
@@ -119,7 +119,8 @@ class Trial:
         self.q, self.probe = np.array(q), probe
         direction, qd = self._way()
         gap = float(self.rng.uniform(0.02, 0.02 + 0.2 * min(strike.speed, 0.5)))
-        box = self._box(direction, gap + RADII[strike.part])
+        surface = self.place + (gap + RADII[strike.part]) * direction
+        box = box_across("hit", surface, direction, OBSTACLES[strike.obstacle], stiffness=strike.stiffness)
         jogs = {"program.speed": min(strike.speed / MANUAL, 1.0)} if strike.moves.startswith("jog") else {}
         self.device = Simulation(arm, changed(scenario, world=[box], posture=q), apply(Settings(), {**jogs, **use}))
         case = Case(strike.arm, strike.moves, "post", "protective", 1.0, strike.speed, strike.stiffness, 0.5, strike.seed)
@@ -167,15 +168,6 @@ class Trial:
         full = np.vstack([jacobian[:3] + np.cross(jacobian[3:].T, R @ self.probe.tcp).T, jacobian[3:]])
         return towards, np.linalg.solve(full, np.concatenate([strike.speed * towards, np.zeros(3)]))
 
-    def _box(self, x: Array, gap: float) -> BoxObject:
-        """What the part meets, across its way."""
-        y = np.cross(x, [0.0, 0.0, 1.0] if abs(x[2]) < 0.9 else [1.0, 0.0, 0.0])
-        y /= np.linalg.norm(y)
-        turn, size = np.column_stack([x, y, np.cross(x, y)]), OBSTACLES[self.strike.obstacle]
-        centre = self.place + x * (gap + 0.5 * size[0])
-        rpy = list(rpy_from_matrix(turn))
-        return BoxObject(name="hit", position=centre.tolist(), rpy=rpy, size=list(size), stiffness=self.strike.stiffness)
-
     def run(self) -> Course | None:
         """Let it move and hit; None where it met nothing."""
         device, ticks, touched, shape = self.device, 0, 0, ""
@@ -186,11 +178,11 @@ class Trial:
             ticks += 1
             if self.network is not None:
                 self.network.see(ticks, decision)
-            force, which = self._contact()
+            force = contact_force(device)
             if force > 0.0 and not touched:
                 if ticks <= 50:
                     return None
-                touched, shape = ticks, which
+                touched, shape = ticks, touching(device)
             for event in decision.events:
                 if event.kind in (Kind.COLLISION, Kind.PATH_LEFT) and not stopped:
                     stopped = str(event.values["part"]) if event.kind is Kind.COLLISION else "path"
@@ -210,20 +202,7 @@ class Trial:
 
     def _apart(self, q: Array) -> float:
         p, R, _ = self.probe.dynamics.places(q)
-        plant = self.device.plant
-        body = plant.model.body("flange").id
-        tip = plant.data.xpos[body] + plant.data.xmat[body].reshape(3, 3) @ self.device.tcp
-        return float(np.linalg.norm(p + R @ self.probe.tcp - tip))
-
-    def _contact(self) -> tuple[float, str]:
-        """True normal force between the arm and what it met, of all their contacts [N], and the arm's shape."""
-        plant, wrench, total, shape = self.device.plant, np.zeros(6), 0.0, ""
-        for k in range(plant.data.ncon):
-            mujoco.mj_contactForce(plant.model, plant.data, k, wrench)
-            total += float(wrench[0])
-            names = [plant.model.geom(int(g)).name for g in (plant.data.contact[k].geom1, plant.data.contact[k].geom2)]
-            shape = next((name for name in names if name.startswith("shape/")), shape)
-        return total, shape
+        return float(np.linalg.norm(p + R @ self.probe.tcp - tip(self.device)))
 
     def _wishes(self, tick: int) -> Wishes:
         moves = self.strike.moves

@@ -74,22 +74,23 @@ class SafetyInputs:
             event = Event(Kind.MOTOR_ANGLE_LOST, estimate.tick, {"joint": self._joints[unseen[0]]})
             self._robot.happen(event, settings, events)
         robot = self._robot
-        stopped = robot.mode is _STOP
         hit = None
-        if stopped or robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE:
+        if robot.mode is _STOP or robot.mode is _FREE_DRIVE or robot.free.phase is _SEQUENCE:
             self._collisions.rest()
         else:
-            moves = robot.move is not None and not asked
-            hit = self._collisions.step(estimate, settings.collision, moves=moves)
-        if hit is not None:
-            robot.happen(hit, settings, events)
-        elif not stopped and (left := left_path(estimate, settings.following, self._joints)) is not None:
-            self._robot.happen(left, settings, events)
-        elif self._reduced.on and not stopped and motion_ok(estimate):
-            excess = self._reduced.step(estimate, settings.reduced, self._joints)
-            if excess is not None:
-                event = Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict()))
-                self._robot.happen(event, settings, events)
+            hit = self._collisions.step(estimate, settings.collision, moves=robot.move is not None and not asked)
+        if robot.mode is _STOP:
+            return
+        stop = hit or left_path(estimate, settings.following, self._joints) or self._too_fast(estimate, settings)
+        if stop is not None:
+            robot.happen(stop, settings, events)
+
+    def _too_fast(self, estimate: Estimate, settings: Settings) -> Event | None:
+        """The event of an arm that is too fast for REDUCED."""
+        if not (self._reduced.on and motion_ok(estimate)):
+            return None
+        excess = self._reduced.step(estimate, settings.reduced, self._joints)
+        return None if excess is None else Event(Kind.REDUCED_EXCEEDED, estimate.tick, dict(excess._asdict()))
 
     @property
     def _resting(self) -> Safety:

@@ -18,7 +18,7 @@ from pendant.tick.estimate import NO_LINK_FORCE, Estimate, LinkForce
 from sim.arm.arm_file import SensorNumbers
 from sim.compiled.kernel import kernel
 from sim.estimation.momentum_observer import MomentumObserver
-from sim.estimation.torque_errors import CAUSES, left_over, noise, variance
+from sim.estimation.torque_errors import CAUSES, beyond, left_over, noise
 from sim.rigid_body.dynamics import Dynamics
 from sim.sensing.sensors import Sample
 
@@ -82,10 +82,12 @@ def _link_force(models, elbow, flange):
     for i in range(n):
         residual, causes, rest = momentum.residual[i], errors.causes[i], errors.rest[i]
         unexplained = noise(momentum.doubt[i], causes[0])
-        size = _sure(errors, i, (residual, causes), unexplained)
+        left = left_over(errors.shares[i], residual, causes)
+        size = beyond(errors, i, (left, causes), (unexplained, SURE))
         for k in range(CAUSES):
             change[k] = causes[k] - rest[1 + k]
-        changed = _sure(errors, i, (residual - rest[0], change), unexplained)
+        left = left_over(errors.shares[i], residual - rest[0], change)
+        changed = beyond(errors, i, (left, change), (unexplained, SURE))
         if abs(changed) > abs(size):
             size = changed
         if size != 0.0:
@@ -96,17 +98,6 @@ def _link_force(models, elbow, flange):
         if needed > force:
             force, at = needed, i
     return (last if force > LEAST else -1), force, certain[at], at, clipped
-
-
-@kernel
-def _sure(errors, i, felt, unexplained):
-    """What of joint i's torque, or of its change, no error explains [N·m]; `felt`: torque and causes, or their changes."""
-    torque, causes = felt
-    left = left_over(errors.shares[i], torque, causes)
-    if left * left <= SURE * SURE * unexplained:
-        return 0.0
-    size = abs(left) - SURE * np.sqrt(variance(errors, i, causes) + unexplained)
-    return np.copysign(size, left) if size > 0.0 else 0.0
 
 
 @kernel

@@ -40,6 +40,7 @@ from sim.compiled.kernel import kernel
 from sim.compiled.record import record
 from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.torque_errors import CAUSES, FOLLOW, ZERO, beyond, left_over, noise
+from sim.estimation.transmission_torque import CONTACT
 from sim.flange.flange_forces import best_force
 from sim.motion.references import STANDING
 from sim.rigid_body.newton_euler import NewtonEuler
@@ -228,6 +229,6 @@ def _feel(own, known, told, when) -> bool:
             change[0] += drifts[k] * lever
             rest += lever * lever * walked[k]
         own.left[when, i] = left = left_over(errors.shares[i], change[0], change[1:])
-        own.sure[when, i] = beyond(errors, i, (left, change[1:]), rest)
+        own.sure[when, i] = beyond(errors, i, (left, change[1:]), (rest, CONTACT))
         found = found or own.sure[when, i] != 0.0
     return found

@@ -175,16 +175,16 @@ def variance(own, i, causes):
 
 
 @kernel
-def beyond(own, i, what, rest):
+def beyond(own, i, what, doubt):
     """How much of a torque of joint i is more than its causes and the rest may be wrong by [N·m]: 0 where nothing is.
 
-    `what` is what the causes leave of the torque, and the causes, or the change of both; `rest` is the variance of what they do
-    not explain [N²·m²]. Where it alone is as large, theirs is not asked for.
+    `what` is what the causes leave of the torque, and the causes, or the change of both; `doubt` is the variance of what they do
+    not explain [N²·m²], and how many deviations of both count as an error. Where it alone is as large, theirs is not asked for.
     """
-    left, causes = what
-    if left * left <= CONTACT**2 * rest:
+    (left, causes), (rest, deviations) = what, doubt
+    if left * left <= deviations**2 * rest:
         return 0.0
-    size = abs(left) - CONTACT * np.sqrt(variance(own, i, causes) + rest)
+    size = abs(left) - deviations * np.sqrt(variance(own, i, causes) + rest)
     return np.copysign(size, left) if size > 0.0 else 0.0
 
 
@@ -192,7 +192,7 @@ def beyond(own, i, what, rest):
 def _feels(own, i, felt, rest) -> bool:
     """Joint i feels such a torque, with its causes, or such a change of both."""
     causes = felt[1:]
-    return beyond(own, i, (left_over(own.shares[i], felt[0], causes), causes), rest) != 0.0
+    return beyond(own, i, (left_over(own.shares[i], felt[0], causes), causes), (rest, CONTACT)) != 0.0
 
 
 @kernel
