@@ -17,7 +17,7 @@ from sim.arm.arm_file import Arm
 from sim.arm.chain import NOTHING, arm_shape, chain, load_body, plate_body, tool_body
 from sim.arm.frames import rotation_from_rpy
 from sim.arm.scenario import Load, Scenario, table
-from sim.collisions.link_force import LinkForces
+from sim.collisions.arm_watch import ArmWatch
 from sim.control.controller import Controller
 from sim.control.feedback import following_limit
 from sim.estimation.contact_sources import ContactSources
@@ -78,10 +78,12 @@ class Simulation:
         self._before = self._after = plate + tool_body(used) + load_body(scenario.payload_configured)
         links = calibration.believed(rigid, self.calibration)
         self.dynamics = Dynamics(rigid, links, self._before, mounting=scenario.mounting, elbow=arm.chain.elbow)
-        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp, following=following_limit(arm))
+        self.estimator = Estimator(arm, self.calibration, self.dynamics, self.tcp)
         self.estimator.set_load(self._before, load_body(scenario.payload_configured))
         self.contact_sources = ContactSources(self.dynamics, arm.chain.elbow, arm.sensors, self.estimator.momentum)
-        self.link_forces = LinkForces(self.dynamics, self.estimator.momentum, arm.sensors, arm.chain.elbow)
+        self.watch = ArmWatch(
+            self.dynamics, self.estimator.momentum, arm.sensors, arm.chain.elbow, following=following_limit(arm)
+        )
         self.supervisor = Supervisor(
             settings,
             arm.n,
@@ -149,6 +151,7 @@ class Simulation:
         if supervisor.zero is not self.zero:
             self.zero, self._zero = supervisor.zero, np.array(supervisor.zero)
             self.contact_sources.set_zero(self._zero)
+            self.watch.set_zero(self._zero)
         sample = self.sensors.read(plant, self.current)
         if self._zero is not None:
             sample.wrench -= self._zero  # once: each sample arrives once
@@ -163,7 +166,7 @@ class Simulation:
         answered = references.answered
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
-        self.link_forces.read(sample, self._zero, estimate)
+        self.watch.read(sample, estimate, None if answered is None or not estimator.started else answered.q)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
         decision = supervisor.step(estimate, wishes.inputs)

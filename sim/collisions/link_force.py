@@ -12,17 +12,9 @@ Transactions on Robotics 33(6), 2017, sections IV and V.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pendant.tick.estimate import NO_LINK_FORCE, Estimate, LinkForce
-from sim.arm.arm_file import SensorNumbers
 from sim.compiled.kernel import kernel
-from sim.estimation.momentum_observer import MomentumObserver
 from sim.estimation.torque_errors import CAUSES, beyond, left_over, noise
-from sim.rigid_body.dynamics import Dynamics
-from sim.sensing.sensors import Sample
-
-Array = NDArray[np.float64]
 
 SURE = 5.0
 """Deviations of a torque that no contact makes. It is looked at 3,000 times a second, over which errors stay alike for 0.2 s:
@@ -30,54 +22,14 @@ in five hours of motion fewer than 10^6 independent looks, of which 5 deviations
 LEAST_LEVER = 0.2
 """Of a force on a link [m]: through a shorter one a small error of a torque would seem a large force."""
 LEAST = 10.0  # that is told [N]
-END = 0.95  # share of the flange sensor's range from which its value may be less than what is there
-
-
-class LinkForces:
-    """Watches the external torques that the flange sensor does not feel; without it, all of them.
-
-    Args:
-        dynamics: the controller's rigid model, whose recursion has been run in this tick.
-        momentum: external torques of this tick.
-        sensors: of the arm, with their ranges.
-        elbow: index of the joint whose origin is the elbow.
-    """
-
-    def __init__(self, dynamics: Dynamics, momentum: MomentumObserver, sensors: SensorNumbers, elbow: int) -> None:
-        self._momentum, self._elbow = momentum, elbow
-        self._models = dynamics.recursion.record, momentum.record, momentum.errors.record
-        flange = sensors.force_torque
-        self._range = np.full(6, np.inf)
-        if flange is not None:
-            self._range[:3], self._range[3:] = END * flange.force.range, END * flange.torque.range
-
-    def read(self, sample: Sample, zero: Array | None, estimate: Estimate) -> None:
-        """Put this tick's force into `estimate`; none while the observer has just begun, for it may be an error.
-
-        Args:
-            sample: this tick's measurements, of which the zero has been taken.
-            zero: of the flange sensor (6,) [N, N·m], None for none.
-            estimate: this tick's estimate.
-        """
-        if not self._momentum.ready:
-            estimate.link_force, estimate.clipped = NO_LINK_FORCE, False
-            return
-        wrench = sample.wrench if zero is None else sample.wrench + zero
-        joint, force, torque, twisted, clipped = _link_force(self._models, self._elbow, (wrench, self._range))
-        estimate.clipped = clipped and sample.wrench_valid
-        estimate.link_force = NO_LINK_FORCE if joint < 0 else LinkForce(joint, force, torque, twisted)
 
 
 @kernel
-def _link_force(models, elbow, flange):
-    """Last joint that feels a torque (-1: no force is told), the least force [N], the torque that needs it [N·m], its joint,
-    and whether the flange sensor is at the end of its range.
-    """
+def link_force(models, elbow):
+    """Last joint that feels a torque (-1: no force is told), the least force [N], the torque that needs it [N·m], its joint."""
     rigid, momentum, errors = models[0][0], models[1][0], models[2][0]
-    n, last, clipped = momentum.residual.size, -1, False
+    n, last = momentum.residual.size, -1
     certain = np.zeros(n)
-    for k in range(6):
-        clipped |= abs(flange[0][k]) >= flange[1][k]
     change = np.empty(CAUSES)
     for i in range(n):
         residual, causes, rest = momentum.residual[i], errors.causes[i], errors.rest[i]
@@ -97,7 +49,7 @@ def _link_force(models, elbow, flange):
         needed = abs(certain[i]) / max(LEAST_LEVER, _lever(rigid, i, last, elbow))
         if needed > force:
             force, at = needed, i
-    return (last if force > LEAST else -1), force, certain[at], at, clipped
+    return (last if force > LEAST else -1), force, certain[at], at
 
 
 @kernel

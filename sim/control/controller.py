@@ -123,17 +123,18 @@ class Controller:
     ) -> Array:
         references = self.references
         reference = references.step(estimate, decision)
-        self._driven = self._commanded & (np.abs(estimate.theta_d) > STANDING)
         helped = use.friction and use.feed_forward and (references.driven or decision.shake is not None)
         rubbing = friction if helped else None
         torque = self.feed_forward.torque(
             reference, rubbing, motion=use.feed_forward, stiffer=stiffer, push=references.push, fresh=references.fresh
         )
         desired = self.feed_forward.tau_J
+        feeding_back = use.torque_feedback
         start = None
+        if references.fresh or (feeding_back and not self._fed_back):
+            self._driven = self._commanded & (np.abs(estimate.theta_d) > STANDING)
         if references.fresh:
             start = Beginning(self._first(torque, estimate, friction), references.before, self._driven)
-        feeding_back = use.torque_feedback
         if feeding_back:
             if use is not self._use or estimate.lost != self._lost:
                 self._use, self._lost = use, estimate.lost

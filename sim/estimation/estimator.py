@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pendant.all_settings import FrictionFrom, JointControl
-from pendant.tick.estimate import ON_PATH, Estimate, FollowingError
+from pendant.tick.estimate import Estimate
 from pendant.tick.modes import TICK
 from sim.arm.arm_file import Arm
 from sim.arm.chain import Body
@@ -15,7 +15,6 @@ from sim.estimation.joint_tracking import (
     SPEED_BANDWIDTH,
     TORQUE_BANDWIDTH,
     follow,
-    following_error,
     joint_record,
     plan,
     tracking_gains,
@@ -49,10 +48,9 @@ class Estimator:
         calibration: error of the constants that the controller uses.
         dynamics: the controller's rigid model, which holds the configured payload.
         tcp: tool centre point in F (3,) [m].
-        following: largest error of the joints against their reference (n,) [rad].
     """
 
-    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array, *, following: Array) -> None:
+    def __init__(self, arm: Arm, calibration: Calibration, dynamics: Dynamics, tcp: Array) -> None:
         n, motors, spring = arm.n, arm.motors, arm.transmissions
         self._dynamics, self._tcp = dynamics, tcp
         stiffness = np.array(spring.stiffness) * calibration.stiffness
@@ -61,7 +59,7 @@ class Estimator:
         stiffening = np.array(spring.stiffening) * calibration.stiffness
         self._record = joint_record(n)
         own = self._own = self._record[0]
-        own["most"], own["following"] = motors.current, following
+        own["most"] = motors.current
         own["torque_constant"], own["stiffness"], own["stiffening"] = torque_constant, stiffness, stiffening
         own["damping"], own["slip_stiffness"], own["slip_yield"] = spring.damping, slip_stiffness, spring.hysteresis_yield
         own["rotor"] = np.array(motors.rotor_inertia) * calibration.rotor_inertia
@@ -82,7 +80,7 @@ class Estimator:
         self._smooth_bending = 1.0 - math.exp(-2.0 * math.pi * BENDING_BANDWIDTH * TICK)
         self._bending = np.zeros(n)  # load that bends the spring where an angle is out [N·m]
         self._bend = np.zeros(n)  # deflection beyond that of the believed stiffness, where an angle is out [rad]
-        self._started, self._free = False, False  # `_free`: free-drive was on in the last tick
+        self.started, self._free = False, False  # `_free`: free-drive was on in the last tick
         self._wanted: Reference | None = None  # in the last tick
         self.q, self.jacobian = np.zeros(n), dynamics.recursion.jacobian
         self.forces = FlangeForces(dynamics)
@@ -129,7 +127,7 @@ class Estimator:
         if angles is not None:
             if self._lost and sample.joints_valid:
                 self._back(sample)
-            if not self._started:
+            if not self.started:
                 # Also after an outage: the way the arm went in it must not count as speed.
                 theta[:], q[:] = 0.0, 0.0
                 theta[0], q[0] = angles[0], angles[1]
@@ -141,7 +139,7 @@ class Estimator:
             self._wanted = answered
             follow(self._record, angles)
             self.q = angles[1].copy()  # a law may hold on to it
-        self._started = angles is not None
+        self.started = angles is not None
         rigid = dynamics.recursion
         v_tcp, v_elbow = rigid.run(self.q, q, self._tcp)
         # Valid and used, and so since free-drive began, if it is on.
@@ -156,22 +154,14 @@ class Estimator:
         known.q, known.w_sensor, known.a_F = self.q, sample.wrench, sample.acceleration_flange
         known.v_tcp, known.v_elbow = v_tcp, v_elbow
         known.move_done, known.move_refused, known.move_wall = move_done, move_refused, move_wall if move_refused else ""
-        known.degraded = not valid and self._started and bool(self._able[MOTOR_ANGLE].all())
+        known.degraded = not valid and self.started and bool(self._able[MOTOR_ANGLE].all())
         known.lost, known.touched = self._lost, self.transmission.contact
         known.missing_mass = NOT_TOLD if sample.wrench_valid else missing_mass(*self._bears)
         known.load_mass, known.singularity = dynamics.load.mass, math.inf
-        known.following = self._following(answered)
         if bias is not None or self._free:
             self._free = bias is not None
             self._ask_whose(known, bias if sensed else None, unsure)
         return known
-
-    def _following(self, answered: Reference | None) -> FollowingError:
-        """How far the arm is from the reference that this tick's measurement answers to."""
-        if answered is None or not self._started:
-            return ON_PATH
-        rigid = self._dynamics.recursion
-        return FollowingError._make(following_error(self._record, answered.q, self.q, (rigid.jacobian, rigid.p, rigid.tcp)))
 
     def _ask_whose(self, known: Estimate, bias: tuple[float, ...] | None, unsure: float) -> None:
         """Whose force it is: in free-drive, and in the tick after it, which ends what is told; `bias` None: no valid sensor."""
@@ -245,7 +235,7 @@ class Estimator:
             lost = ~(deflection | motor_side) & (use.from_deflection or use.from_motor)
             self._ways[:] = [use.from_dynamics | ~both | lost, deflection, motor_side]
             self._by_deflection[:] = both & motor_known & (use.from_deflection and use.friction_from is _DEFLECTION)
-        known, adapts = (self._ways, self._able, self._by_deflection), learn and self._started and use.adaptive
+        known, adapts = (self._ways, self._able, self._by_deflection), learn and self.started and use.adaptive
         moving: bool = balance(self._torques, (self._dynamics.recursion.torque, sample.temperature), known, (learn, adapts))
         if self._lost:  # what a way cannot tell says nothing against the others
             np.copyto(self.transmission.ways, self.transmission.fused, where=~self._ways)
@@ -260,8 +250,8 @@ class Estimator:
         fused = self.transmission.fused
         if not (able == self._able).all():
             self._bending = fused.copy()
-            bent = self._theta[0] - self._q[0] if self._started else np.zeros_like(fused)
-            fresh = (self._able[0] & self._able[1]) & self._started
+            bent = self._theta[0] - self._q[0] if self.started else np.zeros_like(fused)
+            fresh = (self._able[0] & self._able[1]) & self.started
             # What the spring's stiffness does not explain now, it will not explain later: no angle jumps.
             self._bend = np.where(fresh, bent - self._compliance * fused, self._bend)
             self._able, self._lost, self._use = able, _names(able), None

@@ -51,7 +51,6 @@ def joint_record(n: int) -> Record:
         q=(3, n),
         rest=(n,),  # deflection at which the hysteresis spring is relaxed
         most=(n,),  # current that a motor may have [A]
-        following=(n,),  # largest error against the reference [rad]
         current=(n,),  # measured, as a share of it
         spin=(),  # kinetic energy of the rotors [J]
         tau_m=(n,),
@@ -108,35 +107,6 @@ def plan(joints, before, now) -> None:
         q[2, i] += jump
         q[1, i] += gain - TICK * jump
         q[0, i] += way - TICK * gain + 0.5 * TICK * TICK * jump
-
-
-@kernel
-def following_error(joints, wanted, q, arm) -> tuple[int, float, float, float, float]:
-    """How far the arm is from where it should be: see `pendant.tick.estimate.FollowingError`.
-
-        error at the tool = J_tcp (q_wanted - q)
-
-    Args:
-        joints: `joint_record`.
-        wanted: output angles of the reference that this measurement answers to (n,) [rad].
-        q: output angles measured (n,) [rad].
-        arm: Jacobian of the flange (6, n), its position (3,) and the tool centre point's (3,) or more [m], axes of B.
-    """
-    jacobian, flange, tcp = arm
-    limits = joints[0].following
-    x, y, z = tcp[0] - flange[0], tcp[1] - flange[1], tcp[2] - flange[2]
-    joint, angle, share = 0, 0.0, 0.0
-    ex, ey, ez = 0.0, 0.0, 0.0
-    for i in range(q.size):
-        error = wanted[i] - q[i]
-        part = abs(error) / limits[i]
-        if part > share or part != part:  # what is no number is too far, and stays so
-            joint, angle, share = i, abs(error), part
-        wx, wy, wz = jacobian[3, i], jacobian[4, i], jacobian[5, i]
-        ex += (jacobian[0, i] + wy * z - wz * y) * error
-        ey += (jacobian[1, i] + wz * x - wx * z) * error
-        ez += (jacobian[2, i] + wx * y - wy * x) * error
-    return joint, angle, limits[joint], share, math.sqrt(ex * ex + ey * ey + ez * ez)
 
 
 @kernel

@@ -1,13 +1,11 @@
 """The estimator against analytic motion, the plant's truth and known pushes."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from pendant.inputs import Inputs
-from pendant.tick.estimate import ON_PATH
 from pendant.tick.modes import TICK, Mode
 from sim.arm.chain import Body, chain
 from sim.arm.frames import joint_frames, rotation_from_rpy
@@ -17,8 +15,6 @@ from sim.estimation.joint_tracking import SPEED_BANDWIDTH, TORQUE_BANDWIDTH, tra
 from sim.estimation.transmission_torque import DEFLECTION
 from sim.exchange.desk import Wishes
 from sim.flange.flange_forces import FlangeForces
-from sim.motion.moves import Reference
-from sim.paths.tool_point import ToolPoint
 from sim.plant.changes import AttachPayload, SensorFault
 from sim.plant.touch import Pull
 from sim.rigid_body.dynamics import Dynamics
@@ -30,7 +26,6 @@ from tests.sim.bench import CENTRE, Bench, push
 G = 9.81
 FLOOR, WALL, TILTED = [0.0, 0.0, 0.0], [0.0, np.pi / 2, 0.0], [0.6, 0.4, 0.2]
 BENT = [0.3, -1.2, 1.5, -0.8, -1.2, 0.7]
-LIMIT = np.full(6, 0.02)  # of the following error [rad]
 LEANING = [-2.2138, 1.4963, -1.8777, 0.5938, -0.5613, 0.2716]
 
 
@@ -45,7 +40,7 @@ def estimator() -> Estimator:
     rigid = chain(UR5E)
     nothing = Body(0.0, np.zeros(3), np.zeros((3, 3)))
     dynamics = Dynamics(rigid, rigid.links, nothing, mounting=FLOOR, elbow=UR5E.chain.elbow)
-    return Estimator(UR5E, calibration.nominal(UR5E), dynamics, np.array(PROBE.tcp), following=LIMIT)
+    return Estimator(UR5E, calibration.nominal(UR5E), dynamics, np.array(PROBE.tcp))
 
 
 def follow(angle, ticks: int = 400, bias=None):
@@ -386,7 +381,6 @@ def test_gravity_is_given_in_the_axes_of_the_base(mounting: list[float], down: l
         calibration.nominal(UR5E),
         Dynamics(rigid, rigid.links, nothing, mounting=mounting, elbow=2),
         np.zeros(3),
-        following=LIMIT,
     )
     result = device.update(sample(np.zeros(6), np.zeros(6)), 0, "")
     np.testing.assert_allclose(result.g_B, down, atol=1e-12)
@@ -464,29 +458,3 @@ def test_an_arm_that_is_held_learns_nothing_from_a_push() -> None:
         assert pushed_and_left(bench).max() < 2.0
     assert (estimator.friction.terms == known[0]).all()
     assert (estimator.transmission.stiffer == known[1]).all()
-
-
-@pytest.mark.parametrize(("joint", "error"), [(0, 0.005), (2, -0.02), (5, 0.03)])
-def test_the_following_error_is_that_of_the_joint_with_the_largest_share_and_of_the_tool(joint: int, error: float) -> None:
-    """RL-1."""
-    device, wanted = estimator(), np.array(BENT)
-    wanted[joint] += error
-    wanted[1] += 1e-4
-    device.update(sample(np.array(BENT), np.array(BENT)), 0, "")
-    found = device.update(sample(np.array(BENT), np.array(BENT)), 0, "", answered=Reference(wanted, np.zeros(6), np.zeros(6)))
-    assert found.following.joint == joint
-    assert found.following.angle == pytest.approx(abs(error))
-    assert found.following.limit == LIMIT[joint]
-    assert found.following.share == pytest.approx(abs(error) / LIMIT[joint])
-    tool = ToolPoint(device._dynamics, np.array(PROBE.tcp))
-    apart = tool.pose(wanted)[0] - tool.pose(np.array(BENT))[0]
-    assert found.following.tool == pytest.approx(float(np.linalg.norm(apart)), rel=0.02)
-    assert device.update(sample(np.array(BENT), np.array(BENT)), 0, "").following == ON_PATH, "no reference, no error"
-
-
-def test_an_angle_that_is_no_number_is_too_far_from_the_reference() -> None:
-    device, wanted = estimator(), np.array(BENT)
-    device.update(sample(np.array(BENT), np.array(BENT)), 0, "")
-    wanted[3] = math.nan
-    found = device.update(sample(np.array(BENT), np.array(BENT)), 0, "", answered=Reference(wanted, np.zeros(6), np.zeros(6)))
-    assert not found.following.share <= 1.0

@@ -1,0 +1,106 @@
+"""What may stop an arm that moves by itself: a force on a link, and how far it is from its reference (RL-1, RL-3).
+
+Both in one kernel: to call one takes as long as all that it does here.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pendant.tick.estimate import NO_LINK_FORCE, ON_PATH, Estimate, FollowingError, LinkForce
+from sim.arm.arm_file import SensorNumbers
+from sim.collisions.link_force import link_force
+from sim.compiled.kernel import kernel
+from sim.compiled.record import record
+from sim.estimation.momentum_observer import MomentumObserver
+from sim.rigid_body.dynamics import Dynamics
+from sim.sensing.sensors import Sample
+
+Array = NDArray[np.float64]
+
+END = 0.95  # share of the flange sensor's range from which its value may be less than what is there
+
+
+class ArmWatch:
+    """Watches what the joints feel that the flange sensor does not, without it all of it, and whether the arm is on its path.
+
+    Args:
+        dynamics: the controller's rigid model, whose recursion has been run in this tick.
+        momentum: external torques of this tick.
+        sensors: of the arm, with their ranges.
+        elbow: index of the joint whose origin is the elbow.
+        following: largest error of the joints against their reference (n,) [rad].
+    """
+
+    def __init__(
+        self, dynamics: Dynamics, momentum: MomentumObserver, sensors: SensorNumbers, elbow: int, following: Array
+    ) -> None:
+        self._momentum, self._elbow = momentum, elbow
+        self._own = record(range=(6,), zero=(6,), following=(following.size,))
+        self._models = self._own, dynamics.recursion.record, momentum.record, momentum.errors.record
+        own, flange = self._own[0], sensors.force_torque
+        own["range"], own["following"] = np.inf, following
+        if flange is not None:
+            own["range"][:3], own["range"][3:] = END * flange.force.range, END * flange.torque.range
+
+    def set_zero(self, zero: Array) -> None:
+        """So much (6,) is subtracted from the flange sensor's values [N, N·m]."""
+        self._own[0]["zero"] = zero
+
+    def read(self, sample: Sample, estimate: Estimate, wanted: Array | None) -> None:
+        """Put this tick's force and following error into `estimate`; no force while the observer has just begun, for it may be
+        an error.
+
+        Args:
+            sample: this tick's measurements, of which the zero has been taken.
+            estimate: this tick's estimate.
+            wanted: angles of the reference that this measurement answers to (n,) [rad]; None: nothing says where it should be.
+        """
+        feels, q = self._momentum.ready, estimate.q
+        force, clipped, error = _watch(self._models, (self._elbow, feels), (sample.wrench, q, q if wanted is None else wanted))
+        estimate.clipped = clipped and sample.wrench_valid
+        estimate.link_force = NO_LINK_FORCE if force[0] < 0 else LinkForce(*force)
+        estimate.following = ON_PATH if wanted is None else FollowingError(*error)
+
+
+@kernel
+def _watch(models, state, felt):
+    """Force on a link, whether the flange sensor is at the end of its range, and the following error."""
+    elbow, feels = state
+    wrench, q, wanted = felt
+    own, rigid = models[0][0], models[1][0]
+    force, clipped = (-1, 0.0, 0.0, 0), False
+    if feels:
+        force = link_force(models[1:], elbow)
+        for k in range(6):
+            clipped |= abs(wrench[k] + own.zero[k]) >= own.range[k]
+    return force, clipped, _following_error(own.following, wanted, q, (rigid.jacobian, rigid.p, rigid.tcp))
+
+
+@kernel
+def _following_error(limits, wanted, q, arm) -> tuple[int, float, float, float, float]:
+    """How far the arm is from where it should be: see `pendant.tick.estimate.FollowingError`.
+
+        error at the tool = J_tcp (q_wanted - q)
+
+    Args:
+        limits: of each joint (n,) [rad].
+        wanted: output angles of the reference that this measurement answers to (n,) [rad].
+        q: output angles measured (n,) [rad].
+        arm: Jacobian of the flange (6, n), its position (3,) and the tool centre point's (3,) or more [m], axes of B.
+    """
+    jacobian, flange, tcp = arm
+    x, y, z = tcp[0] - flange[0], tcp[1] - flange[1], tcp[2] - flange[2]
+    joint, angle, share = 0, 0.0, 0.0
+    ex, ey, ez = 0.0, 0.0, 0.0
+    for i in range(q.size):
+        error = wanted[i] - q[i]
+        part = abs(error) / limits[i]
+        if part > share or part != part:  # what is no number is too far, and stays so
+            joint, angle, share = i, abs(error), part
+        wx, wy, wz = jacobian[3, i], jacobian[4, i], jacobian[5, i]
+        ex += (jacobian[0, i] + wy * z - wz * y) * error
+        ey += (jacobian[1, i] + wz * x - wx * z) * error
+        ez += (jacobian[2, i] + wx * y - wy * x) * error
+    return joint, angle, limits[joint], share, math.sqrt(ex * ex + ey * ey + ez * ez)
