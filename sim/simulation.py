@@ -166,9 +166,11 @@ class Simulation:
         answered = references.answered
         estimate = estimator.update(sample, *told, use=use, answered=answered, learn=learn, bias=bias, unsure=unsure)
         self.contact_sources.read(sample, estimate, jacobian, supervisor.settings.contact, looks=decided is None or decided.looks)
-        self.watch.read(sample, estimate, None if answered is None or not estimator.started else answered.q)
         if before is _FREE:
             estimate.singularity = controller.free_drive.singularity.value
+            self.watch.rest(estimate)
+        else:
+            self.watch.read(sample, estimate, None if answered is None or not estimator.started else answered.q)
         decision = supervisor.step(estimate, wishes.inputs)
         friction, stiffer = estimator.friction, estimator.transmission.stiffer
         self.current = controller.update(estimate, decision, jacobian, friction=friction, stiffer=stiffer, use=use)

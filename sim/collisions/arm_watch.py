@@ -48,6 +48,11 @@ class ArmWatch:
         """So much (6,) is subtracted from the flange sensor's values [N, N·m]."""
         self._own[0]["zero"] = zero
 
+    @staticmethod
+    def rest(estimate: Estimate) -> None:
+        """A tick of free-drive, in which a hand may push at any link: nothing is told."""
+        estimate.clipped, estimate.link_force, estimate.following = False, NO_LINK_FORCE, ON_PATH
+
     def read(self, sample: Sample, estimate: Estimate, wanted: Array | None) -> None:
         """Put this tick's force and following error into `estimate`; no force while the observer has just begun, for it may be
         an error.
