@@ -34,7 +34,7 @@ class ArmWatch:
     """
 
     def __init__(
-        self, dynamics: Dynamics, momentum: MomentumObserver, sensors: SensorNumbers, elbow: int, following: Array
+        self, dynamics: Dynamics, momentum: MomentumObserver, sensors: SensorNumbers, elbow: int, *, following: Array
     ) -> None:
         self._momentum, self._elbow = momentum, elbow
         self._own = record(range=(6,), zero=(6,), following=(following.size,))
