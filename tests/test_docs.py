@@ -313,6 +313,16 @@ def test_the_action_of_the_example_shakes() -> None:
         convert({"title": "t", "duration": 1.0, "timeline": [written]}, Session, "s.yaml")  # it is not there yet
 
 
+def test_the_architecture_has_every_room_and_every_module_above_them() -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text()
+    rooms = {f"{folder}/" for folder in modules.rooms() if folder.split("/")[0] in ("pendant", "sim", "app") and "/" in folder}
+    above = {
+        path.relative_to(ROOT).as_posix() for top in ("pendant", "sim", "app", "app/web") for path in (ROOT / top).glob("*.py")
+    }
+    wanted = {name for name in rooms - {"app/web/"} | above if not name.endswith("__init__.py")}
+    assert sorted(name for name in wanted if f"`{name}`" not in text) == []
+
+
 def test_the_list_of_modules_is_up_to_date() -> None:
     assert modules.PAGE.read_text(encoding="utf-8") == modules.page(), "run python -m tools.modules"
 
