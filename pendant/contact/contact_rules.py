@@ -1,7 +1,7 @@
 """The rules that see a change in contact in a history of force and acceleration (CD-0, CD-3 to CD-8). Pure functions.
 
 Every rule but clamping asks for opposite directions: in free motion the carried load makes the changes of force and
-acceleration parallel, whatever its mass; a contact of the carried part makes them opposite (docs/guide/contact.md). A
+acceleration parallel, whatever its mass; a contact of the carried part makes them opposite (docs/explanation/contact.md). A
 saturated force has no size; its changes alone are looked at.
 """
 

@@ -57,6 +57,8 @@ class EventRow(NamedTuple):
     variant: tuple[str, str] | None = None  # a value of the event, and the guidance instead of the other where it is true
     category: int = 2  # of the stop, where it stops: 0 power off at once, 1 off at standstill, 2 stays on
     words: Mapping[str, str] = MappingProxyType({})  # what the texts call a value that is a name of the program's own
+    reaction: str = ""  # what it does besides its effect on the mode, in sentences
+    way_out: str = ""  # how its cause goes away, in sentences, where the guidance alone does not say it
 
 
 WALL = ("wall", "part", "distance", "way", "x", "y", "z", "px", "py", "pz")
@@ -68,14 +70,16 @@ EXCESS = Excess._fields
 """Values of an event of a limit."""
 
 
-def info(headline: str, guidance: str = "", keys: tuple[str, ...] = ()) -> EventRow:
-    """Told, and nothing else."""
-    return EventRow(Effect.INFO, Severity.INFO, headline, guidance, keys)
+def info(headline: str, guidance: str = "", keys: tuple[str, ...] = (), *, reaction: str = "", way_out: str = "") -> EventRow:
+    """Told, and without an effect on the mode."""
+    return EventRow(Effect.INFO, Severity.INFO, headline, guidance, keys, reaction=reaction, way_out=way_out)
 
 
-def refused(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
+def refused(headline: str, guidance: str, keys: tuple[str, ...], *, way_out: str = "") -> EventRow:
     """Free-drive is refused; its cool-down begins."""
-    return EventRow(Effect.NO_ENTRY, Severity.WARNING, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True)
+    return EventRow(
+        Effect.NO_ENTRY, Severity.WARNING, headline, guidance, keys, Clears.COOL_DOWN, cool_down=True, way_out=way_out
+    )
 
 
 def left(headline: str, guidance: str, keys: tuple[str, ...] = (), severity: Severity = Severity.NOTICE) -> EventRow:
@@ -95,6 +99,6 @@ def protected(headline: str, guidance: str, keys: tuple[str, ...], category: int
     )
 
 
-def denied(headline: str, guidance: str, keys: tuple[str, ...] = ()) -> EventRow:
+def denied(headline: str, guidance: str, keys: tuple[str, ...] = (), *, reaction: str = "", way_out: str = "") -> EventRow:
     """Something is not possible, or not as it should be."""
-    return EventRow(Effect.INFO, Severity.WARNING, headline, guidance, keys)
+    return EventRow(Effect.INFO, Severity.WARNING, headline, guidance, keys, reaction=reaction, way_out=way_out)

@@ -12,6 +12,8 @@ ENTRY: dict[Kind, EventRow] = {
         "Free-drive not started: let go too early",
         "Held for {value:.2f} s. Hold the button for {limit:.2f} s.",
         ("value", "limit"),
+        reaction="The attempt ends. There is no cool-down.",
+        way_out="Hold the button until the period has passed.",
     ),
     Kind.SIGNAL_SEEN: info("Free-drive: {source}", "Go on for {period:.1f} s.", ("source", "period")),
     # Its confirmation (FD-8)
@@ -46,7 +48,12 @@ ENTRY: dict[Kind, EventRow] = {
         Effect.ENTER, Severity.NOTICE, "Free-drive", "Move the arm by hand. A short press leaves.", ("from", "gain")
     ),
     # Refused before the check (FD-1, FD-12)
-    Kind.REFUSED_MODE: refused("Free-drive refused: mode is {mode}", "Allowed in: {allowed}.", ("mode", "allowed")),
+    Kind.REFUSED_MODE: refused(
+        "Free-drive refused: mode is {mode}",
+        "Allowed in: {allowed}.",
+        ("mode", "allowed"),
+        way_out="Switch to a mode in which it is allowed. From STOP, reset.",
+    ),
     Kind.REFUSED_SENSORS: refused("Free-drive refused: joint sensors not valid", "Check {sensor}, then try again.", ("sensor",)),
     Kind.REFUSED_MOVING: refused(
         "Free-drive refused: the arm moves",
@@ -61,6 +68,7 @@ ENTRY: dict[Kind, EventRow] = {
         "Free-drive refused: the check is too short",
         "{value:.3f} s; below {limit:.2f} s only with the handshake or a stored state.",
         ("value", "limit"),
+        way_out="Set `sequence.period` longer, or switch the handshake or the stored state on.",
     ),
     Kind.REFUSED_NOT_STORED: refused(
         "Free-drive refused: no stored state",
@@ -75,6 +83,8 @@ ENTRY: dict[Kind, EventRow] = {
         "Beyond its limit: {parameter}",
         "{part}: {value:.3f} {unit}, limit {limit:.3f} {unit}, {time:.2f} s into the check.",
         (*EXCESS, "time"),
+        reaction="The check ends with the event that refuses or stops; each parameter beyond its limit is told besides.",
+        way_out="As with that event.",
     ),
     Kind.REFUSED_LIMIT: refused(
         "Free-drive refused: {parameter}",
@@ -85,6 +95,7 @@ ENTRY: dict[Kind, EventRow] = {
         "Free-drive refused: wrong payload or a push",
         "Consistent with {mass:+.1f} kg, or a steady {force:.0f} N push {way}; let go, or turn the wrist, to decide.",
         ("mass", "force", "way", "zero", "parameter"),
+        way_out="Let go, or turn the wrist, to decide. Correct the payload, or zero the sensor.",
     )._replace(
         variant=(
             "zero",
@@ -104,7 +115,10 @@ ENTRY: dict[Kind, EventRow] = {
         EXCESS,
     ),
     Kind.COMPENSATING: info(
-        "Free-drive is refused: the arm is balanced", "Hands off. It is held when it stands, within {period:.1f} s.", ("period",)
+        "Free-drive is refused: the arm is balanced",
+        "Hands off. It is held when it stands, within {period:.1f} s.",
+        ("period",),
+        reaction="The arm stays free, and the motors' torque against gravity adapts to the load, until the arm stands.",
     ),
     Kind.COMPENSATED: EventRow(
         Effect.INFO,
@@ -117,6 +131,7 @@ ENTRY: dict[Kind, EventRow] = {
         "The arm did not come to rest: it is held",
         "It moved by {moved:.1f} mm within {time:.1f} s. Check the payload.",
         ("moved", "time"),
+        reaction="The arm is held, and free-drive is refused.",
     ),
     Kind.LOAD_FOUND: EventRow(
         Effect.INFO,
@@ -152,5 +167,7 @@ ENTRY: dict[Kind, EventRow] = {
         "Let go first; ready in {remaining:.1f} s.",
         ("remaining",),
         Clears.COOL_DOWN,
+        reaction="The signal does not count.",
+        way_out="Let go. Ask again after the cool-down.",
     ),
 }

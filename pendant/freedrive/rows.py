@@ -3,6 +3,12 @@
 from pendant.events.event import Kind
 from pendant.events.event_row import EXCESS, WALL, Clears, Effect, EventRow, Severity, info, left, refused, stopped
 
+UNUSED = "To the end of this free-drive nothing amplifies the user's force; the joints alone tell who leads the arm."
+"""Reaction to a flange sensor that cannot be trusted."""
+
+BACK = "Ask again after the cool-down, and guide the part back."
+"""Way out of a wall or area."""
+
 FREE_DRIVE: dict[Kind, EventRow] = {
     # While it lasts: the hand (FD-13)
     Kind.MANIPULATION: info(
@@ -36,6 +42,8 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         Severity.WARNING,
         "Flange force sensor not valid",
         "The arm is heavier to move: no help from the force sensor.",
+        reaction=UNUSED,
+        way_out="End free-drive, and check the sensor.",
     ),
     Kind.SENSOR_STEPPED: EventRow(
         Effect.INFO,
@@ -43,6 +51,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "The flange force sensor stepped",
         "A step of {force:.1f} N without joint torque: it is not used any more. End free-drive and check it.",
         ("force",),
+        reaction=UNUSED,
     ),
     Kind.SENSOR_DRIFTED: EventRow(
         Effect.INFO,
@@ -50,6 +59,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "The flange force sensor drifts",
         "Its bias moved by {force:.1f} N, {torque:.1f} N·m: it is not used any more. End free-drive and check it.",
         ("force", "torque"),
+        reaction=UNUSED,
     ),
     # The button (FD-23)
     Kind.HOLD_SILENT: EventRow(
@@ -58,6 +68,7 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "Button counts as released",
         "Nothing heard from it for {value:.2f} s, limit {limit:.2f} s. Check the connection.",
         ("value", "limit"),
+        reaction="The same follows as when the button is let go.",
     ),
     # Leaving: nobody moves the arm (FD-14, FD-15)
     Kind.LEFT_PERIOD: left(
@@ -99,8 +110,10 @@ FREE_DRIVE: dict[Kind, EventRow] = {
     # A wall or area (VW-6, VW-9)
     Kind.LEFT_WALL: left(
         "Free-drive ended: {part} beyond {wall}", "{distance:.1f} mm out. Back is {way} of the base.", WALL, Severity.WARNING
-    ),
-    Kind.STOPPED_WALL: stopped("Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL),
+    )._replace(way_out=BACK),
+    Kind.STOPPED_WALL: stopped(
+        "Stopped: {part} beyond {wall}", "{distance:.1f} mm out. Reset; back is {way} of the base.", WALL
+    )._replace(way_out=f"Reset. {BACK}"),
     # Asked for (FD-17)
     Kind.DEACTIVATED: EventRow(Effect.LEAVE, Severity.NOTICE, "Free-drive switched off", "Hold the button to start again."),
     # Without joint sensors nothing can be decided (FD-12)
@@ -122,12 +135,13 @@ FREE_DRIVE: dict[Kind, EventRow] = {
         "Let go, then hold the enabling device in its middle position.",
         ("grip",),
         Severity.WARNING,
-    ),
+    )._replace(reaction="The arm brakes in a stop of category 2."),
     Kind.RUN_ENABLING: EventRow(
         Effect.INFO,
         Severity.WARNING,
         "Program stopped: enabling device {grip}",
         "Let go, hold the enabling device in its middle position, then resume.",
         ("grip",),
+        reaction="The program pauses, and the arm brakes in a stop of category 2.",
     ),
 }

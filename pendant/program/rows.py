@@ -32,6 +32,8 @@ def _touched(headline: str) -> EventRow:
         headline,
         "The force changed by {force:.1f} N (rule: {rule}). Action: {action}.",
         keys,
+        reaction="In a program, the action that its step asks for; else none.",
+        way_out="By itself. The next change is told anew.",
     )
 
 
@@ -79,7 +81,12 @@ PROGRAM: dict[Kind, EventRow] = {
     Kind.PROGRAM_RESUMED: info('Program "{name}" resumed', "At step {step}.", ("name", "step")),
     Kind.PROGRAM_STOPPED: info('Program "{name}" stopped', "At step {step}.", ("name", "step")),
     Kind.PROGRAM_FINISHED: info('Program "{name}" finished', "", ("name",)),
-    Kind.PROGRAM_FAILED: denied('Program "{name}" stopped at step {step}', "{reason}.", ("name", "step", "reason")),
+    Kind.PROGRAM_FAILED: denied(
+        'Program "{name}" stopped at step {step}',
+        "{reason}.",
+        ("name", "step", "reason"),
+        reaction="The program ends, the arm brakes, and the mode is that in which the program was started.",
+    ),
     Kind.PROGRAM_TELLS: EventRow(Effect.INFO, Severity.NOTICE, "{text}", 'Program "{name}".', ("name", "text", "tone")),
     Kind.TOOL_SWITCHED: info("Tool {state}", "", ("state",)),
     Kind.OUTPUT_SWITCHED: info("Output {number} {state}", "", ("number", "state")),
@@ -89,9 +96,17 @@ PROGRAM: dict[Kind, EventRow] = {
         "Stopped at {wall}: {part}",
         "At {px:.3f}, {py:.3f}, {pz:.3f} m, {distance:.1f} mm out. Back is {way} of the base.",
         WALL,
+        reaction="The arm's own motion ends at the border. The program ends, or the jogging, with an event of its own.",
+        way_out="Jog or guide the part back.",
     ),
     Kind.JOG_STARTED: info("Jogging {what}", "", ("what",)),
-    Kind.JOG_ENDED: info("Jogging {what} ended after {moved}", "{reason}.", ("what", "moved", "reason")),
+    Kind.JOG_ENDED: info(
+        "Jogging {what} ended after {moved}",
+        "{reason}.",
+        ("what", "moved", "reason"),
+        reaction="The arm brakes.",
+        way_out="Jog again. Where the reason is no wish of yours, mend it first.",
+    ),
     Kind.JOG_REFUSED: denied("Not jogged: {what}", "{reason}.", ("what", "reason")),
     # Change in contact (CD-13, CD-16)
     Kind.CONTACT_GAINED: _touched("Contact gained: {part}"),
@@ -128,7 +143,12 @@ PROGRAM: dict[Kind, EventRow] = {
     ),
     Kind.WIZARD_STARTED: info("Measuring the payload", "The arm turns its wrist by itself, slowly. Hands off the arm.", ()),
     Kind.WIZARD_FINISHED: info("Payload measured", "{postures} postures; the arm is back where it began.", ("postures",)),
-    Kind.WIZARD_STOPPED: denied("Measuring the payload stopped", "{reason}.", ("reason",)),
+    Kind.WIZARD_STOPPED: denied(
+        "Measuring the payload stopped",
+        "{reason}.",
+        ("reason",),
+        reaction="The wrist comes to rest. What is measured is kept.",
+    ),
     Kind.WIZARD_REFUSED: denied("The payload is not measured", "{reason}.", ("reason",)),
     # The flange sensor's zero
     Kind.SENSOR_ZEROED: info(
@@ -160,10 +180,28 @@ PROGRAM: dict[Kind, EventRow] = {
         "Simulation late {often}, by {late:.0f} ms at worst",
         "The machine is busy; {lost:.1f} s were dropped.",
         ("late", "lost", "often"),
+        reaction="The simulation drops the time for which it was late, and goes on.",
+        way_out="By itself, when the machine has time again.",
     ),
     Kind.BROKEN_DOWN: denied(
-        "The simulation broke down", "{reason}. Nothing moves any more. Start over, on the tab Lab.", ("reason",)
+        "The simulation broke down",
+        "{reason}. Nothing moves any more. Start over, on the tab Lab.",
+        ("reason",),
+        reaction="The simulation stands still. It does nothing that is asked of it.",
+        way_out="Start over, on the tab Lab.",
     ),
-    Kind.PART_BROKEN: denied("Does not work: {part}", "{reason}. The robot goes on.", ("part", "reason")),
-    Kind.RECORDING_BROKEN: denied("The recording ended", "{reason}. What is in {file} can be replayed.", ("file", "reason")),
+    Kind.PART_BROKEN: denied(
+        "Does not work: {part}",
+        "{reason}. The robot goes on.",
+        ("part", "reason"),
+        reaction="The part does nothing. The robot goes on.",
+        way_out="By itself, when the part works again. What is not tried again works after a new start of the product.",
+    ),
+    Kind.RECORDING_BROKEN: denied(
+        "The recording ended",
+        "{reason}. What is in {file} can be replayed.",
+        ("file", "reason"),
+        reaction="The recording ends. The robot goes on.",
+        way_out="Mend what the reason names, then record again.",
+    ),
 }

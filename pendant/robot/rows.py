@@ -3,6 +3,9 @@
 from pendant.events.event import Kind
 from pendant.events.event_row import EXCESS, Clears, Effect, EventRow, Severity, denied, info, protected
 
+STAYS = "The robot stays in STOP."
+"""Reaction to a reset that is refused."""
+
 SAFETY: dict[Kind, EventRow] = {
     # Safety (FD-1)
     Kind.RUN_SENSORS_LOST: protected(
@@ -16,9 +19,12 @@ SAFETY: dict[Kind, EventRow] = {
         "Nothing can hold it but its brake. Check its motor encoder, then reset.",
         ("joint",),
         category=0,
-    ),
+    )._replace(way_out="Check its motor encoder, then reset."),
     Kind.JOINT_SENSOR_LOST: denied(
-        "Lost: {sensor} of {joint}", "{left}. End the motion and check it; free-drive needs it.", ("sensor", "joint", "left")
+        "Lost: {sensor} of {joint}",
+        "{left}. End the motion and check it; free-drive needs it.",
+        ("sensor", "joint", "left"),
+        reaction="The control goes on with the values that are left. Where nothing is left, a stop follows.",
     ),
     Kind.JOINT_SENSOR_BACK: info("Back: {sensor} of {joint}", "", ("sensor", "joint")),
     Kind.EMERGENCY_STOP: EventRow(
@@ -44,6 +50,7 @@ SAFETY: dict[Kind, EventRow] = {
         Clears.RESET,
         cool_down=True,
         category=1,
+        way_out="Reset, to switch the drives on.",
     ),
     Kind.SAFEGUARD_STOP: EventRow(
         Effect.SAFEGUARD_STOP,
@@ -73,12 +80,19 @@ SAFETY: dict[Kind, EventRow] = {
         ("time", "distance", "category", "cause"),
     ),
     Kind.RESET: info("Reset to TEACH"),
-    Kind.RESET_REFUSED_SAFEGUARD: denied("Reset refused: safeguard open", "Close it, then reset."),
-    Kind.RESET_REFUSED_SIGNAL: denied("Reset refused: free-drive button held", "Let go of it, then reset."),
+    Kind.RESET_REFUSED_SAFEGUARD: denied("Reset refused: safeguard open", "Close it, then reset.", reaction=STAYS),
+    Kind.RESET_REFUSED_SIGNAL: denied("Reset refused: free-drive button held", "Let go of it, then reset.", reaction=STAYS),
     Kind.RESET_REFUSED_MOVING: denied(
         "Reset refused: the arm moves",
         "{joint} at {value:.3f} rad/s, limit {limit:.3f} rad/s for {time:.1f} s. Wait, then reset.",
         ("joint", "value", "limit", "time"),
+        reaction=STAYS,
     ),
-    Kind.RESET_REFUSED_SENSORS: denied("Reset refused: joint sensors not valid", "Check {sensor}, then reset.", ("sensor",)),
+    Kind.RESET_REFUSED_SENSORS: denied(
+        "Reset refused: joint sensors not valid",
+        "Check {sensor}, then reset.",
+        ("sensor",),
+        reaction=STAYS,
+        way_out="Check the sensors, then reset.",
+    ),
 }

@@ -12,7 +12,7 @@ class Signal(NamedTuple):
 
     Signs as docs/reference/conventions.md says of `w_sensor`: what the arm exerts on what it carries or touches. Force and
     acceleration both contain gravity, so that in free motion they stay parallel: force = mass·acceleration
-    (docs/guide/contact.md).
+    (docs/explanation/contact.md).
     """
 
     fx: float  # force [N]

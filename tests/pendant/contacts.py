@@ -33,7 +33,7 @@ def signals(
     """n ticks. `push` (n, 3) is the force of the arm on an object, `motion` (n, 3) the free acceleration.
 
     The object pushes back on load and arm together: a = motion - push / (arm + mass), and what the flange exerts on the load is
-    m·(a - g) + push (docs/guide/contact.md).
+    m·(a - g) + push (docs/explanation/contact.md).
     """
     rng = np.random.default_rng(seed)
     zero = np.zeros((n, 3))
