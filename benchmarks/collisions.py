@@ -72,7 +72,7 @@ class Course(NamedTuple):
     peak: float  # largest force in the first 20 ms [N]
     later: float  # and after them [N]
     kept: float  # the furthest that the tool was from where it should be [m]
-    stopped: str  # the part that the protective stop names; "" for none, "path" for a following error
+    stopped: str  # the part that the protective stop names; "" for none, "path" for a following error without one
     delay: float  # from the touch to the stop [s]
 
 
@@ -185,7 +185,7 @@ class Trial:
                 touched, shape = ticks, touching(device)
             for event in decision.events:
                 if event.kind in (Kind.COLLISION, Kind.PATH_LEFT) and not stopped:
-                    stopped = str(event.values["part"]) if event.kind is Kind.COLLISION else "path"
+                    stopped = str(event.values["part"]) or "path"
                     stopped_at = ticks
             if touched:
                 if (ticks - touched) * TICK <= FIRST_PEAK:
