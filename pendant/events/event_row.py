@@ -89,7 +89,7 @@ def stopped(headline: str, guidance: str, keys: tuple[str, ...]) -> EventRow:
 
 
 def protected(
-    headline: str, guidance: str, keys: tuple[str, ...], category: int = 2, variant: tuple[str, str] | None = None
+    headline: str, guidance: str, keys: tuple[str, ...], *, category: int = 2, variant: tuple[str, str] | None = None
 ) -> EventRow:
     """A protective stop of this category."""
     return EventRow(

@@ -60,8 +60,8 @@ def test_the_event_names_joint_and_errors_and_what_holds_the_arm() -> None:
         "distance": pytest.approx(12.0),
         **HELD,
     }
-    assert "forearm, 40 N" in render(event)[1]
-    assert "forearm" not in render(Event(Kind.PATH_LEFT, 0, {**event.values, "part": ""}))[1]
+    assert "Forearm: 40 N" in render(event)[1]
+    assert "orearm" not in render(Event(Kind.PATH_LEFT, 0, {**event.values, "part": ""}))[1]
 
 
 def test_a_held_arm_is_stopped_once() -> None:
