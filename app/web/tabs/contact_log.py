@@ -81,7 +81,7 @@ class Contacts:
         self._log: deque[tuple[int, Event]] = deque(maxlen=LENGTH)
         self._count = 0
         gui = server.gui
-        self.detects = gui.add_checkbox("Detect changes in contact", loop.settings.contact.on)
+        self.detects = gui.add_checkbox("Detection", loop.settings.contact.on, hint="Of changes in contact")
         self.note = Html(gui)
         self.choice: viser.GuiDropdownHandle[str] = gui.add_dropdown("Mark", choices(0))
         self.table = Html(gui, svg.contacts(()))
