@@ -19,7 +19,7 @@ PROTECTION: dict[Kind, EventRow] = {
     ),
     Kind.COLLISION: protected(
         "Protective stop: collision",
-        "{part}: {force:.0f} N at {speed:.0f} mm/s, limit {limit:.0f} N. Reset, then jog or guide it away.",
+        "{part}: {force:.0f} N at {speed:.0f} mm/s, limit {limit:.0f} N. Reset, then jog it away.",
         ("joint", "limit", *MET),
     ),
 }

@@ -90,20 +90,26 @@ def test_the_arm_is_jogged_off_what_it_still_touches() -> None:
 
 
 @pytest.mark.parametrize("seed", [4, 5])
-def test_the_arm_is_guided_off_what_it_still_touches(seed: int) -> None:
+def test_free_drive_does_not_begin_while_something_presses_and_does_once_the_arm_is_off(seed: int) -> None:
+    """What presses cannot be told from a wrong payload (FD-9): the arm is jogged off, and then guided."""
     found = outcome(
         "guided off",
         [
             JOGGED,
             {"at": 3.0, "do": "tap", "control": "reset"},
-            {"at": 7.0, "do": "press", "control": "free_drive"},
-            {"at": 9.5, "do": "push", "for": 1.0, "force": [0.0, 0.0, 30.0]},
+            {"at": 3.5, "do": "press", "control": "free_drive"},
+            {"at": 6.5, "do": "release", "control": "free_drive"},
+            {"at": 7.0, "do": "jog", "for": 1.0, "move": {"kind": "jog", "frame": "base", "axis": 2, "sign": 1}},
+            {"at": 12.0, "do": "press", "control": "free_drive"},
+            {"at": 15.0, "do": "push", "for": 1.0, "force": [0.0, 0.0, 30.0]},
         ],
         [
-            {"expect": "state", "mode": "FREE_DRIVE", "by": 9.4},
-            {"expect": "displacement", "part": "flange", "min": 0.05, "from": 9.5, "to": 10.6},
+            {"expect": "displacement", "part": "flange", "max": 0.002, "from": 3.5, "to": 7.0},
+            {"expect": "event", "kind": "refused_payload", "from": 3.5, "to": 7.0},
+            {"expect": "state", "mode": "FREE_DRIVE", "by": 14.9},
+            {"expect": "displacement", "part": "flange", "min": 0.05, "from": 15.0, "to": 16.1},
         ],
-        duration=10.7,
+        duration=16.2,
         seed=seed,
     )
     assert found.passed, ([verdict for verdict in found.verdicts if not verdict.passed], found.events[-6:])
